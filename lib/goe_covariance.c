@@ -18,9 +18,9 @@ static void covariance_of_sigmas(const goe_sigma_t *sigma, goe_covariance_t cova
     }
 }
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 static bool is_refined_answer(const goe_estimator_t *estimator) {
-    return estimator->estimate.method == GOE_METHOD_REFINED;
+    return estimator->estimate.method == GOE_METHOD_FILTER;
 }
 
 static const unsigned bit_of[GOE_QUANTITIES] = {GOE_HAS_POSITION, GOE_HAS_POSITION, GOE_HAS_ORIENTATION,
@@ -102,7 +102,7 @@ float goe_latest_reach(const goe_estimator_t *estimator) {
  * covers any two that add up, which is for a hazard to know. */
 static void covariance_of_answer(const goe_estimator_t *estimator, bool for_hazard, float ahead_s,
                                  goe_covariance_t covariance) {
-    const bool lost = for_hazard && estimator->estimate.method == GOE_METHOD_REFINED;
+    const bool lost = for_hazard && estimator->estimate.method == GOE_METHOD_FILTER;
     const float age_s = goe_latest_since_s(estimator, estimator->motion.time_us);
     const float moving_s = (estimator->estimate.valid & GOE_HAS_VELOCITY) != 0u ? ahead_s : 0.0f;
     const float grown_m2 = goe_latest_grown_m2(estimator, age_s + moving_s);
@@ -118,7 +118,7 @@ goe_status_t goe_latest_covariance(const goe_estimator_t *estimator, bool for_ha
                                    goe_covariance_t covariance) {
     memset(covariance, 0, sizeof(goe_covariance_t));
     if (!(estimator->estimate.valid & GOE_HAS_POSITION)) {
-        return GOE_COLLECTING;
+        return GOE_CONVERGING;
     }
     if (!covariance_of_filter(estimator, for_hazard, ahead_s, covariance)) {
         covariance_of_answer(estimator, for_hazard, ahead_s, covariance);

@@ -19,8 +19,8 @@ goe_status_t goe_latest_covariance(const goe_estimator_t *estimator, bool for_ha
 float goe_latest_camera_height(const goe_estimator_t *estimator);
 float goe_latest_height_bias(const goe_estimator_t *estimator);
 
-/* Half of the obstacle's extent about its reference point as far as it is seen, m, also while the width is not valid; 0: not
- * known. An image without a detection, or a new start of the filter, does not make it less. */
+/* Half of the visible extent of the obstacle about its reference point, m, also while the width is not valid; 0: not
+ * known. An image without a detection, or a new start of the filter, does not reduce it. */
 float goe_latest_reach(const goe_estimator_t *estimator);
 
 #endif

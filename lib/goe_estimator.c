@@ -1,7 +1,7 @@
 /* The estimator: one image through the whole chain. SPDX-License-Identifier: MIT
  *
  *   image -> intake -> ego motion -> aligned points -> window -----------------> estimate
- *                                                  \-> refined -> quantities -/
+ *                                                  \-> filter -> quantities -/
  */
 #include <math.h>
 #include <string.h>
@@ -19,7 +19,7 @@
 #include "refined/goe_report.h"
 #include "window/goe_window.h"
 
-#define RESETS GOE_OK /* causes[0] counts tracks that an unknown filter reset ended */
+#define RESETS GOE_OK /* fault_counts[0] counts tracks that an unknown filter reset ended */
 #define SURE_SIGMA 2.0f
 #define ASIDE_MIN 1.7320508f /* tangent of 60 degrees */
 
@@ -59,7 +59,7 @@ static void set_age(const goe_estimator_t *estimator, int64_t image_us, goe_esti
     estimate->age_s = goe_latest_since_s(estimator, now_us);
 }
 
-/* What every answer is told with, also a refused image's. */
+/* Fields that accompany every answer, also a refused image's. */
 static void complete(const goe_estimator_t *estimator, int64_t image_us, goe_estimate_t *estimate) {
     set_age(estimator, image_us, estimate);
     estimate->trajectory_heading_deg = goe_motion_heading_deg(&estimator->motion);
@@ -78,15 +78,15 @@ static void forget_track(goe_estimator_t *estimator) {
 #if GOE_WITH_WINDOW
     goe_window_clear(&estimator->window);
 #endif
-#if GOE_WITH_REFINED
-    if (goe_is_refined(estimator)) { /* the window needs no filter, and has no time for one */
+#if GOE_WITH_FILTER
+    if (goe_uses_filter(estimator)) { /* the window needs no filter, and has no time for one */
         goe_filter_clear(&estimator->filter);
     }
 #endif
 }
 
 #if GOE_WITH_WINDOW
-/* Of the window, which tells by its answer alone whether it solved. */
+/* For the window, whose answer alone shows whether it solved. */
 static void note_solved(goe_estimator_t *estimator) {
     if (estimator->estimate.fresh) {
         estimator->estimate_time_us = estimator->motion.time_us;
@@ -94,9 +94,9 @@ static void note_solved(goe_estimator_t *estimator) {
 }
 #endif
 
-/* ------------------------------------------------------------------------------------------------------------- refined -- */
+/* ------------------------------------------------------------------------------------------------------------- filter -- */
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 /* No new answer: the last one grows old, and follows the motion. */
 static void grow_old(goe_estimator_t *estimator) {
     goe_estimate_t *estimate = &estimator->estimate;
@@ -149,9 +149,9 @@ static goe_status_t report_refined(goe_estimator_t *estimator, const goe_view_t 
         return faults->first;
     }
     if (!view->seen) {
-        return GOE_NOTHING_SEEN;
+        return GOE_NO_DETECTION;
     }
-    return (estimator->estimate.valid & GOE_HAS_POSITION) ? GOE_HELD : GOE_COLLECTING;
+    return (estimator->estimate.valid & GOE_HAS_POSITION) ? GOE_STALE : GOE_CONVERGING;
 }
 
 /* North and east of an older answer are those of the autopilot's filter before its reset. */
@@ -162,10 +162,10 @@ static void move_center(goe_estimate_t *estimate, const float delta_ned_m[3]) {
     }
 }
 
-/* Points out of order: pairs that the refined method found, once for each. */
+/* Points out of order: pairs that the filter method found, once for each. */
 static void note_swapped(goe_estimator_t *estimator, unsigned swapped, goe_faults_t *faults) {
     for (unsigned i = 0; i < swapped; i++) {
-        goe_count_cause(estimator->causes, GOE_SWAPPED);
+        goe_count_cause(estimator->fault_counts, GOE_SWAPPED);
     }
     if (swapped > 0 && faults->first == GOE_OK) {
         faults->first = GOE_SWAPPED;
@@ -177,8 +177,8 @@ static void note_swapped(goe_estimator_t *estimator, unsigned swapped, goe_fault
  * an older answer. */
 static bool window_answers(const goe_estimator_t *estimator, bool reported, bool reports) {
     const bool known = (estimator->estimate.valid & GOE_HAS_POSITION) != 0u;
-    const bool refined = known && estimator->estimate.method == GOE_METHOD_REFINED;
-    return !reported && !refined && !(reports && known);
+    const bool filter = known && estimator->estimate.method == GOE_METHOD_FILTER;
+    return !reported && !filter && !(reports && known);
 }
 #endif
 
@@ -190,7 +190,7 @@ static goe_status_t update_refined(goe_estimator_t *estimator, const goe_view_t 
     const bool reports = goe_filter_reports(&estimator->filter, settings);
 #if GOE_WITH_WINDOW
     const bool by_window = window_answers(estimator, reported, reports);
-    if (by_window && estimator->estimate.method == GOE_METHOD_REFINED) { /* a filter that started, and never answered */
+    if (by_window && estimator->estimate.method == GOE_METHOD_FILTER) { /* a filter that started, and never answered */
         memset(&estimator->estimate, 0, sizeof estimator->estimate);
     }
     const goe_status_t status =
@@ -227,11 +227,11 @@ static goe_status_t take_refined(goe_estimator_t *estimator, const goe_view_t *v
 static void follow_reset(goe_estimator_t *estimator, const goe_pose_t *pose) {
     if (!goe_is_set(&pose->reset_delta_known)) {
         forget_track(estimator);
-        goe_count_cause(estimator->causes, RESETS);
+        goe_count_cause(estimator->fault_counts, RESETS);
         return;
     }
-#if GOE_WITH_REFINED
-    if (goe_is_refined(estimator)) {
+#if GOE_WITH_FILTER
+    if (goe_uses_filter(estimator)) {
         move_center(&estimator->estimate, pose->reset_delta_ned_m);
         goe_ground_move(&estimator->filter, pose->reset_delta_ned_m[2]);
     }
@@ -246,10 +246,10 @@ static bool may_begin_again(const goe_estimator_t *estimator, const goe_view_t *
     const float x = to_trajectory[0] * nose[0] + to_trajectory[1] * nose[1] + to_trajectory[2] * nose[2];
     const float z = to_trajectory[6] * nose[0] + to_trajectory[7] * nose[1] + to_trajectory[8] * nose[2];
     const bool known = (estimator->estimate.valid & GOE_HAS_POSITION) != 0u;
-    return goe_is_set(&estimator->settings.heading_auto) && estimator->motion.sighted && !known && goe_absolute(x) > z;
+    return goe_is_set(&estimator->settings.heading_auto) && estimator->motion.detected && !known && goe_absolute(x) > z;
 }
 
-/* Whether something is seen, and all of it more than 60 degrees from Z. */
+/* Whether features are visible, and all of them more than 60 degrees from Z. */
 /*@ requires \valid_read(view); */
 static bool lies_aside(const goe_view_t *view) {
     bool aside = view->seen;
@@ -259,14 +259,14 @@ static bool lies_aside(const goe_view_t *view) {
     return aside;
 }
 
-/* After a turn: what lies aside of T's Z axis would give little or nothing, and of the obstacle nothing is known yet that the track
- * could lose. It begins here, and the faults of this image are counted once. */
+/* After a turn: features far from T's Z axis would give little information, and a track without a known position has nothing to
+ * lose. The track begins here, and the faults of this image are counted once. */
 static GOE_NOINLINE void align_after_turn(goe_estimator_t *estimator, goe_view_t *view, goe_faults_t *faults) {
-    uint32_t causes[GOE_CAUSES];
-    memcpy(causes, faults->causes, sizeof causes);
+    uint32_t fault_counts[GOE_FAULT_COUNTS];
+    memcpy(fault_counts, faults->fault_counts, sizeof fault_counts);
     goe_align_points(view->camera, view, faults);
     if (lies_aside(view)) {
-        memcpy(faults->causes, causes, sizeof causes);
+        memcpy(faults->fault_counts, fault_counts, sizeof fault_counts);
         faults->first = GOE_OK;
         forget_track(estimator);
         goe_motion_follow(&estimator->motion, &estimator->settings, view);
@@ -288,18 +288,18 @@ static void open_view(goe_estimator_t *estimator, const goe_image_t *image, cons
     } else {
         goe_align_points(camera, view, faults);
     }
-    estimator->motion.sighted = estimator->motion.sighted || view->seen;
+    estimator->motion.detected = estimator->motion.detected || view->seen;
 }
 
 static goe_status_t take_image(goe_estimator_t *estimator, const goe_image_t *image, const goe_camera_t *camera) {
     goe_view_t view;
-    goe_faults_t faults = {estimator->causes, GOE_OK};
+    goe_faults_t faults = {estimator->fault_counts, GOE_OK};
     if (goe_motion_reset(&estimator->motion, &image->pose)) {
         follow_reset(estimator, &image->pose);
     }
     open_view(estimator, image, camera, &view, &faults);
-#if GOE_WITH_REFINED
-    if (goe_is_refined(estimator)) {
+#if GOE_WITH_FILTER
+    if (goe_uses_filter(estimator)) {
         return take_refined(estimator, &view, &faults);
     }
 #endif
@@ -309,7 +309,7 @@ static goe_status_t take_image(goe_estimator_t *estimator, const goe_image_t *im
     note_solved(estimator);
     return status;
 #else
-    return GOE_COLLECTING; /* not reached: goe_init() admits no other method */
+    return GOE_CONVERGING; /* not reached: goe_init() admits no other method */
 #endif
 }
 
@@ -345,12 +345,12 @@ goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator_size, const g
 
 /* Nothing changes but a counter; the answer is the older one. */
 static GOE_NOINLINE void refuse(goe_estimator_t *estimator, goe_status_t status, goe_estimate_t *estimate) {
-    goe_count_cause(estimator->causes, status);
+    goe_count_cause(estimator->fault_counts, status);
     *estimate = estimator->estimate;
     estimate->fresh = false;
 }
 
-/* Whether nothing but numbers leaves, and nothing but numbers is left to place what comes. */
+/* Whether all outputs, and the memory that places the next image, are numbers. */
 static bool is_sound(const goe_estimator_t *estimator, const goe_estimate_t *estimate) {
     const uint32_t place =
         goe_larger_bits(goe_magnitude(estimator->motion.dx_m), goe_magnitude(estimator->motion.dz_m));
@@ -378,7 +378,7 @@ goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, go
     if (status == GOE_OK && !camera) {
         status = GOE_OUT_OF_RANGE;
     }
-    if (status == GOE_OK && goe_is_refined(estimator)) {
+    if (status == GOE_OK && goe_uses_filter(estimator)) {
         status = goe_intake_check_noise(&image->noise);
     }
     if (status == GOE_OK) {

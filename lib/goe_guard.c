@@ -37,7 +37,7 @@ static inline uint32_t word_at(const void *from, size_t i) {
 #define SEALED_TO (offsetof(goe_estimator_t, settings) + sizeof(goe_settings_t))
 #define SEALED_WORDS ((SEALED_TO - SEALED_FROM) / WORD)
 
-GOE_STATIC_ASSERT(SEALED_FROM % WORD == 0 && SEALED_TO % WORD == 0, what_is_sealed_is_whole_words);
+GOE_STATIC_ASSERT(SEALED_FROM % WORD == 0 && SEALED_TO % WORD == 0, sealed_memory_is_whole_words);
 
 /* The sum finds every change of one word, and of two bits unless they are the same bit of two words; the turned one then finds these,
  * unless the words lie a multiple of 32 apart. */
@@ -80,7 +80,7 @@ goe_status_t goe_guard_judge(const goe_estimator_t *estimator) {
     if (sealed && ready) {
         return GOE_OK;
     }
-    return sealed || ready ? GOE_CORRUPTED : GOE_NOT_INITIALISED;
+    return sealed || ready ? GOE_CORRUPTED : GOE_NOT_INITIALIZED;
 }
 
 /* ----------------------------------------------------------------------------------------------------------- answers -- */
@@ -105,7 +105,7 @@ bool goe_guard_finite(const float *floats, size_t count) {
 /* The floats of an estimate lie side by side, but for one count. */
 #define FIRST offsetof(goe_estimate_t, age_s)
 #define BETWEEN offsetof(goe_estimate_t, nis_rows)
-#define SECOND offsetof(goe_estimate_t, misfit)
+#define SECOND offsetof(goe_estimate_t, nis_ratio)
 
 GOE_STATIC_ASSERT((BETWEEN - FIRST) % sizeof(float) == 0 && (sizeof(goe_estimate_t) - SECOND) % sizeof(float) == 0 &&
                       offsetof(goe_estimate_t, nis) + sizeof(float) == BETWEEN &&
@@ -119,11 +119,11 @@ static bool is_truth(const bool *truth) { return *(const unsigned char *)truth <
 static bool is_count(int count) { return count >= 0 && count <= INT16_MAX; }
 
 bool goe_guard_estimate(const goe_estimate_t *estimate) {
-    const bool named = (unsigned)estimate->method <= (unsigned)GOE_METHOD_REFINED &&
+    const bool named = (unsigned)estimate->method <= (unsigned)GOE_METHOD_FILTER &&
                        (unsigned)estimate->model <= (unsigned)GOE_MODEL_PRISM && estimate->model != GOE_MODEL_AUTO &&
                        (unsigned)estimate->reason <= (unsigned)GOE_REASON_NOISE;
     return named && estimate->valid <= HAS_ALL && is_truth(&estimate->fresh) && is_truth(&estimate->suspect) &&
-           is_count(estimate->points) && is_count(estimate->nis_rows) &&
+           is_count(estimate->images_used) && is_count(estimate->nis_rows) &&
            goe_guard_finite(&estimate->age_s, (BETWEEN - FIRST) / sizeof(float)) &&
-           goe_guard_finite(&estimate->misfit, (sizeof *estimate - SECOND) / sizeof(float));
+           goe_guard_finite(&estimate->nis_ratio, (sizeof *estimate - SECOND) / sizeof(float));
 }

@@ -1,4 +1,4 @@
-/* Flipped bits of the estimator's memory: the seal over what no call changes, and the check of an answer before it leaves.
+/* Flipped bits of the estimator's memory: the seal over the constant fields, and the check of an answer before it leaves.
  * SPDX-License-Identifier: MIT */
 #ifndef GOE_GUARD_H
 #define GOE_GUARD_H
@@ -8,8 +8,8 @@
 /* Seals mounting and settings. Call this when they are set: from then on they change no more. */
 void goe_guard_seal(goe_estimator_t *estimator);
 
-/* GOE_OK; GOE_NOT_INITIALISED; or GOE_CORRUPTED, if mounting, settings or what tells that they are set are not what
- * goe_guard_seal() left. It finds every change of one word, and of two bits anywhere but the same bit of two words that lie 32
+/* GOE_OK; GOE_NOT_INITIALIZED; or GOE_CORRUPTED, if mounting, settings or the mark that they are set differ from the state after
+ * goe_guard_seal(). It finds every change of one word, and of two bits anywhere but the same bit of two words that are 32
  * words apart. */
 goe_status_t goe_guard_judge(const goe_estimator_t *estimator);
 

@@ -6,12 +6,12 @@
 #include "maths/goe_scalar.h"
 #include "maths/goe_time.h"
 
-static inline bool goe_is_refined(const goe_estimator_t *estimator) {
-#if GOE_WITH_WINDOW && GOE_WITH_REFINED
-    return estimator->settings.method == GOE_METHOD_REFINED;
+static inline bool goe_uses_filter(const goe_estimator_t *estimator) {
+#if GOE_WITH_WINDOW && GOE_WITH_FILTER
+    return estimator->settings.method == GOE_METHOD_FILTER;
 #else
     (void)estimator;
-    return GOE_WITH_REFINED != 0;
+    return GOE_WITH_FILTER != 0;
 #endif
 }
 
@@ -21,17 +21,17 @@ static inline float goe_latest_since_s(const goe_estimator_t *estimator, int64_t
 }
 
 /* Variance that the place relative to the camera gains in a time without a new answer, m2, along X as along Z: by the velocity
- * of an obstacle that moves and, refined, by the errors of the own motion. */
+ * of an obstacle that moves and, filter, by the errors of the own motion. */
 static inline float goe_latest_grown_m2(const goe_estimator_t *estimator, float since_s) {
     const goe_sigma_t *sigma = &estimator->estimate.sigma;
     const float north = goe_square(sigma->velocity_north_m_s);
     const float east = goe_square(sigma->velocity_east_m_s);
     float velocity_m2_s2 = goe_larger(north, east);
     float walk_m2_s = 0.0f;
-#if GOE_WITH_REFINED
-    if (estimator->estimate.method == GOE_METHOD_REFINED) {
-        velocity_m2_s2 += goe_square(estimator->settings.navigation.velocity_bias_m_s);
-        walk_m2_s = goe_square(estimator->settings.navigation.position_walk_m);
+#if GOE_WITH_FILTER
+    if (estimator->estimate.method == GOE_METHOD_FILTER) {
+        velocity_m2_s2 += goe_square(estimator->settings.navigation.velocity_bias_sd_m_s);
+        walk_m2_s = goe_square(estimator->settings.navigation.position_walk_sd_m);
     }
 #endif
     return velocity_m2_s2 * since_s * since_s + walk_m2_s * since_s;

@@ -1,7 +1,7 @@
 /* Self-check of the arithmetic. SPDX-License-Identifier: MIT
  *
- * Operands are read through volatile so that the compiler cannot evaluate the expressions itself, and then used as plain
- * floats so that it may transform them just as it transforms the rest of the library. */
+ * Operands are read through volatile, which keeps the compiler from evaluating the expressions itself; then they are plain
+ * floats, which it may transform just as it transforms the rest of the library. */
 #include <math.h>
 
 #include "goe.h"
@@ -100,8 +100,8 @@ static bool misrounds(void) {
 #define ROOT_SHIFT_MAX 47u /* of the smallest subnormal */
 
 /* The root r 2^f of m 2^e, both mantissas whole, is the nearest float exactly if r is the whole number nearest to the root
- * of X = m 2^(e - 2f): (r - 1/2)^2 < X < (r + 1/2)^2, that is r^2 - r < X <= r^2 + r, which 64 bits hold; without a sign,
- * what is too small is too large. */
+ * of X = m 2^(e - 2f): (r - 1/2)^2 < X < (r + 1/2)^2, that is r^2 - r < X <= r^2 + r, which fit 64 bits; without a sign,
+ * a number below 0 is too large. */
 static bool root_is_nearest(uint32_t square_bits) {
     float square;
     memcpy(&square, &square_bits, sizeof square);

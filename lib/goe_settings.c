@@ -126,15 +126,14 @@ const char *goe_settings_first_bad(const goe_settings_t *settings) {
     return bad ? bad : first_bad_camera(settings);
 }
 
-GOE_STATIC_ASSERT(offsetof(goe_settings_t, refined) + sizeof(goe_refined_settings_t) == sizeof(goe_settings_t) &&
-                      sizeof(goe_refined_settings_t) - offsetof(goe_refined_settings_t, top_is_highest) ==
-                          sizeof(float),
+GOE_STATIC_ASSERT(offsetof(goe_settings_t, filter) + sizeof(goe_filter_settings_t) == sizeof(goe_settings_t) &&
+                      sizeof(goe_filter_settings_t) - offsetof(goe_filter_settings_t, top_is_highest) == sizeof(float),
                   the_settings_end_in_a_truth_value);
 
 void goe_settings_copy(goe_settings_t *to, const goe_settings_t *from) {
     unsigned char *bytes = (unsigned char *)to;
     const size_t heading = offsetof(goe_settings_t, heading_auto) + sizeof(bool);
-    const size_t end = offsetof(goe_settings_t, refined.top_is_highest) + sizeof(bool);
+    const size_t end = offsetof(goe_settings_t, filter.top_is_highest) + sizeof(bool);
     *to = *from;
     memset(bytes + heading, 0, offsetof(goe_settings_t, heading_deg) - heading);
     memset(bytes + end, 0, sizeof *to - end);

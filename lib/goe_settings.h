@@ -7,7 +7,7 @@
 /* Name of the first setting outside its range, null if there is none. */
 const char *goe_settings_first_bad(const goe_settings_t *settings);
 
-/* Copies settings that are good. What lies between their fields becomes 0: the seal is over every byte. */
+/* Copies valid settings. The padding between their fields becomes 0: the seal is over every byte. */
 void goe_settings_copy(goe_settings_t *to, const goe_settings_t *from);
 
 #endif

@@ -1,7 +1,7 @@
 /* The estimator's memory. Private to the library; in a header because the caller owns the memory. Included by goe.h alone.
  * SPDX-License-Identifier: MIT
  *
- * At each type stands the file that keeps it; a new track, and the start of a phase or a model, set it back. */
+ * Each type names the file that maintains it; a new track, and the start of a phase or a model, reset it. */
 #ifndef GOE_STATE_H
 #define GOE_STATE_H
 
@@ -12,8 +12,8 @@
 /* C99 has no _Static_assert: a negative array size does not compile. */
 #define GOE_STATIC_ASSERT(condition, what) typedef char goe_assert_##what[(condition) ? 1 : -1]
 
-/* Before a static function that is to stay one: its locals must not lie on the stack while its neighbours run, or it is called
- * from more than one place and a copy in each would cost more. */
+/* Before a static function that must stay one: its locals must not be on the stack while its neighbors run, or it is called
+ * in more than one place and a copy in each would cost more. */
 #if defined(__GNUC__)
 #define GOE_NOINLINE __attribute__((noinline))
 #else
@@ -23,16 +23,16 @@
 /* Whether something is so: 0 is not, anything else is. A bool with a flipped bit would be undefined. */
 typedef uint8_t goe_flag_t;
 
-/* What the filter knows beside its state and takes as constant: the latency of the poses, s, and the obstacle's velocity, T
+/* Augmented states, which the filter takes as constant: the latency of the poses, s, and the obstacle's velocity, T
  * axes, m/s; 0 of them if that part is left out. */
-#if GOE_WITH_REFINED && GOE_WITH_MOVERS
-#define GOE_BESIDE 3
+#if GOE_WITH_FILTER && GOE_WITH_TARGET_MOTION
+#define GOE_AUGMENTED 3
 #else
-#define GOE_BESIDE 0
+#define GOE_AUGMENTED 0
 #endif
 
 /* In this order. */
-typedef enum { GOE_BESIDE_LATENCY, GOE_BESIDE_VELOCITY_X, GOE_BESIDE_VELOCITY_Z } goe_beside_t;
+typedef enum { GOE_AUGMENTED_LATENCY, GOE_AUGMENTED_VELOCITY_X, GOE_AUGMENTED_VELOCITY_Z } goe_augmented_t;
 
 /* ----------------------------------------------------------------------------------------------------------- image -- */
 
@@ -47,9 +47,9 @@ typedef struct {
     float height_jump_m;            /* sum of the jumps of down that the given height followed */
     float ground_m;                 /* down of the ground, by the latest image's height as given */
     goe_flag_t started;             /* a first image was taken; the fields above hold */
-    goe_flag_t sighted;             /* a feature was seen: T and its origin stay */
+    goe_flag_t detected;            /* a feature was visible: T and its origin stay */
     uint8_t reset_count;
-#if GOE_BESIDE
+#if GOE_AUGMENTED
     goe_flag_t paced;                     /* the fields below hold */
     float rate_rad_s[3], velocity_m_s[2]; /* T axes; since the mark ... */
     float rate_before_rad_s[3];           /* ... and before it: free of the latest attitude's own error */
@@ -88,32 +88,32 @@ typedef struct { /* window/goe_window.c */
     goe_fit_ring_t disc, line;
 } goe_window_t;
 
-/* --------------------------------------------------------------------------------------------------------- refined -- */
+/* --------------------------------------------------------------------------------------------------------- filter -- */
 
 #define GOE_STATES 10
 #define GOE_FEATURES 6
 
-/* The state and what is beside it. */
-#define GOE_UNKNOWNS (GOE_STATES + GOE_BESIDE)
+/* The state and the augmented states. */
+#define GOE_UNKNOWNS (GOE_STATES + GOE_AUGMENTED)
 
 typedef struct {
     float element[GOE_UNKNOWNS * (GOE_UNKNOWNS + 1) / 2]; /* upper triangular matrix, row by row */
-#if GOE_BESIDE
-    float right[GOE_BESIDE]; /* right-hand side of the last rows, those beside the state */
-    uint8_t estimated; /* so many of what is beside the state, from the first on, are; the others are taken as known */
+#if GOE_AUGMENTED
+    float right[GOE_AUGMENTED]; /* right-hand side of the last rows, those of the augmented states */
+    uint8_t estimated; /* number of estimated augmented states, from the first on; the others are taken as known */
 #endif
 } goe_triangle_t;
 
 typedef struct {
-    float
-        element[GOE_UNKNOWNS * (GOE_UNKNOWNS + 1) / 2]; /* the inverse of one, column by column; of what is estimated */
-#if GOE_BESIDE
+    float element[GOE_UNKNOWNS * (GOE_UNKNOWNS + 1) /
+                  2]; /* the inverse of one, column by column; of the estimated states */
+#if GOE_AUGMENTED
     uint8_t estimated;
 #endif
 } goe_inverse_t;
 
-/* Rows of a measurement: by the nuisances of the image (its own attitude noise about three axes), by the states, by what is
- * beside them, and the residual. */
+/* Rows of a measurement: by the nuisances of the image (its own attitude noise about three axes), by the states, by the
+ * augmented states, and the residual. */
 #define GOE_NUISANCES 3
 #define GOE_COLUMNS (GOE_NUISANCES + GOE_UNKNOWNS + 1)
 #define GOE_ROWS_MAX 9 /* three corners, two each; left, right, top */
@@ -125,9 +125,9 @@ typedef struct {
 /* refined/goe_filter.c: the axes of the state, with their origin at the camera at the filter's start. */
 typedef struct {
     int64_t start_time_us;
-    float turn_cos, turn_sin;     /* T turned by this about the vertical, clockwise seen from above */
+    float turn_cos, turn_sin;     /* T turned by this about the vertical, clockwise as viewed from above */
     float start_dx_m, start_dz_m; /* that camera in T */
-#if GOE_BESIDE
+#if GOE_AUGMENTED
     float start_velocity_m_s[2]; /* ... and its velocity, if goe_filter_t.paced holds */
 #endif
 } goe_axes_t;
@@ -137,8 +137,8 @@ typedef struct {
     float extent[2]; /* of two faces: their lateral extents, focal lengths; of one: its orientation, rad, and nothing */
     goe_flag_t both; /* of two faces */
     uint8_t agreeing;    /* images in a row */
-    goe_flag_t stand_in; /* disc: base corners were seen, so that it stands for a box */
-    uint8_t near_images; /* in which a near corner that is not seen still counts as missed */
+    goe_flag_t stand_in; /* disc: base corners were visible, so it substitutes for a box */
+    uint8_t near_images; /* in which an undetected near corner still counts as missed */
 } goe_candidate_t;
 
 typedef struct {   /* refined/goe_chord.c: sliding means, sigmas */
@@ -159,13 +159,13 @@ typedef struct {
     float sd_m;     /* one sigma of the first height, as its image gave it; 0: as in the settings */
     float mean_m;   /* by how much all heights so far, freed of the changes of down, lie above that ground on average */
     float first;    /* information of the height that the filter began with, 1/m^2 */
-    float information, moment; /* of the offset, which the filter has been told: 1/m^2, and times its mean */
+    float information, moment; /* of the offset, already in the filter: 1/m^2, and times its mean */
     uint16_t readings;         /* heights so far, saturating */
     goe_flag_t boxes;          /* the filter began with an upright box: the obstacle's ground may lie off */
 } goe_datum_t;
 
-/* refined/goe_side_memory.c: the error of a box's side that stays alike from image to image, as the residuals so far tell
- * it. It hangs on the state: value + by' (x - state), and the variance is what it is uncertain by beyond that. */
+/* refined/goe_side_memory.c: the slowly varying (correlated) error of a box's side, as estimated from the residuals
+ * so far. It depends on the state: value + by' (x - state), and the variance is its uncertainty beyond that. */
 typedef struct {
     float by[GOE_UNKNOWNS];
     float value;    /* focal lengths */
@@ -183,7 +183,7 @@ typedef struct {
 #define GOE_NIS_NONE (-1.0f)
 
 typedef struct {      /* refined/goe_health.c: how the images fit */
-    float nis;        /* normalised innovation squared of the latest image */
+    float nis;        /* normalized innovation squared of the latest image */
     float mean_nis;   /* of nis over rows: running mean over the track */
     float excess;     /* of nis over rows, above 1: the mean over the whole track, begun with eight images of none */
     float recent_nis; /* ... over some ten images of the filter's present phase; GOE_NIS_NONE: not begun */
@@ -193,16 +193,16 @@ typedef struct {      /* refined/goe_health.c: how the images fit */
     uint8_t poor;                  /* images in a row in which half of the points were */
     uint8_t failed;                /* times that a box proved wrong */
     goe_flag_t base_refused;       /* base corners proved to be none: they are not used */
-    goe_flag_t adrift;             /* the filter started anew twice within few images */
+    goe_flag_t adrift;             /* the filter started again twice within few images */
     uint8_t steady;                /* images since it did, saturating */
 } goe_health_t;
 
 /* refined/goe_mover.c: what the images say of the latency and of the obstacle's velocity. */
 typedef struct {
-    float beside[3];            /* taken off: latency, s; velocity, T axes, m/s: 0 unless it is followed */
-    float nis, rows;            /* sums over the track: what no state explains, and what it would be by chance */
-    float heard_s;              /* for how long images told something, over all starts of the filter */
-    float unlike_s;             /* for how long it has been none of a static obstacle */
+    float augmented[3];         /* taken off: latency, s; velocity, T axes, m/s: 0 unless it is followed */
+    float nis, rows;            /* sums over the track: the part that no state explains, and its expectation */
+    float observed_s;           /* time with informative images, over all starts of the filter */
+    float unlike_s;             /* time for which it has contradicted a static obstacle */
     uint8_t images;             /* in a row that said so */
     goe_flag_t moves, followed; /* the obstacle moves; the filter moves with it */
     goe_flag_t late;            /* the poses are late */
@@ -221,13 +221,13 @@ typedef struct {         /* refined/goe_refined.c: what of the latest answer out
     goe_flag_t steady;   /* the answer's height counts from the datum's */
 } goe_answer_t;
 
-/* What is small comes first: instructions reach the beginning of an object by shorter forms. */
+/* Small members come first: instructions reach the beginning of an object by shorter forms. */
 typedef struct {
     int64_t time_us;      /* of the latest image that the filter took */
     uint8_t phase;        /* goe_phase_t */
     uint8_t phase_images; /* images of the phase, saturating */
     uint8_t known;        /* GOE_HAS_...: what the latest image knew well enough */
-#if GOE_BESIDE
+#if GOE_AUGMENTED
     goe_flag_t paced; /* the velocity in axes holds */
 #endif
     goe_naming_t naming;
@@ -247,7 +247,7 @@ typedef struct {
     goe_axes_t axes;
     goe_datum_t datum;
     goe_scatter_t scatter;
-#if GOE_BESIDE
+#if GOE_AUGMENTED
     goe_mover_t mover;
 #endif
     goe_side_memory_t side[4]; /* by goe_box_side_t */
@@ -266,14 +266,14 @@ typedef struct {
 
 typedef struct {
     goe_motion_t motion;
-    uint32_t causes[GOE_CAUSES];
-    uint32_t ready; /* tells an initialised estimator from any other memory */
+    uint32_t fault_counts[GOE_FAULT_COUNTS];
+    uint32_t ready; /* distinguishes an initialized estimator from any other memory */
     goe_seal_t seal;
     float camera_to_body[GOE_CAMERAS_MAX][9];
     goe_settings_t settings;
     goe_estimate_t estimate;  /* after the latest image, by whatever method */
     int64_t estimate_time_us; /* image behind the estimate */
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
     goe_filter_t filter;
 #endif
 #if GOE_WITH_WINDOW

@@ -149,7 +149,7 @@ static const char *put_rows(FILE *rows, const planned_flight_t *flight, case_set
     return NULL;
 }
 
-/* A run that switches models is judged twice: as a whole, and by its frames with the line (refined: the box) alone. */
+/* A run that switches models is judged twice: as a whole, and by its frames with the line (filter: the box) alone. */
 static const char *run_over(const planned_flight_t *flight, case_setting_t setting, const flight_log_t *log,
                             case_sample_t *samples, FILE *rows) {
     const char *fault = case_run(&flight->setup, log, setting, samples);
@@ -159,7 +159,7 @@ static const char *run_over(const planned_flight_t *flight, case_setting_t setti
         fault = put_rows(rows, flight, setting, log, samples);
     }
     if (fault == NULL && switches) {
-        setting.model = setting.method == GOE_METHOD_REFINED ? GOE_MODEL_BOX : GOE_MODEL_LINE;
+        setting.model = setting.method == GOE_METHOD_FILTER ? GOE_MODEL_BOX : GOE_MODEL_LINE;
         fault = put_rows(rows, flight, setting, log, samples);
     }
     return fault;
@@ -284,10 +284,10 @@ static void name_file(campaign_file_t *file, const char *name, const char *const
     file->count = count;
 }
 
-/* What tells the series of a flight's runs apart. */
+/* The difference between the series of a flight's runs. */
 static const char *series_name(case_setting_t setting) {
-    return setting.method == GOE_METHOD_REFINED ? campaign_text_method(setting.method)
-                                                : campaign_text_model(setting.model);
+    return setting.method == GOE_METHOD_FILTER ? campaign_text_method(setting.method)
+                                               : campaign_text_model(setting.model);
 }
 
 /* The series first: whoever finds cases.csv and campaign.json finds what belongs to them. */
@@ -391,7 +391,7 @@ static void print_help(poptContext context) {
     (void)puts(
         "\nDIR gets cases.csv (one row for each run and each part of it that statistics are over: the last 20, 40, 60\n"
         "and 100 % of the solved images), series/CASE_RUN.csv (estimates, truth and errors over time, of the\n"
-        "paper's study, seed 1; RUN: the window method's model, or refined) and campaign.json. Studies: " STUDY_GROUPS
+        "paper's study, seed 1; RUN: the window method's model, or filter) and campaign.json. Studies: " STUDY_GROUPS
         ".\n"
         "\nExit status: 0 done; 2 bad usage or DIR cannot be written, then it is as it was.");
 }

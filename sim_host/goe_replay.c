@@ -17,6 +17,7 @@
 #include "option_fault.h"
 #include "output_file.h"
 #include "read_progress.h"
+#include "renamed_names.h"
 #include "settings_text.h"
 #include "standard_output.h"
 #include "track_table.h"
@@ -65,11 +66,26 @@ static bool give_up(const char *subject, const char *reason) {
     return false;
 }
 
-/* Number of the name that a word is; the first one's without a word. -1: it is none, which is told. */
+/* Whether the word is an old value of the option, which is reported. */
+static bool refuses_renamed(const char *option, const char *word) {
+    char both[CHOICE_FAULT_MAX], reason[CHOICE_FAULT_MAX];
+    const int length = snprintf(both, sizeof both, "%s %s", option, word);
+    const char *now = length > 0 && length < (int)sizeof both ? renamed_name(both, (size_t)length) : NULL;
+    if (now != NULL) {
+        (void)snprintf(reason, sizeof reason, "unknown value: now %s", now);
+        (void)complain(both, reason);
+    }
+    return now != NULL;
+}
+
+/* Number of the name that equals a word; the first one's without a word. -1: unknown, which is reported. */
 static int choose(const char *option, const char *word, const char *const *names, int count) {
     char reason[CHOICE_FAULT_MAX];
     if (word == NULL) {
         return 0;
+    }
+    if (refuses_renamed(option, word)) {
+        return -1;
     }
     nearest_name_t nearest = nearest_name_of(word, strlen(word));
     int used = snprintf(reason, sizeof reason, "%s must be %s", option, names[0]);
@@ -91,8 +107,8 @@ static int choose(const char *option, const char *word, const char *const *names
 }
 
 static bool parse_method(const char *text, goe_method_t *method) {
-    static const char *const names[] = {"refined", "window"};
-    static const goe_method_t methods[] = {GOE_METHOD_REFINED, GOE_METHOD_WINDOW};
+    static const char *const names[] = {"filter", "window"};
+    static const goe_method_t methods[] = {GOE_METHOD_FILTER, GOE_METHOD_WINDOW};
     const int chosen = choose("--method", text, names, (int)(sizeof names / sizeof names[0]));
     *method = chosen >= 0 ? methods[chosen] : *method;
     return chosen >= 0;
@@ -123,13 +139,13 @@ static bool default_path(char **path, const char *directory, const char *name, c
     if (directory == NULL) {
         return complain(option, "missing: name the log's folder, or both --camera and --frames");
     }
-    const size_t room = strlen(directory) + strlen(name) + 2u;
-    *path = malloc(room);
+    const size_t capacity = strlen(directory) + strlen(name) + 2u;
+    *path = malloc(capacity);
     if (*path == NULL) {
         return give_up(directory, "out of memory");
     }
     const char *slash = *directory != '\0' && directory[strlen(directory) - 1u] == '/' ? "" : "/";
-    (void)snprintf(*path, room, "%s%s%s", directory, slash, name);
+    (void)snprintf(*path, capacity, "%s%s%s", directory, slash, name);
     return true;
 }
 
@@ -176,7 +192,7 @@ static bool set_by_name(char *const *set, goe_settings_t *settings) {
     return settings_in_range(settings, &fault) || complain("--set", fault.text);
 }
 
-/* The window is checked before what is set by name, so that it is not blamed on that. */
+/* The window is checked before the settings by name, which would get the blame otherwise. */
 static bool apply_options(const options_t *options, goe_settings_t *settings) {
     if (!parse_method(options->method, &settings->method) || !parse_model(options->model, &settings->model)) {
         return false;
@@ -193,12 +209,12 @@ static void print_help(poptContext context) {
     poptPrintHelp(context, stdout, 0);
     (void)puts(
         "\nDIR holds camera.ini and frames.csv. One row comes out for each row of frames.csv; a quantity that is not\n"
-        "known is empty. The fields are named in the first line: metres, degrees, each quantity followed by its\n"
-        "one-sigma (..._sd_...). suspect is 1 where the track does not fit what it is taken for, and reason tells "
+        "known is empty. The fields are named in the first line: meters, degrees, each quantity followed by its\n"
+        "one-sigma (..._sd_...). suspect is 1 where the track contradicts its assumptions, and reason says "
         "why:\n"
         "widen the margins then.\n"
-        "\nMETHOD: refined, the square-root information filter over the whole track, by default; window, the paper's\n"
-        "sliding window. NAME=VALUE: a setting of goe.h, which tells its meaning and range; by default");
+        "\nMETHOD: filter, the square-root information filter over the whole track, by default; window, the paper's\n"
+        "sliding window. NAME=VALUE: a setting of goe.h, which describes its meaning and range; by default");
     (void)settings_print(stdout, &defaults);
     (void)puts("\nExit status: 0 done; 1 the log was read but no row gave an estimate; 2 bad usage or bad input, then\n"
                "nothing is written to FILE.");
@@ -207,7 +223,7 @@ static void print_help(poptContext context) {
 /* ---------------------------------------------------------------------------------------------------------- replay -- */
 
 #define STATUS_FIRST GOE_CORRUPTED
-#define STATUS_LAST GOE_NOTHING_SEEN
+#define STATUS_LAST GOE_NO_DETECTION
 #define STATUSES ((int)STATUS_LAST - (int)STATUS_FIRST + 1)
 
 typedef struct {
@@ -225,7 +241,7 @@ static void explain_no_estimate(const char *path, const tally_t *tally) {
     (void)fprintf(stderr, PROGRAM ": %s: no row gave an estimate (", path);
     for (int i = 0; i < STATUSES; i++) {
         if (tally->rows[i] != 0) {
-            /* NOLINTNEXTLINE(clang-analyzer-optin.core.EnumCastOutOfRange): only what was returned was counted */
+            /* NOLINTNEXTLINE(clang-analyzer-optin.core.EnumCastOutOfRange): only returned values were counted */
             (void)fprintf(stderr, "%s%s: %lu", separator, goe_status_text((goe_status_t)(i + (int)STATUS_FIRST)),
                           tally->rows[i]);
             separator = ", ";
@@ -304,12 +320,12 @@ static bool is_of_log(const char *path, const char *input) {
     const int folder = slash != NULL ? (int)(slash - input) + 1 : 0;
     bool found = output_file_is(path, input);
     for (size_t i = 0; i < sizeof names / sizeof names[0] && !found; i++) {
-        const size_t room = (size_t)folder + strlen(names[i]) + 1u;
-        char *beside = malloc(room);
+        const size_t capacity = (size_t)folder + strlen(names[i]) + 1u;
+        char *beside = malloc(capacity);
         if (beside == NULL) {
             return true; /* rather no output than a lost log */
         }
-        (void)snprintf(beside, room, "%.*s%s", folder, input, names[i]);
+        (void)snprintf(beside, capacity, "%.*s%s", folder, input, names[i]);
         found = output_file_is(path, beside);
         free(beside);
     }
@@ -398,13 +414,13 @@ int main(int argc, char **argv) {
     goe_settings_default(&defaults);
     options_t options = {.window = defaults.window.points};
     const struct poptOption table[] = {
-        {"method", 0, POPT_ARG_STRING, &options.method, 0, "how to estimate; refined by default", "refined|window"},
-        {"model", 0, POPT_ARG_STRING, &options.model, 0, "what stands for the obstacle; auto by default",
+        {"method", 0, POPT_ARG_STRING, &options.method, 0, "how to estimate; filter by default", "filter|window"},
+        {"model", 0, POPT_ARG_STRING, &options.model, 0, "shape model of the obstacle; auto by default",
          "auto|disc|line"},
         {"window", 0, POPT_ARG_INT | POPT_ARGFLAG_SHOW_DEFAULT, &options.window, 0, "image points in the window", "N"},
         {"set", 0, POPT_ARG_ARGV, &options.set, 0, "change a setting; may be repeated", "NAME=VALUE"},
         {"residuals", 0, POPT_ARG_NONE, &options.residuals, 0,
-         "nine columns more: nis, nis_rows, misfit, velocity, latency (refined)", NULL},
+         "nine columns more: nis, nis_rows, nis_ratio, velocity, latency (filter)", NULL},
         {"out", 'o', POPT_ARG_STRING, &options.out, 0, "where to write the estimates; standard output by default",
          "FILE"},
         {"camera", 0, POPT_ARG_STRING, &options.camera, 0, "in place of DIR/camera.ini", "FILE"},

@@ -88,9 +88,9 @@ static char *scenario_path; /* from_file.path, to be freed */
 static struct poptOption scene_options[] = {
     WORD("obstacle", WORD_OBSTACLE, "WHAT", OBSTACLE_FORMS "; default cylinder"),
     NUMBER("x0", x0, "M",
-           "side distance of its centre from the course at the start, right positive, as x0_m of the answers"),
-    NUMBER("z0", z0, "M", "distance of its centre along the course, instead of the way flown by --reach"),
-    NUMBER("alpha", alpha, "DEG", "its length axis from the course, clockwise seen from above"),
+           "side distance of its center from the course at the start, right positive, as x0_m of the answers"),
+    NUMBER("z0", z0, "M", "distance of its center along the course, instead of the way flown by --reach"),
+    NUMBER("alpha", alpha, "DEG", "its length axis from the course, clockwise as viewed from above"),
     NUMBER("reach", reach, "S", "time to reach the obstacle"),
     NUMBER("run", run, "S", "length of the run"),
     NUMBER("altitude", altitude, "M", "height over ground at reach time"),
@@ -151,8 +151,9 @@ static struct poptOption noise_options[] = {
     NUMBER("detector-correlation", detector_correlation, "0..1", "detector noise, from frame to frame"),
     NUMBER("box-px", box_px, "PX", "a box's sides: one sigma, white; default of boxes 0.5"),
     NUMBER("box-share", box_share, "0..",
-           "one sigma that stays alike, share of the box's width (left, right) or height (top, bottom); default 0.04"),
-    NUMBER("box-correlation", box_correlation, "S", "how long it stays alike, time constant; default 1"),
+           "one sigma of the slowly varying error, share of the box's width (left, right) or height (top, bottom); "
+           "default 0.04"),
+    NUMBER("box-correlation", box_correlation, "S", "correlation time of this error; default 1"),
     NUMBER("attitude-bias", attitude_bias, "DEG", "one sigma per body axis, constant over a run"),
     NUMBER("attitude-noise", attitude_noise, "DEG", "one sigma per body axis, white"),
     NUMBER("position-walk", position_walk, "M", "random walk, one sigma per axis after a second"),
@@ -379,7 +380,7 @@ static bool parse_features(const char *text, log_features_t *features) {
 /* The case of the command line; otherwise the name of the bad option, and what it may be. */
 static const char *set_case(flight_case_t *setup, const char **reason) {
     if (given.paper_case >= scenario_count() || given.paper_case < -1) {
-        *reason = "--list-cases tells which there are";
+        *reason = "--list-cases lists them";
         return "--case";
     }
     *reason = OBSTACLE_FORMS;
@@ -453,10 +454,10 @@ static int list_cases(void) {
 static const char *fly_past_all(const flight_case_t *setup, flight_log_t *log, size_t *count) {
     const char *reason = flight_case_fly(setup, log);
     *count = reason == NULL ? 1 : 0;
-    for (int i = 0; i < scenario_file.neighbours && reason == NULL; i++) {
+    for (int i = 0; i < scenario_file.neighbors && reason == NULL; i++) {
         /* no other flight's seed: small numbers are what people give */
         const uint64_t seed = setup->seed ^ ((uint64_t)(i + 1) << SEED_SHIFT);
-        reason = flight_log_of_neighbour(setup, log, &scenario_file.neighbour[i], seed, &log[*count]);
+        reason = flight_log_of_neighbor(setup, log, &scenario_file.neighbor[i], seed, &log[*count]);
         *count += reason == NULL ? 1u : 0u;
     }
     for (size_t i = 1; i < *count; i++) {
@@ -484,7 +485,7 @@ static int write_logs(const flight_case_t *setup, const flight_logs_t *logs) {
 }
 
 static int fly_and_write(const flight_case_t *setup) {
-    flight_log_t log[1 + SCENARIO_NEIGHBOURS_MAX];
+    flight_log_t log[1 + SCENARIO_NEIGHBORS_MAX];
     size_t count = 0;
     const char *reason = fly_past_all(setup, log, &count);
     const flight_logs_t logs = {log, count};

@@ -1,5 +1,5 @@
-# cmake -DREADME=<file> -DHOLDS=<regex> -DOUT=<file> -P readme_example.cmake: writes the README's one block of C that matches
-# HOLDS to OUT.
+# cmake -DREADME=<file> -DPATTERN=<regex> -DOUT=<file> -P readme_example.cmake: writes the README's one block of C that matches
+# PATTERN to OUT.
 cmake_minimum_required(VERSION 3.16)
 
 file(READ ${README} rest)
@@ -18,14 +18,14 @@ while(TRUE)
     math(EXPR end "${end} + 1")
     string(SUBSTRING "${rest}" 0 ${end} block)
     string(SUBSTRING "${rest}" ${end} -1 rest)
-    if(block MATCHES "${HOLDS}")
+    if(block MATCHES "${PATTERN}")
         if(NOT program STREQUAL "")
-            message(FATAL_ERROR "${README}: more than one block of C with ${HOLDS}")
+            message(FATAL_ERROR "${README}: more than one block of C with ${PATTERN}")
         endif()
         set(program "${block}")
     endif()
 endwhile()
 if(program STREQUAL "")
-    message(FATAL_ERROR "${README}: no block of C with ${HOLDS}")
+    message(FATAL_ERROR "${README}: no block of C with ${PATTERN}")
 endif()
 file(WRITE ${OUT} "${program}")

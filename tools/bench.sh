@@ -52,13 +52,13 @@ in_flight() { GOE_COMPANION=build/port/companion/goe_companion "$python" tests/c
 
 cached() { sed -n "s/^$1:[A-Z]*=//p" build/CMakeCache.txt; }
 compiler=$(cached CMAKE_C_COMPILER)
-refined=$(best refined)
+filter=$(best filter)
 window=$(best window)
-echo "goe_replay --method refined: $refined rows/s, best of $runs runs over $rows rows"
-echo "goe_replay --method window:  $window rows/s, $((100 * window / refined)) % of refined"
+echo "goe_replay --method filter: $filter rows/s, best of $runs runs over $rows rows"
+echo "goe_replay --method window:  $window rows/s, $((100 * window / filter)) % of filter"
 if [ -x $python ]; then
     filled=$(filled)
-    echo "goe_replay, every column filled, through a pipe: $filled rows/s of processor time, $((100 * filled / refined)) % of refined"
+    echo "goe_replay, every column filled, through a pipe: $filled rows/s of processor time, $((100 * filled / filter)) % of filter"
     if cmake --build build --target goe_companion >/dev/null 2>&1; then
         echo "goe_companion, 200 poses and 30 images of 8 obstacles a second: $(in_flight) of a core, flown in simulated time"
     else

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Sets up, builds and runs the tests. Names at the end what was skipped and which steps took longest. Exit status 0: nothing
+# Sets up, builds and runs the tests. Names at the end the skipped steps and the slowest ones. Exit status 0: nothing
 # failed.
 #
 #   tools/test.sh           everything
@@ -33,7 +33,7 @@ export OPENBLAS_NUM_THREADS=1 # numpy: the matrices are small, threads only get 
 
 # All by a step's name.
 steps=()
-declare -A command_of=() after_of=() tells_of=() start_of=()
+declare -A command_of=() after_of=() shows_of=() start_of=()
 declare -A state_of=() # waiting, running, ok, failed, left out
 declare -A name_of_process=() # those that run
 declare -A wall_of=() processor_of=()
@@ -44,19 +44,19 @@ tail_lines=60
 
 log_of() { echo "$logs/$(tr -c '[:alnum:]\n' _ <<<"$1").log"; }
 
-# add <name> <command>...: a step for run_steps. With after=<name>: once that one has succeeded. With tells=<pattern>: the
-# lines of its log that tell its result.
+# add <name> <command>...: a step for run_steps. With after=<name>: once that one has succeeded. With shows=<pattern>: the
+# lines of its log that show its result.
 add() {
     local name=$1
     shift
     steps+=("$name")
     command_of[$name]=$(printf '%q ' "$@")
     after_of[$name]=${after:-}
-    tells_of[$name]=${tells:-}
+    shows_of[$name]=${shows:-}
     state_of[$name]=waiting
 }
 
-# In a process group of its own, so that it can be ended with all that it starts.
+# In a process group of its own, to end it together with all that it starts.
 start() {
     local name=$1 log
     log=$(log_of "$name")
@@ -122,8 +122,8 @@ report() {
         echo "--------------------------------------------------------------------------- last lines of $log"
         tail -n $tail_lines "$log"
         echo "---------------------------------------------------------------------------"
-    elif [ -n "${tells_of[$name]}" ]; then
-        grep -E "${tells_of[$name]}" "$log" | sed 's/^/        /'
+    elif [ -n "${shows_of[$name]}" ]; then
+        grep -E "${shows_of[$name]}" "$log" | sed 's/^/        /'
     fi
 }
 
@@ -164,7 +164,7 @@ descendants() {
     fi
 }
 
-# Ends what runs: asks first, so that tests can remove what they have made, and then makes sure.
+# Ends all steps that run: by SIGINT first, which lets tests remove their files, then by SIGKILL.
 end_all() {
     trap '' INT TERM HUP
     local process left
@@ -255,8 +255,9 @@ check_subjects() {
 sources() { find lib port sim_host tests -name target -prune -o \( -name '*.[ch]' -o -name '*.[ch]pp' \) -print; }
 check_format() { sources | xargs clang-format-19 --dry-run -Werror; }
 tidy() {
+    "$python" -m ci tidy_commands .cache/evidence/coverage .cache/tidy || return 1
     find "$root"/{lib,port/{flight,mavlink,companion,sqrtf,examples,nuttx,zephyr},sim_host} -name '*.c' -print0 |
-        xargs -0 -n 1 -P "$jobs" clang-tidy-19 --quiet -p build-clang 2>&1 | sed '/warnings\{0,1\} generated\.$/d'
+        xargs -0 -n 1 -P "$jobs" clang-tidy-19 --quiet -p .cache/tidy 2>&1 | sed '/warnings\{0,1\} generated\.$/d'
 }
 
 # The sanitizers' goe_replay over every log of the tests.
@@ -299,9 +300,9 @@ fi
 
 if $quick; then
     add "ruff" "$python" -m ruff check --config tools/pyproject.toml tools tests port/python
-    tells='tests passed' add "unit tests" ctest --preset default -L unit -j "$jobs"
+    shows='tests passed' add "unit tests" ctest --preset default -L unit -j "$jobs"
     add "golden hashes" ctest --test-dir build/tests/targets --output-on-failure -R '^(flight_)?replay$'
-    tells='(passed|failed|skipped).* in [0-9.]+|affects no test' add "affected Python tests" pytest_affected
+    shows='(passed|failed|skipped).* in [0-9.]+|affects no test' add "affected Python tests" pytest_affected
     run_steps
     finish
 fi
@@ -329,7 +330,7 @@ else
 fi
 
 if has cppcheck && has gcc; then
-    tells='MISSED' add "MISRA C:2012, gcc -fanalyzer" "$python" -m ci evidence --quick --only misra --only analyzers --jobs 1
+    shows='MISSED' add "MISRA C:2012, gcc -fanalyzer" "$python" -m ci evidence --quick --only misra --only analyzers --jobs 1
 else
     lacks "MISRA C:2012 and gcc -fanalyzer (no cppcheck or gcc)"
 fi
@@ -338,8 +339,8 @@ if has frama-c; then
 else
     lacks "proof (no frama-c)"
 fi
-tells='tests passed|Total Test time' add "ctest: targets" \
-    ctest --test-dir build/tests/targets --output-on-failure -j "$jobs" # every target under QEMU
+shows='tests passed|Total Test time' add "ctest: targets" \
+    ctest --test-dir build/tests/targets -LE release --output-on-failure -j "$jobs" # under QEMU
 if has arm-none-eabi-gcc && has qemu-system-arm && has riscv64-unknown-elf-gcc && has qemu-system-riscv32; then
     # Of the builds that ctest has made, three targets; a release measures all.
     after="ctest: targets" add "cost ledger" "$python" -m ci ledger --check m4f-gcc-os m4f-gcc-o2 m0plus-gcc-os
@@ -347,26 +348,25 @@ if has arm-none-eabi-gcc && has qemu-system-arm && has riscv64-unknown-elf-gcc &
 else
     lacks "cost ledger (needs the ARM and RISC-V compilers and QEMU)"
 fi
-tells='(passed|failed|skipped).* in [0-9.]+' add "pytest" run_pytest tests
-tells='tests passed|Total Test time' add "ctest: all but targets" ctest --preset default -LE targets -j "$jobs"
-tells='tests passed' add "sanitizers" build_and_ctest asan
+shows='(passed|failed|skipped).* in [0-9.]+' add "pytest" run_pytest tests
+shows='tests passed|Total Test time' add "ctest: all but targets" ctest --preset default -LE targets -j "$jobs"
+shows='tests passed' add "sanitizers" build_and_ctest asan
 after="sanitizers" add "sanitizers: goe_replay on logs" replay_sanitized
-tells=passed after="sanitizers" add "sanitizers: goe_replay on bad input" test_replay_sanitized
-tells=passed after="sanitizers" add "sanitizers: goe_companion and hostile senders" test_companion_sanitized
-if has clang-19; then
-    tells='tests passed' add "clang" build_and_ctest clang
-else
-    lacks "clang: unit tests and the firmwares' flags (no clang-19)"
-fi
+shows=passed after="sanitizers" add "sanitizers: goe_replay on bad input" test_replay_sanitized
+shows=passed after="sanitizers" add "sanitizers: goe_companion and hostile senders" test_companion_sanitized
+# clang's build counts what the unit tests reach. It runs those of the library and of the flight layer for their coverage, and the rest.
 if has clang-19 && has llvm-cov-19 && has llvm-profdata-19 &&
     find "$(clang-19 --print-resource-dir)/" -name 'libclang_rt.profile*' | grep -q .; then
-    tells='^\| coverage' add "coverage of the unit tests" \
+    add "clang: build" build coverage
+    after="clang: build" shows='^\| coverage' add "clang: unit tests and their coverage" \
         "$python" -m ci evidence --quick --only coverage --jobs "$jobs"
+    after="clang: unit tests and their coverage" shows='tests passed' add "clang: other unit tests" \
+        env LLVM_PROFILE_FILE=/dev/null ctest --preset coverage -E '^(c|flight)_' -j "$jobs"
 else
-    lacks "coverage of the unit tests (needs clang-19, llvm-19 and libclang-rt-19-dev)"
+    lacks "clang: unit tests and their coverage (needs clang-19, llvm-19 and libclang-rt-19-dev)"
 fi
 if has clang-19 && has clang-tidy-19; then
-    after="clang" add "clang-tidy" tidy
+    after="clang: build" add "clang-tidy" tidy
 else
     lacks "clang-tidy (needs clang-19 and clang-tidy-19)"
 fi

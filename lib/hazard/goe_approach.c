@@ -15,14 +15,14 @@
 
 /* ---------------------------------------------------------------------------------------------------------- approach -- */
 
-void goe_approach_course(const goe_motion_t *motion, const goe_plan_t *plan, goe_course_t *course) {
+void goe_approach_course(const goe_motion_t *motion, const goe_intent_t *intent, goe_course_t *course) {
     const float c = motion->heading_cos;
     const float s = motion->heading_sin;
-    const float north = plan->velocity_ned_m_s[0];
-    const float east = plan->velocity_ned_m_s[1];
+    const float north = intent->velocity_ned_m_s[0];
+    const float east = intent->velocity_ned_m_s[1];
     const float speed = sqrtf(north * north + east * east);
     memset(course, 0, sizeof *course);
-    course->climb_m_s = -plan->velocity_ned_m_s[2];
+    course->climb_m_s = -intent->velocity_ned_m_s[2];
     if (speed > HOVER_M_S) {
         course->speed_m_s = speed;
         course->ahead.x = (c * east - s * north) / speed;
@@ -34,7 +34,7 @@ void goe_approach_course(const goe_motion_t *motion, const goe_plan_t *plan, goe
 }
 
 /* Time to the closest approach, and the time at which the clearance counts: over the outline it is the lower end of the
- * flight. Value and derivatives are 0 for what is now. */
+ * flight. Value and derivatives are 0 for a time of now. */
 static void find_times(const goe_outline_t *o, const goe_course_t *course, goe_covariance_t covariance,
                        const goe_approach_t *approach, goe_affine_t *first, goe_affine_t *lowest) {
     const goe_affine_t *side = approach->side;
@@ -94,7 +94,7 @@ static float time_sd(const goe_outline_t *o, const goe_course_t *course, const g
     return goe_bounded(sd < most ? sd : most);
 }
 
-/* The clearance at the time of `lowest`, sharing what the derivatives of a time do not tell of its sigma. */
+/* The clearance at the time of `lowest`, without the part of a time's sigma that its derivatives lack. */
 static void find_clearance(const goe_course_t *course, const goe_affine_t *lowest, float share, float height_m,
                            goe_affine_t *clearance) {
     clearance->value = height_m + course->climb_m_s * lowest->value;
@@ -118,13 +118,13 @@ void goe_approach_find(const goe_outline_t *o, const goe_course_t *course, goe_c
             goe_outline_distance(o, &course->side[i], &a->side[i]);
         }
         find_times(o, course, covariance, a, &first, &lowest);
-        a->time_s = first.value;
-        a->time_sd_s = time_sd(o, course, a, &first, covariance);
+        a->tcpa_s = first.value;
+        a->tcpa_sd_s = time_sd(o, course, a, &first, covariance);
         share =
             time_sd(o, course, a, &lowest, covariance) / goe_larger(goe_affine_sigma(&lowest, covariance), SIGMA_MIN);
     }
     find_clearance(course, &lowest, share, height_m, &a->clearance);
-    if (!(a->time_s > 0.0f)) {
+    if (!(a->tcpa_s > 0.0f)) {
         towards = goe_outline_way_from(o, course);
     }
     goe_outline_distance(o, &towards, &a->ahead);

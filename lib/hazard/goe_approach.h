@@ -9,12 +9,12 @@
  * the camera. */
 typedef struct {
     goe_affine_t side[GOE_SIDES], ahead, clearance;
-    float time_s, time_sd_s;
+    float tcpa_s, tcpa_sd_s;
     bool moves;
 } goe_approach_t;
 
-/* The course of a plan, T axes. */
-void goe_approach_course(const goe_motion_t *motion, const goe_plan_t *plan, goe_course_t *course);
+/* The course of a intent, T axes. */
+void goe_approach_course(const goe_motion_t *motion, const goe_intent_t *intent, goe_course_t *course);
 
 /* The side on which the outline is passed, or crossed less deep. */
 static inline const goe_affine_t *goe_approach_side(const goe_approach_t *approach) {

@@ -11,7 +11,7 @@
 
 #define SURE_SIGMA 2.0f
 #define SUPERSEDED_S 2.0f     /* of detections without an answer, after which the answer before them clears nothing */
-#define DISTANCE_MAX_M 1.0e4f /* as that of a plan */
+#define DISTANCE_MAX_M 1.0e4f /* as that of a intent */
 #define TIME_MAX_S 1.0e4f
 #define DOUBT_MAX 100.0f
 #define DRIFT_MAX_M_S 100.0f
@@ -26,29 +26,29 @@ void goe_rule_default(goe_rule_t *rule) {
 
 /* What an image measures is the inverse of the time, and to that the sigma belongs: for a small sigma this is the time less two of
  * them, for a sigma of half the time it is half of the time and not none. */
-float goe_soonest_s(const goe_hazard_t *hazard) {
+float goe_earliest_tcpa_s(const goe_hazard_t *hazard) {
     const bool finite =
-        hazard && goe_larger_bits(goe_magnitude(hazard->time_s), goe_magnitude(hazard->time_sd_s)) < GOE_INFINITY_BITS;
-    const float most_s = finite ? hazard->time_s + SURE_SIGMA * hazard->time_sd_s : 0.0f;
-    return most_s > 0.0f && hazard->time_s > 0.0f ? hazard->time_s * (hazard->time_s / most_s) : 0.0f;
+        hazard && goe_larger_bits(goe_magnitude(hazard->tcpa_s), goe_magnitude(hazard->tcpa_sd_s)) < GOE_INFINITY_BITS;
+    const float most_s = finite ? hazard->tcpa_s + SURE_SIGMA * hazard->tcpa_sd_s : 0.0f;
+    return most_s > 0.0f && hazard->tcpa_s > 0.0f ? hazard->tcpa_s * (hazard->tcpa_s / most_s) : 0.0f;
 }
 
 static bool is_between(float value, float least, float most) { return goe_within(value, most) && value >= least; }
 
 static bool is_rule(const goe_rule_t *rule) {
-    return is_between(rule->violation_max, 0.0f, 1.0f) && is_between(rule->act_s, 0.0f, TIME_MAX_S) &&
-           is_between(rule->doubt, 1.0f, DOUBT_MAX) && is_between(rule->drift_m_s, 0.0f, DRIFT_MAX_M_S);
+    return is_between(rule->conflict_probability_max, 0.0f, 1.0f) && is_between(rule->act_within_s, 0.0f, TIME_MAX_S) &&
+           is_between(rule->suspect_factor, 1.0f, DOUBT_MAX) && is_between(rule->stale_growth_m_s, 0.0f, DRIFT_MAX_M_S);
 }
 
 /* An estimate that is suspect, or that no image has renewed for a while, may be wrong towards the obstacle: both distances grow. A
- * plan that is not finite stays so, and is refused. */
-static void widen(const goe_estimator_t *estimator, const goe_rule_t *rule, goe_plan_t *plan) {
+ * intent that is not finite stays so, and is refused. */
+static void widen(const goe_estimator_t *estimator, const goe_rule_t *rule, goe_intent_t *intent) {
     const goe_estimate_t *estimate = &estimator->estimate;
     const bool suspect = goe_is_set(&estimate->suspect);
     const float age_s = goe_is_set(&estimate->fresh) ? 0.0f : goe_latest_since_s(estimator, estimator->motion.time_us);
-    const float factor = suspect ? rule->doubt : 1.0f;
-    const float drift_m = rule->drift_m_s * (age_s + plan->since_image_s);
-    float *const distances[2] = {&plan->margin_m, &plan->clearance_m};
+    const float factor = suspect ? rule->suspect_factor : 1.0f;
+    const float drift_m = rule->stale_growth_m_s * (age_s + intent->since_image_s);
+    float *const distances[2] = {&intent->margin_m, &intent->clearance_m};
     for (int i = 0; i < 2; i++) {
         if (is_between(*distances[i], 0.0f, DISTANCE_MAX_M)) {
             const float wide_m = factor * *distances[i] + drift_m;
@@ -59,17 +59,17 @@ static void widen(const goe_estimator_t *estimator, const goe_rule_t *rule, goe_
 
 /* A probability is also small where nothing is known: the wider the sigmas, the less of them lies within the distances. So a clear
  * answer has one of the two distances kept by a sigma. */
-static bool is_outside(const goe_hazard_t *hazard, const goe_plan_t *plan) {
-    const bool aside = hazard->miss_m - hazard->miss_sd_m >= plan->margin_m;
-    const bool above = hazard->has_clearance && hazard->clearance_m - hazard->clearance_sd_m >= plan->clearance_m;
+static bool is_outside(const goe_hazard_t *hazard, const goe_intent_t *intent) {
+    const bool aside = hazard->dcpa_m - hazard->dcpa_sd_m >= intent->margin_m;
+    const bool above = hazard->has_clearance && hazard->clearance_m - hazard->clearance_sd_m >= intent->clearance_m;
     return aside || above;
 }
 
 /* Whether detections came for a while without an answer: the old one may be of something else. Silence is another matter. */
 static bool is_superseded(const goe_estimator_t *estimator) {
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
     const bool left = estimator->filter.answer.outdated != 0u || estimator->estimate.method == GOE_METHOD_WINDOW;
-    return goe_is_refined(estimator) && left && !goe_is_set(&estimator->estimate.fresh) &&
+    return goe_uses_filter(estimator) && left && !goe_is_set(&estimator->estimate.fresh) &&
            goe_latest_since_s(estimator, estimator->motion.time_us) > SUPERSEDED_S;
 #else
     (void)estimator;
@@ -78,41 +78,41 @@ static bool is_superseded(const goe_estimator_t *estimator) {
 }
 
 /* Between the two bounds of the time, and between a small probability and a distance that is kept, too little is known to clear. */
-static goe_decision_t decision_of(const goe_hazard_t *met, const goe_plan_t *plan, const goe_rule_t *rule) {
-    if (met->violation < rule->violation_max) {
-        return is_outside(met, plan) ? GOE_DECISION_CLEAR : GOE_DECISION_UNKNOWN;
+static goe_decision_t decision_of(const goe_hazard_t *met, const goe_intent_t *intent, const goe_rule_t *rule) {
+    if (met->conflict_probability < rule->conflict_probability_max) {
+        return is_outside(met, intent) ? GOE_DECISION_CLEAR : GOE_DECISION_UNKNOWN;
     }
-    if (goe_soonest_s(met) <= rule->act_s) {
+    if (goe_earliest_tcpa_s(met) <= rule->act_within_s) {
         return GOE_DECISION_ACT;
     }
-    return met->time_s - SURE_SIGMA * met->time_sd_s > rule->act_s ? GOE_DECISION_CLEAR : GOE_DECISION_UNKNOWN;
+    return met->tcpa_s - SURE_SIGMA * met->tcpa_sd_s > rule->act_within_s ? GOE_DECISION_CLEAR : GOE_DECISION_UNKNOWN;
 }
 
 /*@ requires estimator == \null || \valid_read(estimator);
-    requires plan == \null || \valid_read(plan);
+    requires intent == \null || \valid_read(intent);
     requires \valid_read(rule) && \valid(met); */
-static goe_decision_t judge(const goe_estimator_t *estimator, const goe_plan_t *plan, const goe_rule_t *rule,
+static goe_decision_t judge(const goe_estimator_t *estimator, const goe_intent_t *intent, const goe_rule_t *rule,
                             goe_hazard_t *met) {
-    if (!plan || !is_rule(rule) || goe_guard_check(estimator) != GOE_OK) {
+    if (!intent || !is_rule(rule) || goe_guard_check(estimator) != GOE_OK) {
         return GOE_DECISION_KEEP;
     }
-    goe_plan_t wide = *plan;
+    goe_intent_t wide = *intent;
     if (goe_within(wide.since_image_s, TIME_MAX_S)) {
         widen(estimator, rule, &wide);
     }
     const goe_status_t status = goe_hazard(estimator, &wide, met);
     if (status != GOE_OK) {
-        return status == GOE_COLLECTING ? GOE_DECISION_UNKNOWN : GOE_DECISION_KEEP;
+        return status == GOE_CONVERGING ? GOE_DECISION_UNKNOWN : GOE_DECISION_KEEP;
     }
     const goe_decision_t decision = decision_of(met, &wide, rule);
     return decision == GOE_DECISION_CLEAR && is_superseded(estimator) ? GOE_DECISION_UNKNOWN : decision;
 }
 
-goe_decision_t goe_decide(const goe_estimator_t *estimator, const goe_plan_t *plan, const goe_rule_t *rule,
+goe_decision_t goe_decide(const goe_estimator_t *estimator, const goe_intent_t *intent, const goe_rule_t *rule,
                           goe_hazard_t *hazard) {
     goe_hazard_t met;
     memset(&met, 0, sizeof met);
-    const goe_decision_t decision = judge(estimator, plan, rule ? rule : &by_default, &met);
+    const goe_decision_t decision = judge(estimator, intent, rule ? rule : &by_default, &met);
     if (hazard) {
         *hazard = met;
     }

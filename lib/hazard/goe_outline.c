@@ -44,7 +44,7 @@ void goe_outline_corner_along(const goe_outline_t *o, const goe_xz_t *m, float s
     at->by[GOE_HEIGHT] = 0.0f;
 }
 
-/* m k at the corner of a box that lies on that side across and along its axes; at the centre of a disc. */
+/* m k at the corner of a box on that side across and along its axes; at the center of a disc. */
 GOE_NOINLINE static void corner_on(const goe_outline_t *o, const goe_xz_t *m, float across, float along,
                                    goe_affine_t *at) {
     const float side = across < 0.0f ? -0.5f : 0.5f;
@@ -130,7 +130,7 @@ void goe_outline_end(const goe_outline_t *o, const goe_course_t *course, float w
     }
 }
 
-/* -------------------------------------------------------------------------------------------------- where it stands -- */
+/* -------------------------------------------------------------------------------------------------- its position --- */
 
 /* The way out of a box that the camera is in, other than to the sides of the course. */
 static goe_xz_t way_out_of_box(const goe_outline_t *o, const goe_course_t *course) {
@@ -167,7 +167,7 @@ static goe_xz_t way_from_disc(const goe_outline_t *o, const goe_course_t *course
     const goe_xz_t c = o->reference;
     const float norm = sqrtf(goe_xz_dot(c, c));
     if (norm < o->half && goe_xz_dot(c, course->ahead) > 0.0f) {
-        return course->ahead; /* inside, and the sides are nearer than what lies behind */
+        return course->ahead; /* inside, and the sides are nearer than the part behind */
     }
     goe_xz_t m = {0.0f, 1.0f};
     if (norm > DISTANCE_MIN_M) {

@@ -1,8 +1,8 @@
-/* The outline of an estimate, seen from above. SPDX-License-Identifier: MIT
+/* The outline of an estimate in the horizontal plane. SPDX-License-Identifier: MIT
  *
- * In T, the camera now at the origin. The outline K is convex. Its reach into a direction m, h(m) = max over K of m k, is all
- * that distances take: the ray along u keeps max of -h(m), m u >= 0, from K, negative if it crosses, and by the envelope
- * theorem the derivative at the best m is that of h with m held. */
+ * In T, the camera now at the origin. The outline K is convex. Its support function in a direction m, h(m) = max over K of m k, is
+ * all that distances need: the ray along u keeps max of -h(m), m u >= 0, from K, negative if it crosses, and by the envelope
+ * theorem the derivative at the best m is that of h with m fixed. */
 #ifndef GOE_OUTLINE_H
 #define GOE_OUTLINE_H
 

@@ -14,7 +14,7 @@
 static void replace_points(const goe_camera_t *camera, goe_view_t *view, goe_pixel_t pixels[GOE_FEATURES],
                            goe_faults_t *faults) {
     memcpy(pixels, goe_image_pixels(view->image), GOE_FEATURES * sizeof pixels[0]);
-    view->seen = (view->image->box.seen & GOE_SEES_BOX) != 0;
+    view->seen = (view->image->box.sides & GOE_SIDES_ALL) != 0;
     goe_sides_read(camera, view, faults);
     goe_sides_points(camera, view, &pixels[GOE_POINT_LEFT], &pixels[GOE_POINT_RIGHT], &pixels[GOE_POINT_TOP]);
 }
@@ -25,7 +25,7 @@ void goe_align_points(const goe_camera_t *camera, goe_view_t *view, goe_faults_t
     const goe_pixel_t *pixels = goe_image_pixels(view->image);
     view->sides.usable = 0;
     view->seen = false;
-    if (view->image->box.seen != 0) {
+    if (view->image->box.sides != 0) {
         replace_points(camera, view, replaced, faults);
         pixels = replaced;
     }
@@ -38,7 +38,7 @@ void goe_align_points(const goe_camera_t *camera, goe_view_t *view, goe_faults_t
     for (size_t i = 0; i < GOE_FEATURES; i++) {
         const goe_pixel_t *pixel = &pixels[i];
         goe_point_t *point = &view->point[i];
-        if (!goe_is_set(&pixel->seen)) {
+        if (!goe_is_set(&pixel->visible)) {
             point->usable = false;
             continue;
         }

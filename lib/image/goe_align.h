@@ -5,8 +5,8 @@
 #include "image/goe_fault.h"
 #include "image/goe_view.h"
 
-/* Sets view->point, view->sides and view->seen from view->image and view->camera_to_trajectory. A box stands for left, right and
- * top. A feature that is not seen, or that meets
+/* Sets view->point, view->sides and view->seen from view->image and view->camera_to_trajectory. A box replaces left, right and
+ * top. A feature that is not visible, or that meets
  * GOE_BEHIND_CAMERA or GOE_LENS_FAILED, is not usable. */
 void goe_align_points(const goe_camera_t *camera, goe_view_t *view, goe_faults_t *faults);
 

@@ -29,7 +29,7 @@ static inline bool goe_camera_distorts(const goe_camera_t *camera) {
             GOE_MAGNITUDE_BITS) != 0u;
 }
 
-/* The lens model at the ray (x, y, 1): where it is seen, and the derivatives of that. */
+/* The lens model at the ray (x, y, 1): its image point, and the derivatives of that. */
 typedef struct {
     float x, y;
     float xx, xy, yy; /* of x by x; of x by y, which is that of y by x; of y by y */

@@ -9,9 +9,9 @@
 #include "maths/goe_scalar.h"
 #include "maths/goe_time.h"
 
-#define PACE_SPAN_S 0.09f        /* of the poses that tell rate and velocity: nearer ones tell their noise */
+#define PACE_SPAN_S 0.09f        /* of the poses that give rate and velocity: nearer ones give their noise */
 #define PACE_SPAN_MIN_S 0.045f   /* ... since the latest mark */
-#define PACE_SPAN_MAX_US 600000u /* farther ones tell a mean */
+#define PACE_SPAN_MAX_US 600000u /* farther ones give a mean */
 #define PACE_COSINE_MIN 0.9f     /* of half the angle between them: more is no flight, but a jump */
 #define LEVEL_NOSE_MIN 1.0e-3f   /* horizontal part of the nose's unit vector below which it has no heading */
 
@@ -94,7 +94,7 @@ static void turn_into_trajectory(const goe_motion_t *motion, const float body_to
     }
 }
 
-#if GOE_BESIDE
+#if GOE_AUGMENTED
 /* now = turn mark, in NED: the vector part of `turn` over its scalar part, which is half the angle. */
 static bool half_turn(const float now[4], const float mark[4], float half_ned[3]) {
     const float scalar = now[0] * mark[0] + now[1] * mark[1] + now[2] * mark[2] + now[3] * mark[3];
@@ -154,8 +154,8 @@ void goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe
     float position[3];
     goe_rotation_from_quaternion(pose->attitude, body_to_ned);
     camera_position(view->camera, pose, body_to_ned, position);
-#if GOE_BESIDE
-    const bool first = !motion->sighted;
+#if GOE_AUGMENTED
+    const bool first = !motion->detected;
     if (motion->mark_us == motion->time_us) { /* a span ended before: its rate has no part of this image's own error */
         memcpy(motion->rate_before_rad_s, motion->rate_rad_s, sizeof motion->rate_rad_s);
     }
@@ -163,7 +163,7 @@ void goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe
     const bool jumped = goe_motion_reset(motion, pose);
     motion->reset_count = pose->reset_count;
     motion->time_us = pose->time_us;
-    if (!motion->sighted) {
+    if (!motion->detected) {
         begin_track(motion, settings, body_to_ned, position);
     } else if (jumped) {
         for (int i = 0; i < 2; i++) {
@@ -176,8 +176,8 @@ void goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe
     motion->dx_m = motion->heading_cos * east - motion->heading_sin * north;
     motion->dz_m = motion->heading_cos * north + motion->heading_sin * east;
     turn_into_trajectory(motion, body_to_ned, view);
-#if GOE_BESIDE
-    if (settings->method != GOE_METHOD_REFINED) {
+#if GOE_AUGMENTED
+    if (settings->method != GOE_METHOD_FILTER) {
         return;
     }
     const float arm_n = position[0] - pose->position_ned_m[0];

@@ -5,18 +5,18 @@
 #include "goe.h"
 
 typedef struct {
-    uint32_t *causes;   /* the estimator's counters */
-    goe_status_t first; /* GOE_OK: none yet */
+    uint32_t *fault_counts; /* the estimator's counters */
+    goe_status_t first;     /* GOE_OK: none yet */
 } goe_faults_t;
 
 /*@ predicate goe_faults_are_open(goe_faults_t *faults) =
-        \valid_read(faults) && \valid(faults->causes + (0 .. GOE_CAUSES - 1)); */
+        \valid_read(faults) && \valid(faults->fault_counts + (0 .. GOE_FAULT_COUNTS - 1)); */
 
-GOE_STATIC_ASSERT(GOE_CAUSES == 1 - (int)GOE_NO_HEIGHT, every_fault_has_a_counter);
+GOE_STATIC_ASSERT(GOE_FAULT_COUNTS == 1 - (int)GOE_NO_HEIGHT, every_fault_has_a_counter);
 
 /* Counters saturate. */
-/*@ requires \valid(causes + (0 .. GOE_CAUSES - 1)) && GOE_NO_HEIGHT <= fault <= GOE_OK; */
-void goe_count_cause(uint32_t causes[GOE_CAUSES], goe_status_t fault);
+/*@ requires \valid(fault_counts + (0 .. GOE_FAULT_COUNTS - 1)) && GOE_NO_HEIGHT <= fault <= GOE_OK; */
+void goe_count_cause(uint32_t fault_counts[GOE_FAULT_COUNTS], goe_status_t fault);
 
 /* fault: GOE_BEHIND_CAMERA to GOE_NO_HEIGHT; GOE_OK is ignored. */
 /*@ requires goe_faults_are_open(faults) && GOE_NO_HEIGHT <= fault <= GOE_OK; */

@@ -16,7 +16,7 @@
 
 static uint32_t with_pixel(uint32_t so_far, const goe_pixel_t *pixel) {
     const uint32_t largest = goe_larger_bits(goe_magnitude(pixel->u_px), goe_magnitude(pixel->v_px));
-    return goe_is_set(&pixel->seen) ? goe_larger_bits(so_far, largest) : so_far;
+    return goe_is_set(&pixel->visible) ? goe_larger_bits(so_far, largest) : so_far;
 }
 
 /* Written out: this is done for every image, by every method. */
@@ -32,14 +32,14 @@ static uint32_t largest_pixel(const goe_image_t *image) {
 GOE_STATIC_ASSERT(GOE_FEATURES == 6, every_feature_is_checked);
 
 static uint32_t with_side(uint32_t so_far, const goe_box_t *box, unsigned side, float px) {
-    return (box->seen & side) != 0 ? goe_larger_bits(so_far, goe_magnitude(px)) : so_far;
+    return (box->sides & side) != 0 ? goe_larger_bits(so_far, goe_magnitude(px)) : so_far;
 }
 
 static uint32_t largest_side(const goe_box_t *box) {
-    uint32_t largest = with_side(0u, box, GOE_SEES_LEFT, box->left_px);
-    largest = with_side(largest, box, GOE_SEES_TOP, box->top_px);
-    largest = with_side(largest, box, GOE_SEES_RIGHT, box->right_px);
-    return with_side(largest, box, GOE_SEES_BOTTOM, box->bottom_px);
+    uint32_t largest = with_side(0u, box, GOE_SIDE_LEFT, box->left_px);
+    largest = with_side(largest, box, GOE_SIDE_TOP, box->top_px);
+    largest = with_side(largest, box, GOE_SIDE_RIGHT, box->right_px);
+    return with_side(largest, box, GOE_SIDE_BOTTOM, box->bottom_px);
 }
 
 /* Not finite outranks out of range, which outranks a bad attitude. */
@@ -47,7 +47,7 @@ static goe_status_t check_numbers(const goe_image_t *image, uint32_t attitude, b
     const goe_pose_t *pose = &image->pose;
     const uint32_t height = goe_magnitude(pose->height_m);
     uint32_t pixel = largest_pixel(image);
-    if (image->box.seen != 0) {
+    if (image->box.sides != 0) {
         pixel = goe_larger_bits(pixel, largest_side(&image->box));
     }
     uint32_t position = goe_largest_of_three(pose->position_ned_m);
@@ -84,14 +84,14 @@ goe_status_t goe_intake_check(const goe_motion_t *motion, const goe_image_t *ima
 }
 
 goe_status_t goe_intake_check_noise(const goe_image_noise_t *noise) {
-    const uint32_t attitude = goe_magnitude(noise->attitude_deg);
-    const uint32_t height = goe_magnitude(noise->height_m);
-    const uint32_t pixel = goe_magnitude(noise->pixel_px);
+    const uint32_t attitude = goe_magnitude(noise->attitude_sd_deg);
+    const uint32_t height = goe_magnitude(noise->height_sd_m);
+    const uint32_t pixel = goe_magnitude(noise->pixel_sd_px);
     if (goe_larger_bits(goe_larger_bits(attitude, height), pixel) >= GOE_INFINITY_BITS) {
         return GOE_NOT_FINITE;
     }
     const bool within = attitude <= goe_magnitude(NOISE_MAX_DEG) && height <= goe_magnitude(NOISE_MAX_M) &&
                         pixel <= goe_magnitude(NOISE_MAX_PX);
-    const bool negative = noise->attitude_deg < 0.0f || noise->height_m < 0.0f || noise->pixel_px < 0.0f;
+    const bool negative = noise->attitude_sd_deg < 0.0f || noise->height_sd_m < 0.0f || noise->pixel_sd_px < 0.0f;
     return within && !negative ? GOE_OK : GOE_OUT_OF_RANGE;
 }

@@ -6,11 +6,11 @@
 #include "maths/goe_scalar.h"
 
 #define UPRIGHT 0.01f      /* sine of a lean that needs no turning back */
-#define COSINE_MIN 0.5f    /* of twice the lean: beyond 30 degrees a box hardly tells its width from its height */
+#define COSINE_MIN 0.5f    /* of twice the lean: beyond 30 degrees width and height of a box hardly separate */
 #define DIRECTION_MIN 0.1f /* length of the vertical in the image, focal lengths: from straight above it has none */
 
-GOE_STATIC_ASSERT(GOE_SEES_LEFT == 1u << GOE_BOX_LEFT && GOE_SEES_TOP == 1u << GOE_BOX_TOP &&
-                      GOE_SEES_RIGHT == 1u << GOE_BOX_RIGHT && GOE_SEES_BOTTOM == 1u << GOE_BOX_BOTTOM,
+GOE_STATIC_ASSERT(GOE_SIDE_LEFT == 1u << GOE_BOX_LEFT && GOE_SIDE_TOP == 1u << GOE_BOX_TOP &&
+                      GOE_SIDE_RIGHT == 1u << GOE_BOX_RIGHT && GOE_SIDE_BOTTOM == 1u << GOE_BOX_BOTTOM,
                   every_side_has_its_bit);
 
 /* Of the image's width. 0: nothing is near a border that is not known. */
@@ -35,19 +35,19 @@ void goe_sides_read(const goe_camera_t *camera, goe_view_t *view, goe_faults_t *
     sides->px[GOE_BOX_TOP] = box->top_px;
     sides->px[GOE_BOX_RIGHT] = box->right_px;
     sides->px[GOE_BOX_BOTTOM] = box->bottom_px;
-    sides->usable = (uint8_t)(box->seen & GOE_SEES_BOX);
-    const bool swapped = (goe_sides_see(sides, GOE_SEES_LEFT | GOE_SEES_RIGHT) && !(box->left_px < box->right_px)) ||
-                         (goe_sides_see(sides, GOE_SEES_TOP | GOE_SEES_BOTTOM) && !(box->top_px < box->bottom_px));
+    sides->usable = (uint8_t)(box->sides & GOE_SIDES_ALL);
+    const bool swapped = (goe_sides_see(sides, GOE_SIDE_LEFT | GOE_SIDE_RIGHT) && !(box->left_px < box->right_px)) ||
+                         (goe_sides_see(sides, GOE_SIDE_TOP | GOE_SIDE_BOTTOM) && !(box->top_px < box->bottom_px));
     if (swapped) {
         goe_fault_count(faults, GOE_SWAPPED);
         sides->usable = 0;
     }
-    sides->usable = (uint8_t)(sides->usable & ~near_border(camera, sides, camera->border_share));
+    sides->usable = (uint8_t)(sides->usable & ~near_border(camera, sides, camera->border_rel));
     if (!swapped && (sides->usable & (sides->usable - 1u)) == 0u) { /* none or one */
         goe_fault_count(faults, GOE_BOX_INCOMPLETE);
     }
-    const unsigned wide = GOE_SEES_LEFT | GOE_SEES_RIGHT;
-    sides->cut = !goe_sides_see(sides, wide) || (near_border(camera, sides, camera->cut_share) & wide) != 0u;
+    const unsigned wide = GOE_SIDE_LEFT | GOE_SIDE_RIGHT;
+    sides->cut = !goe_sides_see(sides, wide) || (near_border(camera, sides, camera->truncation_rel) & wide) != 0u;
 }
 
 /* --------------------------------------------------------------------------------------------------------- points -- */
@@ -96,12 +96,12 @@ void goe_sides_points(const goe_camera_t *camera, const goe_view_t *view, goe_pi
                       goe_pixel_t *top) {
     const goe_sides_t *sides = &view->sides;
     const float *px = sides->px;
-    const bool has_top = goe_sides_see(sides, GOE_SEES_TOP);
-    const bool has_height = goe_sides_see(sides, GOE_SEES_TOP | GOE_SEES_BOTTOM);
-    top->seen = false;
-    right->seen = false;
-    left->seen = false;
-    if (!goe_sides_see(sides, GOE_SEES_LEFT | GOE_SEES_RIGHT)) {
+    const bool has_top = goe_sides_see(sides, GOE_SIDE_TOP);
+    const bool has_height = goe_sides_see(sides, GOE_SIDE_TOP | GOE_SIDE_BOTTOM);
+    top->visible = false;
+    right->visible = false;
+    left->visible = false;
+    if (!goe_sides_see(sides, GOE_SIDE_LEFT | GOE_SIDE_RIGHT)) {
         return;
     }
     const float bottom_px = has_height ? px[GOE_BOX_BOTTOM] : (has_top ? px[GOE_BOX_TOP] : camera->cy_px);

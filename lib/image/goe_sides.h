@@ -8,9 +8,9 @@
 /* Sets view->sides from view->image->box: sides at the image's border, or out of order (GOE_SWAPPED), are not usable. */
 void goe_sides_read(const goe_camera_t *camera, goe_view_t *view, goe_faults_t *faults);
 
-/* Leftmost, rightmost and highest point of the obstacle for methods that know no sides: the box of an obstacle whose verticals
- * lean in the image, turned back about its middle. left, right and top, as far as the sides tell them; the others become
- * unseen. Needs view->camera_to_trajectory. */
+/* Leftmost, rightmost and highest point of the obstacle for methods that use points only: the box of an obstacle whose verticals
+ * lean in the image, turned back about its middle. Sets left, right and top where the sides determine them; the others become
+ * invisible. Needs view->camera_to_trajectory. */
 void goe_sides_points(const goe_camera_t *camera, const goe_view_t *view, goe_pixel_t *left, goe_pixel_t *right,
                       goe_pixel_t *top);
 

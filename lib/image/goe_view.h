@@ -17,11 +17,11 @@ typedef enum {
 
 GOE_STATIC_ASSERT(GOE_POINT_COUNT == GOE_FEATURES, every_feature_has_a_name);
 
-/* An aligned image point: what a camera that looks along T's Z axis would see, X/Z and Y/Z of the ray in T, in units of the
- * focal length. x and y hold only if usable. */
+/* An aligned image point: the image of a camera that looks along T's Z axis, X/Z and Y/Z of the ray in T, in units of the
+ * focal length. x and y are valid only if usable. */
 typedef struct {
     float x, y;
-    bool usable; /* seen, ahead, and within the lens model */
+    bool usable; /* visible, ahead, and within the lens model */
 } goe_point_t;
 
 /* The sides of a box. */
@@ -29,11 +29,11 @@ typedef enum { GOE_BOX_LEFT, GOE_BOX_TOP, GOE_BOX_RIGHT, GOE_BOX_BOTTOM, GOE_BOX
 
 typedef struct {
     float px[GOE_BOX_SIDES]; /* raw image */
-    uint8_t usable;          /* GOE_SEES_... */
+    uint8_t usable;          /* GOE_SIDE_... */
     bool cut;                /* left or right is missing, or near the image's border */
 } goe_sides_t;
 
-/* Whether all of these sides (GOE_SEES_...) are measured. */
+/* Whether all of these sides (GOE_SIDE_...) are measured. */
 static inline bool goe_sides_see(const goe_sides_t *sides, unsigned set) { return (sides->usable & set) == set; }
 
 typedef struct {

@@ -8,7 +8,7 @@ static inline void goe_rotation_from_quaternion(const float q[4], float r[9]) {
     const float x = q[1];
     const float y = q[2];
     const float z = q[3];
-    /* 2/|q|^2 instead of 2 normalises without a square root */
+    /* 2/|q|^2 instead of 2 normalizes without a square root */
     const float s = 2.0f / (w * w + x * x + y * y + z * z);
     r[0] = 1.0f - s * (y * y + z * z);
     r[1] = s * (x * y - w * z);

@@ -1,4 +1,4 @@
-/* Magnitudes of floats, and what is true, judged by their bits. SPDX-License-Identifier: MIT */
+/* Magnitudes and truth values of floats, by their bits. SPDX-License-Identifier: MIT */
 #ifndef GOE_SCALAR_H
 #define GOE_SCALAR_H
 

@@ -5,7 +5,7 @@
 #include <stdint.h>
 
 #define GOE_S_PER_US 1.0e-6f
-#define GOE_TIME_MAX_US 4000000000u /* the longest that any part tells from a longer one: 4000 s, which fit 32 bits */
+#define GOE_TIME_MAX_US 4000000000u /* the longest time that any part distinguishes: 4000 s, which fit 32 bits */
 
 /* Seconds from one time to a later one; a span longer than max_us counts as that. */
 static inline float goe_time_between_s(int64_t from_us, int64_t to_us, uint32_t max_us) {

@@ -1,6 +1,6 @@
 /* Rows, changes and quantities of a box. SPDX-License-Identifier: MIT
  *
- * Seen from above, lengths in units of Z0; P: middle of the front edge relative to the camera now.
+ * View from above, lengths in units of Z0; P: middle of the front edge relative to the camera now.
  *
  *        BL ------ BR          side edge  (sx, sz), from the front backwards
  *        |          |          front edge (fx, fz), fz = -fx sx/sz: square to the side, signed
@@ -15,7 +15,7 @@
 #include "maths/goe_scalar.h"
 #include "refined/goe_touch.h"
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 
 #define AHEAD_MIN 0.01f    /* range below which a corner's direction is not compared */
 #define AHEAD_TINY 1.0e-3f /* ... or ordered */
@@ -31,7 +31,7 @@
 #define FACE_RAD 0.14f    /* (R42), one sigma of what two ends are off by if they are those of two faces: orientation */
 #define FACE_WIDTH 0.06f  /* ... width, of itself */
 #define FACE_PLACE 0.1f   /* ... place, of the width */
-#define FACE_ROOF 0.15f   /* ... where the roof's nearest corner stands, of the width */
+#define FACE_ROOF 0.15f   /* ... where the roof's nearest corner is, of the width */
 #define OUTLINE_RAD 0.04f /* one sigma of what a box by its outline misses: orientation */
 #define OUTLINE_SHARE 0.03f /* ... extents, of width and length together */
 #define SINE2_MIN 1.0e-6f
@@ -45,7 +45,7 @@ static const float along_of[CORNERS] = {0.0f, 1.0f, 1.0f, 0.0f};
 typedef struct {
     goe_box_edges_t edges;
     goe_xz_t middle;   /* P */
-    float curvature;   /* of the depths in GOE_DEPTH_DIFFERENCE, times its variance: twice what linearising misses */
+    float curvature;   /* of the depths in GOE_DEPTH_DIFFERENCE, times its variance: twice the linearization error */
     float ground, top; /* Y of the base and of the roof */
     bool front, right; /* which side of the box the camera is on */
     bool far_half;     /* it is nearer to the back edge */
@@ -132,8 +132,8 @@ static void corners_from(size_t left, bool two, size_t corner[3]) {
     corner[OUTER_RIGHT] = (left + (two ? 2u : 3u)) % CORNERS;
 }
 
-/* How much the outer corners are off their distance in the image, which says more than their places: a range or a bearing that
- * is off moves both alike. */
+/* By how much the outer corners differ from their distance in the image, which is more informative than their places: an error of range
+ * or bearing moves both equally. */
 /*@ requires goe_observation_is_open(obs) && \valid_read(o) && \valid_read(corner + (0 .. 2));
     requires corner[0] < CORNERS && corner[2] < CORNERS; */
 static float misfit(const goe_observation_t *obs, const outline_t *o, const size_t corner[3]) {
@@ -143,14 +143,14 @@ static float misfit(const goe_observation_t *obs, const outline_t *o, const size
     return goe_absolute(obs->point[GOE_POINT_BASE_RIGHT].x - obs->point[GOE_POINT_BASE_LEFT].x - wide);
 }
 
-/* The near corner is seen, or both outer ones are. */
+/* The near corner is visible, or both outer ones are. */
 static void visible_corners(const goe_observation_t *obs, const outline_t *o, size_t corner[3]) {
-    const bool near_seen = obs->point[GOE_POINT_BASE_NEAR].usable;
+    const bool near_visible = obs->point[GOE_POINT_BASE_NEAR].usable;
     const size_t of_two = o->front ? (o->right ? FRONT_LEFT : BACK_LEFT) : (o->right ? FRONT_RIGHT : BACK_RIGHT);
     const size_t along = o->front ? FRONT_LEFT : BACK_RIGHT;
     const size_t across = o->right ? FRONT_RIGHT : BACK_LEFT;
-    corners_from(near_seen ? of_two : o->depth_margin > o->side_margin ? along : across, near_seen, corner);
-    if (!near_seen && obs->two_faces && o->depth_margin > 0.0f && o->side_margin > 0.0f) {
+    corners_from(near_visible ? of_two : o->depth_margin > o->side_margin ? along : across, near_visible, corner);
+    if (!near_visible && obs->two_faces && o->depth_margin > 0.0f && o->side_margin > 0.0f) {
         /* one face, or two and the detector missed the corner between them */
         size_t both[3];
         corners_from(of_two, true, both);
@@ -180,7 +180,7 @@ static void widest_corners(const outline_t *o, size_t corner[3]) {
 
 /* --------------------------------------------------------------------------------------------------------------- rows -- */
 
-/* Derivatives by the place and the outline of a corner, from those by (X, Z); and what their linearisation may miss. */
+/* Derivatives by the place and the outline of a corner, from those by (X, Z); and their possible linearization error. */
 /*@ requires goe_rows_hold(rows) && \valid(by + (0 .. GOE_UNKNOWNS - 1)) && goe_observation_is_open(obs);
     requires \valid_read(o) && \valid_read(g) && corner < CORNERS && 1 <= rows->count <= GOE_ROWS_MAX; */
 static void set_corner(goe_rows_t *rows, float by[restrict GOE_UNKNOWNS], const goe_observation_t *obs,
@@ -245,7 +245,7 @@ static float down_of(const goe_observation_t *obs, const goe_xz_t *at, float top
     return (r[1] * at->x + r[4] * top + r[7] * at->z) / (r[2] * at->x + r[5] * top + r[8] * at->z);
 }
 
-/* The corner of the roof that is highest in the raw image: seen from above a far one, and under a roll one that stands aside. */
+/* The corner of the roof that is highest in the raw image: from above a far one, and under a roll a lateral one. */
 static size_t highest_corner(const goe_observation_t *obs, const outline_t *o) {
     size_t highest = 0;
     float least = down_of(obs, &o->corner[0], o->top);
@@ -261,7 +261,7 @@ static size_t highest_corner(const goe_observation_t *obs, const outline_t *o) {
 
 /* (R13). */
 static size_t top_corner(const goe_observation_t *obs, const outline_t *o) {
-    if (obs->settings->refined.top_is_highest) {
+    if (obs->settings->filter.top_is_highest) {
         return highest_corner(obs, o);
     }
     return o->right ? (o->far_half ? BACK_RIGHT : FRONT_RIGHT) : (o->far_half ? BACK_LEFT : FRONT_LEFT);
@@ -279,7 +279,7 @@ static void add_top(const goe_observation_t *obs, const outline_t *o, goe_rows_t
     }
 }
 
-/* (R29): what a side of an upright bounding box touches, not the point that stands for it. */
+/* (R29): the point that a side of an upright bounding box touches, not the point that replaces it. */
 /*@ requires goe_observation_is_open(obs) && \valid_read(o) && goe_solid_is_closed(solid) && goe_rows_hold(rows);
     requires side < GOE_BOX_SIDES && rows->count < GOE_ROWS_MAX; */
 static void add_side(const goe_observation_t *obs, const outline_t *o, const goe_solid_t *solid, size_t side,
@@ -318,11 +318,12 @@ void goe_box_rows(const goe_observation_t *obs, goe_rows_t *rows) {
     outline_t outline;
     size_t corner[3] = {FRONT_LEFT, FRONT_LEFT, FRONT_LEFT};
     describe(obs, &outline);
-    const bool near_seen = obs->point[GOE_POINT_BASE_NEAR].usable;
-    if (obs->base && !near_seen && obs->two_faces && obs->depth_variance > goe_square(POOR_SHARE * outline.edges.sum)) {
+    const bool near_visible = obs->point[GOE_POINT_BASE_NEAR].usable;
+    if (obs->base && !near_visible && obs->two_faces &&
+        obs->depth_variance > goe_square(POOR_SHARE * outline.edges.sum)) {
         return; /* which corners these are would be a guess, and the box would learn it */
     }
-    if (obs->base || near_seen) {
+    if (obs->base || near_visible) {
         visible_corners(obs, &outline, corner);
         for (size_t i = OUTER_LEFT; i <= OUTER_RIGHT; i++) {
             if (obs->point[GOE_POINT_BASE_LEFT + i].usable) {
@@ -348,7 +349,7 @@ static bool side_is_shorter(const float x[GOE_STATES], float depth) {
     return depth * (depth - x[GOE_DEPTH_DIFFERENCE]) > goe_absolute(x[GOE_SIDE_X]) * x[GOE_FRONT_X];
 }
 
-/* Extents of too different size make a box that the next image cannot be linearised at. */
+/* Extents of too different size make a box that the next image cannot be linearized at. */
 void goe_box_clip(goe_filter_t *filter) {
     float *x = filter->state;
     const float least = EXTENT_MIN * (goe_absolute(x[GOE_SIDE_X]) + goe_absolute(x[GOE_FRONT_X]) +
@@ -457,7 +458,7 @@ static void find_spot(const float x[GOE_STATES], const goe_box_edges_t *e, float
     }
 }
 
-/* Length of an edge, m. extent: the state that tells how far it reaches across. */
+/* Length of an edge, m. extent: the state with its lateral extent. */
 /*@ requires \valid(length) && \valid_read(edge) && extent < GOE_STATES; */
 static void set_edge(goe_linear_t *length, const goe_box_edge_t *edge, goe_state_index_t extent, float scale_m) {
     const float by_depth = edge->along.z / edge->length * scale_m;
@@ -518,7 +519,7 @@ void goe_box_face_doubt(const goe_filter_t *filter, goe_shape_t *shape) {
     shape->roof_m2 = goe_square(FACE_ROOF * size_m);
 }
 
-/* Of the side, seen at a small angle, only the product of length and angle shows. */
+/* Of the side, at a small viewing angle, only the product of length and angle shows. */
 static float side_share2(const goe_filter_t *filter, goe_xz_t camera_m) {
     const float *x = filter->state;
     goe_box_edges_t e;
@@ -528,8 +529,8 @@ static float side_share2(const goe_filter_t *filter, goe_xz_t camera_m) {
     const float vz = e.side.along.z / e.side.length;
     const float px = x[GOE_BEARING] - camera_m.x / scale_m;
     const float pz = 1.0f - camera_m.z / scale_m;
-    const float beside = goe_larger(goe_absolute(vz * px - vx * pz) - 0.5f * x[GOE_FRONT_X] / vz, 0.0f);
-    return goe_square(beside) / (px * px + pz * pz);
+    const float augmented = goe_larger(goe_absolute(vz * px - vx * pz) - 0.5f * x[GOE_FRONT_X] / vz, 0.0f);
+    return goe_square(augmented) / (px * px + pz * pz);
 }
 
 float goe_box_outline_variance(const goe_filter_t *filter, const goe_shape_t *shape, goe_xz_t camera_m, int quantity,

@@ -1,4 +1,4 @@
-/* A box: where its corners are seen. SPDX-License-Identifier: MIT */
+/* A box: the image points of its corners. SPDX-License-Identifier: MIT */
 #ifndef GOE_BOX_H
 #define GOE_BOX_H
 
@@ -6,7 +6,7 @@
 #include "refined/goe_shape.h"
 
 /* An edge of a box as a vector, the state's axes and units of Z0, with the derivatives of its depth `along.z` by GOE_SIDE_X,
- * GOE_FRONT_X, GOE_DEPTH_DIFFERENCE. Across it reaches as far as its own state tells. */
+ * GOE_FRONT_X, GOE_DEPTH_DIFFERENCE. Its lateral extent is that of its own state. */
 typedef struct {
     goe_xz_t along;
     float by[3];
@@ -29,8 +29,8 @@ void goe_box_enter(goe_filter_t *filter, goe_phase_t phase);
 /*@ requires goe_observation_is_open(obs) && goe_rows_hold(rows) && rows->count == 0; */
 void goe_box_rows(const goe_observation_t *obs, goe_rows_t *rows);
 
-/* After an update: keeps the extents where the next image can be linearised, and names the edges: front and side keep their
- * names until the side lies clearly across T's Z. */
+/* After an update: keeps the extents where the next image can be linearized, and names the edges: front and side keep their
+ * names until the side is clearly across T's Z. */
 void goe_box_clip(goe_filter_t *filter);
 void goe_box_name(goe_filter_t *filter);
 

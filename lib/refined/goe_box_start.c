@@ -7,7 +7,7 @@
 #include "maths/goe_scalar.h"
 #include "refined/goe_box.h"
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 
 #define BEARING_GROWTH 4.0f    /* factor on the variance of the bearing: the disc's middle was another point */
 #define BEARING_FREEDOM 4.0f   /* ... and sigma added to it, in the larger side */
@@ -32,7 +32,7 @@
 #define AGREEING_SIGMAS2 9.0f
 #define SIZE_FREEDOM 2.0f  /* one sigma of the extents at the start, in the larger side */
 #define DEPTH_FREEDOM 4.0f /* ... of the depth difference */
-#define DEPTH_HELD 0.01f   /* ... if one face alone is seen */
+#define DEPTH_HELD 0.01f   /* ... if one face alone is visible */
 #define FACE_MIN_PX 3.0f   /* lateral extent of a face, in sigmas of a pixel */
 
 /* Into the state's scale; reference: middle of the front edge from the camera, in the footprint's axes. False if it is out of
@@ -116,7 +116,7 @@ static float edge_sigma(const goe_observation_t *obs, const face_t *face, float 
     const float deep = face->range_m * face->range_m / face->height_m * pixel;
     const float wide = face->range_m * pixel;
     const float tilt =
-        face->range_m / face->height_m * (obs->settings->navigation.attitude_bias_deg * GOE_RAD_PER_DEG) * x * x;
+        face->range_m / face->height_m * (obs->settings->navigation.attitude_bias_sd_deg * GOE_RAD_PER_DEG) * x * x;
     const float noise = sqrtf(deep * x * (deep * x) + wide * z * (wide * z) + tilt * tilt);
     const float sure = z * z - SURE_SIGMAS2 * deep * deep;
     return noise / goe_larger(x * x + goe_larger(sure, 0.0f), EDGE_MIN_M2);
@@ -135,7 +135,7 @@ static goe_xz_t measure_face(const face_t *face, float x, float z, float size_m,
         const goe_xz_t middle = {0.5f * (face->left.x + face->right.x), 0.5f * (face->left.z + face->right.z)};
         return middle;
     }
-    /* the near end of the side is a corner of the front: the right one if the side is seen to the right of it */
+    /* the near end of the side is a corner of the front: the right one if the side is visible to the right of it */
     const bool left_is_near = face->left.z < face->right.z;
     const goe_xz_t corner = left_is_near ? face->left : face->right;
     const float half_m = left_is_near ? 0.5f * size_m : -0.5f * size_m;
@@ -259,7 +259,7 @@ static void scale_ground(float scale, float covariance[GOE_KEPT][GOE_KEPT]) {
 }
 
 /* From a disc to the box of the footprint. The nuisances and the range keep their covariance; the reference moves by up to
- * the box's size, and the disc was only a stand-in. both: two faces are seen. */
+ * the box's size, and the disc was only a stand-in. both: two faces are visible. */
 static void start_box(goe_filter_t *filter, const goe_footprint_t *box, bool both) {
     float c[GOE_KEPT][GOE_KEPT];
     float *x = filter->state;

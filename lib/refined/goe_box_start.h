@@ -16,11 +16,11 @@ typedef struct {
 } goe_footprint_t;
 
 /* From the lateral extents of two faces, with the depth of both taken as the same: in the axes of the line of sight to the
- * near corner, (R19). The range is the state's. False if a corner is not seen, or a face is too narrow to stand out of the
+ * near corner, (R19). The range is the state's. False if a corner is not visible, or a face is too narrow to exceed the
  * noise. */
 bool goe_footprint_two_faces(const goe_observation_t *obs, goe_footprint_t *box);
 
-/* From the direction of the one face that is seen, which becomes the front or the side, whichever it is nearer to; the
+/* From the direction of the one visible face, which becomes the front or the side, whichever it is nearer to; the
  * other extent is guessed, (R20). The range is the state's, the corners' y give differences: the pitch bias drops out.
  * False if the image does not show it: no two outer base corners, corners in no possible place, or orientation known worse
  * than to 0.2 rad. */

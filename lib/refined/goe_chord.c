@@ -10,7 +10,7 @@
 #include "refined/goe_mover.h"
 #include "refined/goe_touch.h"
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 
 #define RANGE_SHARE 0.1f    /* one sigma of 1/Z0 over it, for a disc to change */
 #define DISC_FREEDOM 0.05f  /* what the disc's tangents left behind in the chord, of its width */
@@ -26,7 +26,7 @@
 #define GONE_SIGMAS 1.8f    /* outward: an end has left */
 #define TURNING_SIGMAS 0.4f
 #define SETTLED_IMAGES 16    /* before an end can be taken to leave */
-#define END_FREEDOM 0.5f     /* of an end that is learnt anew, over the chord */
+#define END_FREEDOM 0.5f     /* of an end that is learned again, over the chord */
 #define DEPTH_UNNOTICED 0.1f /* what the images between a face's turning away and its being noticed did to the chord */
 #define WIDTH_UNNOTICED 0.05f
 #define CORNER_RAD 0.5f /* one sigma of the corner's place on the circle */
@@ -76,14 +76,14 @@ static void add_end(const goe_observation_t *obs, goe_feature_t feature, float s
     }
 }
 
-/* Over the nearer end; seen from above the highest in the image is over the farther one. */
+/* Over the nearer end; from above the highest in the image is over the farther one. */
 static void add_top(const goe_observation_t *obs, goe_rows_t *rows) {
     goe_gradient_t g;
     const goe_point_t *left = &obs->point[GOE_POINT_LEFT];
     const goe_point_t *right = &obs->point[GOE_POINT_RIGHT];
     const goe_xz_t middle = goe_observation_reference(obs);
     const float y = goe_observation_roof(obs);
-    const bool highest = obs->settings->refined.top_is_highest && y > 0.0f;
+    const bool highest = obs->settings->filter.top_is_highest && y > 0.0f;
     const bool right_is_near = middle.x * obs->state[GOE_FRONT_X] + middle.z * obs->state[GOE_SIDE_X] < 0.0f;
     const float side = right_is_near != highest ? 0.5f : -0.5f;
     float *by =
@@ -160,7 +160,7 @@ bool goe_chord_start(goe_filter_t *filter, const goe_observation_t *obs) {
     goe_filter_invert(filter);
     filter->leaving.outward = 0.0f;
     filter->leaving.turning = 0.0f;
-#if GOE_BESIDE
+#if GOE_AUGMENTED
     goe_mover_doubt(filter);
 #endif
     goe_filter_enter(filter, GOE_PHASE_CHORD);
@@ -189,13 +189,13 @@ bool goe_chord_is_leaving(const goe_filter_t *filter) { return filter->leaving.o
 
 /* --------------------------------------------------------------------------------------------------------- to the box -- */
 
-/* What a chord becomes: seen from its middle, in its own units. */
+/* The successor of a chord: viewed from its middle, in its own units. */
 typedef struct {
     goe_xz_t front, side, shift; /* shift: from the chord's middle to that of the front */
     float side_sign;             /* chord = front + side_sign side */
 } faces_t;
 
-/* The corner stands on the circle over the chord, where the ray to the end that has left it meets it first. */
+/* The corner is on the circle over the chord, where the ray to the end that has left it meets it first. */
 /*@ requires goe_observation_is_open(obs) && \valid(corner) && feature < GOE_FEATURES; */
 static bool find_corner(const goe_observation_t *obs, goe_feature_t feature, goe_xz_t *corner) {
     const float *x = obs->state;
@@ -253,8 +253,8 @@ static bool set_box(const faces_t *faces, float x[GOE_STATES]) {
     return true;
 }
 
-/* (R21): derivatives of the chord by the box. The chord's middle lies half a side behind that of the front; its idle state stands
- * for the corner's place on the circle: twice the angle between chord and front, tan = side over front. */
+/* (R21): derivatives of the chord by the box. The chord's middle is half a side behind that of the front; its idle state represents
+ * the corner's place on the circle: twice the angle between chord and front, tan = side over front. */
 static void differentiate(const float was[GOE_STATES], const float is[GOE_STATES], float side_sign,
                           goe_substitution_t *old) {
     goe_box_edges_t box;
@@ -316,7 +316,7 @@ static bool turn_face_away(goe_filter_t *filter, const goe_observation_t *obs, g
     return true;
 }
 
-static void learn_anew(goe_filter_t *filter) {
+static void relearn(goe_filter_t *filter) {
     const float sigma = END_FREEDOM * chord_length(filter->state);
     inflate(filter, GOE_SIDE_X, sigma);
     inflate(filter, GOE_FRONT_X, sigma);
@@ -335,7 +335,7 @@ bool goe_chord_change(goe_filter_t *filter, const goe_observation_t *obs) {
     const bool right = filter->leaving.turning > 0.0f;
     const bool to_left = obs->camera_m.x > filter->state[GOE_BEARING] * obs->camera_m.z;
     if (right == to_left) {
-        learn_anew(filter);
+        relearn(filter);
         return true;
     }
     return turn_face_away(filter, obs, right ? GOE_POINT_RIGHT : GOE_POINT_LEFT);

@@ -1,7 +1,7 @@
-/* A box of which the silhouette alone is seen. SPDX-License-Identifier: MIT
+/* A box with only its silhouette visible. SPDX-License-Identifier: MIT
  *
  * Two faces of a box end in two outer corners: whatever its sides are, the silhouette shows the line between these, the
- * chord. The sides show only when a face turns away and the silhouette takes the corner that stood between. So: disc, then
+ * chord. The sides show only when a face turns away and the silhouette takes the corner between them. So: disc, then
  * chord, then box. */
 #ifndef GOE_CHORD_H
 #define GOE_CHORD_H
@@ -15,7 +15,7 @@
  * Of a disc: takes it for a chord if that is clear. */
 bool goe_chord_start(goe_filter_t *filter, const goe_observation_t *obs);
 
-/* Of a chord: when one of its ends has left the chord it learns that end anew (a face came into view) or becomes a box (a
+/* Of a chord: when one of its ends has left the chord it learns that end again (a face came into view) or becomes a box (a
  * face turned away). */
 bool goe_chord_change(goe_filter_t *filter, const goe_observation_t *obs);
 

@@ -9,30 +9,30 @@
 #include "maths/goe_scalar.h"
 #include "refined/goe_touch.h"
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 
-#define AHEAD_MIN 1.0e-3f   /* centre, units of Z0: nearer gives no rows */
+#define AHEAD_MIN 1.0e-3f   /* center, units of Z0: nearer gives no rows */
 #define TANGENT_AHEAD 0.02f /* third component of a tangent's unit vector */
 #define SINE_MIN 1.0e-5f    /* of half the angle that the disc covers */
 #define SINE_MAX 0.98f
-#define STAND_IN_SHAPE 0.1f  /* shape_share that is added while a box is taken for a disc */
+#define STAND_IN_SHAPE 0.1f  /* shape_error_rel that is added while a box is taken for a disc */
 #define STAND_IN_PLACE 0.1f  /* of the width, by which the box's middle may lie off the disc's */
 #define WIDTH_MIN 1.0e-5f    /* between left and right, focal lengths */
 #define RANGE_MIN_M 1.0f     /* of a first guess */
-#define GROUND_SIGMAS 3.0f   /* by which the base must lie below the horizon to tell the range */
+#define GROUND_SIGMAS 3.0f   /* by which the base must lie below the horizon to give the range */
 #define BEARING_FREEDOM 1.0f /* one sigma of the first guess of X0/Z0 */
 #define RANGE_FREEDOM 2.0f   /* one sigma of the first guess of 1/Z0, relative */
 #define WIDTH_FREEDOM 5.0f   /* ... of the width */
 #define TOP_FREEDOM 10.0f    /* ... of the top */
 #define SKEWED_SIGMAS2 18.0f /* twice the log-likelihood ratio of chord against disc; cylinders stay below 14 */
 #define VARIANCE_MIN 1.0e-30f
-#define CHANCE_SHARE 0.5f  /* of the skew's variance that is taken for a true disc's chance, where one was asked for */
-#define SKEW_SHARE 0.5f    /* one sigma of the skew of what is no disc, of its width */
-#define TURNED_SIGMAS 6.0f /* of the skew by which the line of sight must turn for what is no disc to show it */
+#define CHANCE_SHARE 0.5f  /* of the skew's variance that is taken for a true disc's chance, where one was configured */
+#define SKEW_SHARE 0.5f    /* one sigma of the skew of a shape that is no disc, of its width */
+#define TURNED_SIGMAS 6.0f /* of the skew by which the line of sight must turn to reveal a shape that is no disc */
 #define KINK_SHARE 0.4f    /* ... and of what it changes by as other corners come into view */
-#define WIDTH_SHARE 0.05f  /* of the width by which corners that change unnoticed move what is seen */
+#define WIDTH_SHARE 0.05f  /* of the width by which corners that change unnoticed move the visible outline */
 #define HEADING_ARM 0.08f  /* s/m: a yaw bias this large per m/s looks like a velocity bias */
-#define BASE_NOISE 2.0f    /* variance of a base corner's y as range of the centre, over its own */
+#define BASE_NOISE 2.0f    /* variance of a base corner's y as range of the center, over its own */
 
 typedef struct {
     goe_xz_t center; /* relative to the camera now, units of Z0 */
@@ -63,7 +63,7 @@ static bool outline_features(const goe_observation_t *obs, goe_feature_t *left, 
     return silhouette || obs->base;
 }
 
-/* (R5): the tangent's azimuth is that of the centre plus or minus asin(r/d). */
+/* (R5): the tangent's azimuth is that of the center plus or minus asin(r/d). */
 /*@ requires goe_observation_is_open(obs) && \valid_read(o) && goe_rows_hold(rows);
     requires feature < GOE_FEATURES && rows->count < GOE_ROWS_MAX; */
 static void add_tangent(const goe_observation_t *obs, const circle_t *o, goe_feature_t feature, float side, float more,
@@ -91,11 +91,11 @@ static void add_tangent(const goe_observation_t *obs, const circle_t *o, goe_fea
     by[GOE_BEHIND_STATES] -= by_skew * obs->state[GOE_SIDE_X];
 }
 
-/* (R6): the nearest point of the upper rim; seen from above the highest in the image is the farthest. */
+/* (R6): the nearest point of the upper rim; from above the highest in the image is the farthest. */
 static void add_top(const goe_observation_t *obs, const circle_t *o, float more, goe_rows_t *rows) {
     goe_gradient_t g;
     const float y = goe_observation_roof(obs);
-    const float side = obs->settings->refined.top_is_highest && y > 0.0f ? -1.0f : 1.0f;
+    const float side = obs->settings->filter.top_is_highest && y > 0.0f ? -1.0f : 1.0f;
     const float share = 1.0f - side * o->sine;
     const goe_xz_t rim = {o->center.x * share, o->center.z * share};
     float *by = goe_rows_add_level(rows, obs, rim, y, GOE_POINT_TOP, more, &g);
@@ -111,7 +111,7 @@ static void add_top(const goe_observation_t *obs, const circle_t *o, float more,
     by[GOE_TOP] = -g.y;
 }
 
-/* (R2), range over flat ground: by how much a base corner lies before or behind the centre is not known, and a whole width is
+/* (R2), range over flat ground: how far a base corner is in front of or behind the center is not known, and a whole width is
  * allowed for it. */
 /*@ requires goe_observation_is_open(obs) && \valid_read(o) && goe_rows_hold(rows);
     requires feature < GOE_FEATURES && rows->count < GOE_ROWS_MAX; */
@@ -200,8 +200,8 @@ void goe_disc_rows(const goe_observation_t *obs, goe_rows_t *rows) {
     }
     const bool wide = outline_features(obs, &left, &right);
     const float width = wide ? obs->point[right].x - obs->point[left].x : obs->state[GOE_FRONT_X] / circle.center.z;
-    const float shape = obs->settings->detector.shape_share + (obs->base || obs->stand_in ? STAND_IN_SHAPE : 0.0f);
-    if (goe_sides_see(obs->sides, GOE_SEES_LEFT | GOE_SEES_RIGHT)) {
+    const float shape = obs->settings->detector.shape_error_rel + (obs->base || obs->stand_in ? STAND_IN_SHAPE : 0.0f);
+    if (goe_sides_see(obs->sides, GOE_SIDE_LEFT | GOE_SIDE_RIGHT)) {
         add_sides(obs, &circle, shape, rows);
     } else {
         add_points(obs, &circle, shape, left, right, width, rows);
@@ -219,25 +219,25 @@ static float first_range_m(const goe_observation_t *obs, float size) {
     const goe_navigation_t *navigation = &obs->settings->navigation;
     if (obs->base && obs->height_m > 0.0f) {
         const float y = 0.5f * (obs->point[GOE_POINT_BASE_LEFT].y + obs->point[GOE_POINT_BASE_RIGHT].y);
-        const float sigma = sqrtf(goe_square(navigation->attitude_bias_deg * GOE_RAD_PER_DEG) +
+        const float sigma = sqrtf(goe_square(navigation->attitude_bias_sd_deg * GOE_RAD_PER_DEG) +
                                   goe_square(obs->white_rad) + goe_square(goe_observation_pixel(obs)));
         if (y > GROUND_SIGMAS * sigma) {
             return obs->height_m / y;
         }
     }
-    return obs->settings->refined.typical_size_m / size;
+    return obs->settings->filter.prior_width_m / size;
 }
 
 static void set_first_root(const goe_observation_t *obs, const float state[GOE_STATES], goe_triangle_t *root) {
     const goe_settings_t *settings = obs->settings;
-    const float bias = settings->navigation.attitude_bias_deg * GOE_RAD_PER_DEG;
+    const float bias = settings->navigation.attitude_bias_sd_deg * GOE_RAD_PER_DEG;
     const float top =
         goe_absolute(state[GOE_TOP]) > state[GOE_FRONT_X] ? goe_absolute(state[GOE_TOP]) : state[GOE_FRONT_X];
     goe_srif_clear(root);
     *goe_srif_at(root, GOE_BIAS_X, GOE_BIAS_X) = 1.0f / bias;
     *goe_srif_at(root, GOE_BIAS_Y, GOE_BIAS_Y) = 1.0f / bias;
     *goe_srif_at(root, GOE_BIAS_Z, GOE_BIAS_Z) =
-        1.0f / sqrtf(goe_square(bias) + goe_square(HEADING_ARM * settings->navigation.velocity_bias_m_s));
+        1.0f / sqrtf(goe_square(bias) + goe_square(HEADING_ARM * settings->navigation.velocity_bias_sd_m_s));
     *goe_srif_at(root, GOE_GROUND, GOE_GROUND) =
         1.0f / (sqrtf(goe_observation_height_variance(obs, obs->sides->usable != 0)) * state[GOE_INVERSE_RANGE]);
     *goe_srif_at(root, GOE_BEARING, GOE_BEARING) = 1.0f / BEARING_FREEDOM;
@@ -314,12 +314,12 @@ static float unlikeness(const goe_filter_t *filter, float variance, float turned
     return odds / (1.0f + odds);
 }
 
-goe_disc_doubt_t goe_disc_doubt(const goe_filter_t *filter, bool asked, goe_xz_t camera_m, goe_shape_t *shape) {
+goe_disc_doubt_t goe_disc_doubt(const goe_filter_t *filter, bool wanted, goe_xz_t camera_m, goe_shape_t *shape) {
     goe_disc_doubt_t doubt;
     const float variance = skew_variance_of(filter);
     const float skew2 = goe_square(filter->state[GOE_SIDE_X]);
     doubt.skew_variance = variance;
-    if (asked) {
+    if (wanted) {
         doubt.spread = sqrtf(goe_larger(skew2 - CHANCE_SHARE * variance, 0.0f));
         return doubt;
     }

@@ -8,12 +8,12 @@
 /* First guess: state and root from one image. False if it shows no width, or the guess is out of range. */
 bool goe_disc_start(const goe_observation_t *obs, float state[GOE_STATES], goe_triangle_t *root);
 
-/* Appends the rows of a disc. If base corners are seen, what is taken for a disc is a box whose orientation is not known
- * yet: then they tell the range over flat ground. */
+/* Appends the rows of a disc. If base corners are visible, the disc substitutes for a box whose orientation is not known
+ * yet: then they give the range over flat ground. */
 /*@ requires goe_observation_is_open(obs) && goe_rows_hold(rows) && rows->count == 0; */
 void goe_disc_rows(const goe_observation_t *obs, goe_rows_t *rows);
 
-/* Whether the ends of what is taken for a disc lie at different depths: it is no disc. */
+/* Whether the ends of an assumed disc are at different depths: it is no disc. */
 bool goe_disc_is_skewed(const goe_filter_t *filter);
 
 /* Quantities, under the condition that the disc has no skew (GOE_SIDE_X = 0). */
@@ -26,7 +26,7 @@ typedef struct {
 } goe_disc_doubt_t;
 
 /* (R40), of the latest image; the shape's place and width learn of it. asked: the settings ask for a disc, and it is one. */
-goe_disc_doubt_t goe_disc_doubt(const goe_filter_t *filter, bool asked, goe_xz_t camera_m, goe_shape_t *shape);
+goe_disc_doubt_t goe_disc_doubt(const goe_filter_t *filter, bool wanted, goe_xz_t camera_m, goe_shape_t *shape);
 
 /* The same condition on a derivative in terms of independent unit errors (goe_srif_project). Returns what it moves the quantity
  * by, one sigma, if the obstacle is no disc. */

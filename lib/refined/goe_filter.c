@@ -7,12 +7,12 @@
 #include "maths/goe_time.h"
 #include "refined/goe_mover.h"
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 
 GOE_STATIC_ASSERT(GOE_PHASE_BOX_OUTLINE <= UINT8_MAX, a_phase_fits_its_byte);
 GOE_STATIC_ASSERT((GOE_HAS_POSITION | GOE_HAS_LENGTH | GOE_HAS_HEIGHT | GOE_HAS_ORIENTATION | GOE_HAS_CENTER |
                    GOE_HAS_WIDTH) <= UINT8_MAX,
-                  what_is_known_fits_its_byte);
+                  known_mask_fits_its_byte);
 GOE_STATIC_ASSERT(GOE_BIAS_Y == GOE_BIAS_X + 1 && GOE_BIAS_Z == GOE_BIAS_X + 2, the_biases_follow_each_other);
 
 bool goe_filter_reports(const goe_filter_t *filter, const goe_settings_t *settings) {
@@ -22,7 +22,7 @@ bool goe_filter_reports(const goe_filter_t *filter, const goe_settings_t *settin
 void goe_filter_clear(goe_filter_t *filter) {
     memset(filter, 0, sizeof *filter);
     filter->axes.turn_cos = 1.0f;
-#if GOE_BESIDE
+#if GOE_AUGMENTED
     goe_mover_clear(filter);
 #endif
 }
@@ -64,11 +64,11 @@ float goe_filter_elapsed_s(const goe_filter_t *filter, const goe_motion_t *motio
 
 goe_xz_t goe_filter_moved(const goe_filter_t *filter, const goe_motion_t *motion) {
     goe_xz_t moved = {0.0f, 0.0f};
-#if GOE_BESIDE
+#if GOE_AUGMENTED
     if (filter->mover.followed) {
         const float s = goe_filter_elapsed_s(filter, motion);
-        moved.x = filter->mover.beside[GOE_BESIDE_VELOCITY_X] * s;
-        moved.z = filter->mover.beside[GOE_BESIDE_VELOCITY_Z] * s;
+        moved.x = filter->mover.augmented[GOE_AUGMENTED_VELOCITY_X] * s;
+        moved.z = filter->mover.augmented[GOE_AUGMENTED_VELOCITY_Z] * s;
     }
 #else
     (void)filter;
@@ -77,7 +77,7 @@ goe_xz_t goe_filter_moved(const goe_filter_t *filter, const goe_motion_t *motion
     return moved;
 }
 
-#if GOE_BESIDE
+#if GOE_AUGMENTED
 goe_xz_t goe_filter_gained(const goe_filter_t *filter, const goe_motion_t *motion) {
     const goe_axes_t *axes = &filter->axes;
     goe_xz_t gained = {0.0f, 0.0f};
@@ -102,8 +102,8 @@ goe_xz_t goe_filter_camera(const goe_filter_t *filter, const goe_motion_t *motio
     since.x -= moved.x;
     since.z -= moved.z;
     since = goe_xz_into(since, filter->axes.turn_cos, filter->axes.turn_sin);
-    since.x += filter->mover.beside[GOE_BESIDE_LATENCY] * gained.x;
-    since.z += filter->mover.beside[GOE_BESIDE_LATENCY] * gained.z;
+    since.x += filter->mover.augmented[GOE_AUGMENTED_LATENCY] * gained.x;
+    since.z += filter->mover.augmented[GOE_AUGMENTED_LATENCY] * gained.z;
     return since;
 }
 #endif
@@ -114,7 +114,7 @@ void goe_filter_place_axes(goe_filter_t *filter, const goe_motion_t *motion) {
     filter->axes.turn_sin = 0.0f;
     filter->axes.start_dx_m = motion->dx_m;
     filter->axes.start_dz_m = motion->dz_m;
-#if GOE_BESIDE
+#if GOE_AUGMENTED
     filter->paced = false;
     goe_filter_pace(filter, motion);
 #endif

@@ -30,14 +30,14 @@ GOE_STATIC_ASSERT(GOE_STATE_COUNT == GOE_STATES, every_state_has_a_name);
 
 /* What the same places hold while the obstacle is a prism, see goe_prism.h. All over Z0. */
 enum {
-    GOE_PRISM_DEPTH = GOE_SIDE_X,          /* log of the depth along Z over the width */
-    GOE_PRISM_HALF = GOE_FRONT_X,          /* half width across Z */
-    GOE_PRISM_TOP = GOE_DEPTH_DIFFERENCE,  /* like GOE_TOP */
-    GOE_PRISM_UNSEEN = GOE_TOP,            /* added to GOE_PRISM_DEPTH: not estimated, only its sigma counts */
-    GOE_PRISM_ESTIMATED = GOE_PRISM_UNSEEN /* states before this one are estimated */
+    GOE_PRISM_DEPTH = GOE_SIDE_X,              /* log of the depth along Z over the width */
+    GOE_PRISM_HALF = GOE_FRONT_X,              /* half width across Z */
+    GOE_PRISM_TOP = GOE_DEPTH_DIFFERENCE,      /* like GOE_TOP */
+    GOE_PRISM_UNOBSERVED = GOE_TOP,            /* added to GOE_PRISM_DEPTH: not estimated, only its sigma counts */
+    GOE_PRISM_ESTIMATED = GOE_PRISM_UNOBSERVED /* states before this one are estimated */
 };
 
-GOE_STATIC_ASSERT(GOE_PRISM_UNSEEN == GOE_STATES - 1, what_is_not_estimated_comes_last);
+GOE_STATIC_ASSERT(GOE_PRISM_UNOBSERVED == GOE_STATES - 1, unestimated_states_come_last);
 
 /* Places of the states in goe_substitution_t. */
 enum { GOE_OF_GROUND, GOE_OF_BEARING, GOE_OF_RANGE, GOE_OF_SIDE, GOE_OF_FRONT, GOE_OF_DEPTH, GOE_OF_TOP };
@@ -48,11 +48,11 @@ GOE_STATIC_ASSERT(GOE_KEPT == GOE_SIDE_X, the_first_states_are_those_that_are_ke
 
 /* The phases, and what leads from one to the next.
  *
- *           left and right, or base_left and base_right seen
+ *           left and right, or base_left and base_right visible
  *  PRISM <--- NONE ------------------------> DISC
  *              ^                              |  \ deeper at one end, range known, no base edge: goe_chord_start
  *              |                              |   \-> CHORD -- an end has left it, a face came into view: learns that end
- *   captured,  |   base corners agree:        |         |  \    anew, stays
+ *   captured,  |   base corners agree:        |         |  \   again, stays
  *   not sane   |   goe_box_start              |<--------/   \ ... a face turned away: goe_chord_change
  *   (health)   |                     one face | two faces    \
  *              |                         v        v           v
@@ -60,15 +60,15 @@ GOE_STATIC_ASSERT(GOE_KEPT == GOE_SIDE_X, the_first_states_are_those_that_are_ke
  *              |                      second face in view: goe_box_change
  *              \--- from every phase
  *
- * PRISM: an upright bounding box with left and right seen, no base corners, no line asked for; it stays one.
+ * PRISM: an upright bounding box with left and right visible, no base corners, no line asked for; it stays one.
  *
  * A box may also exchange the names of front and side, without leaving its phase (goe_box_change). */
 typedef enum {
     GOE_PHASE_NONE,       /* not started */
     GOE_PHASE_PRISM,      /* something upright, by its bounding boxes */
     GOE_PHASE_DISC,       /* a disc, also as a stand-in for a box whose orientation is not known yet */
-    GOE_PHASE_CHORD,      /* the line between the silhouette's ends: a box of which no base corner was seen */
-    GOE_PHASE_BOX_FACE,   /* a box of which one face was seen: its length is held, not estimated */
+    GOE_PHASE_CHORD,      /* the line between the silhouette's ends: a box without a visible base corner */
+    GOE_PHASE_BOX_FACE,   /* a box with one visible face: its length is fixed, not estimated */
     GOE_PHASE_BOX,        /* a box by its base corners */
     GOE_PHASE_BOX_OUTLINE /* a box by its silhouette alone */
 } goe_phase_t;
@@ -82,7 +82,7 @@ bool goe_filter_reports(const goe_filter_t *filter, const goe_settings_t *settin
 /* Forgets the track. */
 void goe_filter_clear(goe_filter_t *filter);
 
-/* Enters a phase: what counts images of the phase begins anew. */
+/* Enters a phase: counters of the phase begin again. */
 void goe_filter_enter(goe_filter_t *filter, goe_phase_t phase);
 
 /* Images in a row; saturates. Returns the new count. */
@@ -93,7 +93,7 @@ static inline unsigned goe_count_image(uint8_t *count) {
 
 /* ------------------------------------------------------------------------------------------------ root and inverse -- */
 
-/* Declares the inverse up to date: drift_rad2 and walk2, which stand beside it, begin at 0 again. */
+/* Declares the inverse up to date: drift_rad2 and walk2, which are kept separately, begin at 0 again. */
 void goe_filter_settle(goe_filter_t *filter);
 
 /* Brings the inverse up to date with R. */
@@ -125,7 +125,7 @@ float goe_filter_elapsed_s(const goe_filter_t *filter, const goe_motion_t *motio
 
 /* goe_filter_camera(): the camera since the filter's start, the state's axes, m: as an obstacle sees it that moves, and freed of
  * what the poses are late by. */
-#if GOE_BESIDE
+#if GOE_AUGMENTED
 goe_xz_t goe_filter_camera(const goe_filter_t *filter, const goe_motion_t *motion);
 
 /* The own velocity less that at the filter's start, m/s, the state's axes. */

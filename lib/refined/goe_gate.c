@@ -9,7 +9,7 @@
 #include "maths/goe_angle.h"
 #include "maths/goe_scalar.h"
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 
 typedef struct {
     size_t row[GOE_ROWS_MAX]; /* by residual */
@@ -57,18 +57,18 @@ static float shift_variance(const goe_rows_t *rows, size_t row, size_t middle, f
     return sum;
 }
 
-#if GOE_BESIDE
-/* Of what is estimated beside the state. It moves the points of an image nearly alike, and is left out of their differences. */
-static float beside_variance(const goe_filter_t *filter, const float *row, const float weight[GOE_STATES]) {
-    float part[GOE_BESIDE];
-    goe_srif_beside(&filter->inverse, weight, &row[GOE_BESIDE_COLUMN], part);
-    return goe_srif_beside_dot(part, part);
+#if GOE_AUGMENTED
+/* Of the augmented states. They move the points of an image nearly equally, and are left out of their differences. */
+static float augmented_variance(const goe_filter_t *filter, const float *row, const float weight[GOE_STATES]) {
+    float part[GOE_AUGMENTED];
+    goe_srif_augmented(&filter->inverse, weight, &row[GOE_AUGMENTED_COLUMN], part);
+    return goe_srif_augmented_dot(part, part);
 }
 #endif
 
 GOE_STATIC_ASSERT(GOE_STATES % 5 == 0, a_difference_of_rows_is_taken_by_five_states_at_a_time);
 
-/* (R16): normalised square of a row's residual, or of the difference of two rows'. */
+/* (R16): normalized square of a row's residual, or of the difference of two rows'. */
 /*@ requires \valid_read(filter) && goe_rows_hold(rows) && row < rows->count && middle < rows->count; */
 static float innovation(const goe_filter_t *filter, const goe_rows_t *rows, size_t row, size_t middle) {
     float weight[GOE_STATES];
@@ -97,9 +97,9 @@ static float innovation(const goe_filter_t *filter, const goe_rows_t *rows, size
                          weight[GOE_BIAS_Z] * weight[GOE_BIAS_Z];
     const float gained = turned * filter->drift_rad2 + weight[GOE_BEARING] * weight[GOE_BEARING] * filter->walk2;
     float known = goe_srif_variance(&filter->inverse, weight) + gained;
-#if GOE_BESIDE
-    if (row == middle && goe_inverse_beside(&filter->inverse) > 0) {
-        known += beside_variance(filter, a, weight);
+#if GOE_AUGMENTED
+    if (row == middle && goe_inverse_augmented(&filter->inverse) > 0) {
+        known += augmented_variance(filter, a, weight);
     }
 #endif
     return residual * residual / (own + white * white * attitude + known);
@@ -123,11 +123,11 @@ static void note_odd(const goe_rows_t *rows, const group_t *group, size_t row, f
 static void judge(const goe_settings_t *settings, const goe_filter_t *filter, const goe_rows_t *rows, bool along_x,
                   belief_t *belief) {
     group_t group;
-    const float gate = settings->refined.gate_sigma;
-    const float huber = settings->refined.huber_sigma;
+    const float gate = settings->filter.gate_sigma;
+    const float huber = settings->filter.huber_sigma;
     gather(rows, along_x, &group);
     const float alone = group.count > 0 ? innovation(filter, rows, group.middle, group.middle) : 0.0f;
-    const bool common = alone <= gate * gate; /* a middle that is off itself tells nothing of the others */
+    const bool common = alone <= gate * gate; /* a wrong middle is no evidence about the others */
     for (size_t i = 0; i < group.count; i++) {
         const size_t row = group.row[i];
         const size_t feature = rows->feature[row];
@@ -144,11 +144,11 @@ static void judge(const goe_settings_t *settings, const goe_filter_t *filter, co
     }
 }
 
-GOE_STATIC_ASSERT((GOE_COLUMNS - GOE_BESIDE) % 7 == 0, a_row_is_scaled_by_seven_columns_at_a_time);
+GOE_STATIC_ASSERT((GOE_COLUMNS - GOE_AUGMENTED) % 7 == 0, a_row_is_scaled_by_seven_columns_at_a_time);
 
 /* Partly written out: done for every row of every image, counting costs as much as multiplying. */
 static void scale_row(float row[GOE_COLUMNS], float weight) {
-    for (float *c = row; c < row + (GOE_COLUMNS - GOE_BESIDE); c += 7) {
+    for (float *c = row; c < row + (GOE_COLUMNS - GOE_AUGMENTED); c += 7) {
         c[0] *= weight;
         c[1] *= weight;
         c[2] *= weight;
@@ -157,8 +157,8 @@ static void scale_row(float row[GOE_COLUMNS], float weight) {
         c[5] *= weight;
         c[6] *= weight;
     }
-#if GOE_BESIDE
-    for (size_t c = GOE_COLUMNS - GOE_BESIDE; c < GOE_COLUMNS; c++) {
+#if GOE_AUGMENTED
+    for (size_t c = GOE_COLUMNS - GOE_AUGMENTED; c < GOE_COLUMNS; c++) {
         row[c] *= weight;
     }
 #endif

@@ -5,11 +5,11 @@
 
 #include "maths/goe_scalar.h"
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 
 #define UNKNOWN_SD_M 1.0e3f /* of a height that was not set */
 #define GROWN 1.0e-3f       /* of the information of the heights: less waits for more */
-#define NARROW 0.95f        /* of ground_scale: told too well */
+#define NARROW 0.95f        /* of ground_scale: information too strong */
 #define WIDE 1.05f          /* ... not well enough */
 #define SCALE_MIN 0.05f     /* a smaller one counts as this */
 
@@ -40,15 +40,15 @@ static void average(goe_datum_t *datum, bool started, float down_m, float height
 
 void goe_ground_read(goe_filter_t *filter, const goe_navigation_t *navigation, const goe_view_t *view) {
     goe_datum_t *datum = &filter->datum;
-    const bool white = navigation->height_white_m > 0.0f;
-    if (!white && view->image->box.seen == 0 && !filter->has_datum) {
+    const bool white = navigation->height_white_sd_m > 0.0f;
+    if (!white && view->image->box.sides == 0 && !filter->has_datum) {
         return; /* points alone take each image's height as it is */
     }
     const float down_m = camera_down_m(view);
     const bool lacks_height = goe_ground_lacks_height(view->image);
     if (!filter->has_datum) {
         datum->ground_m = view->motion->height_m + down_m;
-        datum->sd_m = lacks_height ? UNKNOWN_SD_M : view->image->noise.height_m;
+        datum->sd_m = lacks_height ? UNKNOWN_SD_M : view->image->noise.height_sd_m;
         filter->has_datum = true;
     }
     if (white && !lacks_height) {
@@ -57,7 +57,7 @@ void goe_ground_read(goe_filter_t *filter, const goe_navigation_t *navigation, c
     datum->height_m = datum->ground_m - down_m;
 }
 
-/* --------------------------------------------------------------------------------------------------------------- told -- */
+/* --------------------------------------------------------------------------------------------------------------- known -- */
 
 void goe_ground_start(goe_filter_t *filter, float variance_m2) {
     filter->datum.first = 1.0f / variance_m2;
@@ -74,7 +74,8 @@ void goe_ground_start(goe_filter_t *filter, float variance_m2) {
 void goe_ground_climb(goe_filter_t *filter, const goe_navigation_t *navigation) {
     float direction[GOE_STATES] = {0.0f};
     const float grown2 = goe_square(filter->flown_m) - goe_square(filter->sloped_m);
-    const float sigma = navigation->slope * filter->state[GOE_INVERSE_RANGE] * sqrtf(goe_larger(grown2, 0.0f));
+    const float sigma =
+        navigation->terrain_slope_sd * filter->state[GOE_INVERSE_RANGE] * sqrtf(goe_larger(grown2, 0.0f));
     if (!(sigma > 0.0f) || goe_ground_is_steady(filter, navigation)) {
         return;
     }
@@ -98,7 +99,7 @@ void goe_ground_widen(goe_filter_t *filter) {
     filter->ground_scale = 1.0f;
 }
 
-/* Of what is told first. */
+/* Of the first height. */
 static int add_first(goe_filter_t *filter, goe_rows_t *rows) {
     const float scale = filter->ground_scale;
     if (filter->phase == GOE_PHASE_PRISM || !(scale >= WIDE) || rows->count >= GOE_ROWS_MAX) {
@@ -113,8 +114,8 @@ static int add_first(goe_filter_t *filter, goe_rows_t *rows) {
     return 1;
 }
 
-/* All heights so far tell the offset of the first with the information 1/(constant error^2 + white^2/n). Of that a row adds
- * what it has grown by; the constant error is in all of them, and is not counted twice. */
+/* All heights so far give the offset of the first with the information 1/(constant error^2 + white^2/n). A row adds
+ * only its growth; the constant error is in all of them, and is not counted twice. */
 static int add_grown(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
     goe_datum_t *datum = &filter->datum;
     const float q = filter->state[GOE_INVERSE_RANGE];
@@ -135,8 +136,8 @@ static int add_grown(goe_filter_t *filter, const goe_observation_t *obs, goe_row
     return 1;
 }
 
-int goe_ground_tell(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
-    const bool white = obs->settings->navigation.height_white_m > 0.0f;
+int goe_ground_row(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
+    const bool white = obs->settings->navigation.height_white_sd_m > 0.0f;
     if ((filter->known & GOE_HAS_POSITION) == 0u) {
         return 0;
     }

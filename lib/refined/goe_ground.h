@@ -1,4 +1,4 @@
-/* The camera's height above the obstacle's ground: its readings, and what they tell the filter. SPDX-License-Identifier: MIT */
+/* The camera's height above the obstacle's ground: its readings, and their rows for the filter. SPDX-License-Identifier: MIT */
 #ifndef GOE_GROUND_H
 #define GOE_GROUND_H
 
@@ -11,34 +11,34 @@ void goe_ground_read(goe_filter_t *filter, const goe_navigation_t *navigation, c
 
 /* Whether an image with a box comes without a height: nobody flies at exactly 0, and a field that was not set is 0. */
 static inline bool goe_ground_lacks_height(const goe_image_t *image) {
-    return image->box.seen != 0 && goe_magnitude(image->pose.height_m) == 0u;
+    return image->box.sides != 0 && goe_magnitude(image->pose.height_m) == 0u;
 }
 
 /* Whether the height moves by the changes of down. */
 static inline bool goe_ground_is_steady(const goe_filter_t *filter, const goe_navigation_t *navigation) {
-    return filter->phase == GOE_PHASE_PRISM || navigation->height_white_m > 0.0f;
+    return filter->phase == GOE_PHASE_PRISM || navigation->height_white_sd_m > 0.0f;
 }
 
 /* The autopilot's down jumped by this. */
 static inline void goe_ground_move(goe_filter_t *filter, float down_m) { filter->datum.ground_m += down_m; }
 
-/* The filter starts: its model has told it the height so far with this variance, m2. */
+/* The filter starts: its model already has the height so far with this variance, m2. */
 void goe_ground_start(goe_filter_t *filter, float variance_m2);
 
 /* The camera flew on: the slope of the ground below it. */
 void goe_ground_climb(goe_filter_t *filter, const goe_navigation_t *navigation);
 
-/* What is known of the height beforehand is in metres, its state in units of Z0: as the range becomes known, their ratio
- * moves. This keeps that ratio, after 1/Z0 moved from what it was before. */
+/* Prior information on the height is in meters, its state in units of Z0: as the range becomes known, their ratio
+ * moves. This keeps that ratio, after 1/Z0 moved from its earlier value. */
 static inline void goe_ground_follow(goe_filter_t *filter, float inverse_range_before) {
     filter->ground_scale *= inverse_range_before / filter->state[GOE_INVERSE_RANGE];
 }
 
-/* Takes back what was told too well by that ratio, before the rows of an image are taken; what was not told well enough is
- * a row of goe_ground_tell(). A prism's foot tells its first range, which is near enough: nothing is taken back there. */
+/* Removes information that this ratio made too strong, before the rows of an image are taken; missing information is
+ * a row of goe_ground_row(). A prism's foot gives its first range, which is near enough: nothing is removed there. */
 void goe_ground_widen(goe_filter_t *filter);
 
-/* Appends what the heights tell beyond what they have told, as far as there is room. Returns how many rows. */
-int goe_ground_tell(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows);
+/* Appends the information of the heights beyond that already taken, if space remains. Returns how many rows. */
+int goe_ground_row(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows);
 
 #endif

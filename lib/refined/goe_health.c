@@ -4,7 +4,7 @@
 #include "maths/goe_scalar.h"
 #include "refined/goe_chord.h"
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 
 #define RECENT_MEMORY 0.125f /* of one image in recent_nis */
 #define MEAN_IMAGES 64       /* that mean_nis remembers */
@@ -44,9 +44,9 @@ static bool is_poor(goe_verdict_t verdict) {
 static void average_track(goe_health_t *health, float ratio) {
     const int before = health->images > 0 ? health->images : 0;
     health->images = (int16_t)(before < INT16_MAX ? before + 1 : INT16_MAX);
-    const int heard = health->images + MEAN_SEEDS;
-    average(&health->mean_nis, ratio, 1.0f / (float)(heard < MEAN_IMAGES ? heard : MEAN_IMAGES));
-    average(&health->excess, ratio - 1.0f, 1.0f / (float)heard);
+    const int counted = health->images + MEAN_SEEDS;
+    average(&health->mean_nis, ratio, 1.0f / (float)(counted < MEAN_IMAGES ? counted : MEAN_IMAGES));
+    average(&health->excess, ratio - 1.0f, 1.0f / (float)counted);
 }
 
 void goe_health_expect(goe_health_t *health) {
@@ -59,7 +59,7 @@ void goe_health_take(goe_health_t *health, goe_verdict_t verdict, float nis) {
     health->nis = goe_within(nis, NIS_MAX) ? nis : NIS_MAX;
     health->nis_rows = (int16_t)verdict.rows;
     const float ratio = health->nis / (float)verdict.rows;
-    average_track(health, is_poor(verdict) ? RATIO_MAX : ratio); /* what is left fits, and says nothing */
+    average_track(health, is_poor(verdict) ? RATIO_MAX : ratio); /* the rest fits, and is not informative */
     if (health->recent_nis < 0.0f) {
         health->recent_nis = 1.0f;
     } else {
@@ -130,7 +130,7 @@ static void count_failure(goe_filter_t *filter, const goe_settings_t *settings) 
     }
 }
 
-/* One restart is an outlier's, or a crossing's; two of them so soon are none of a good track. */
+/* One restart is an outlier's, or a crossing's; two of them so soon mean a bad track. */
 static void count_restart(goe_health_t *health) {
     health->adrift = health->adrift || (health->steady > 0 && health->steady < RESTART_IMAGES);
     health->steady = 1;

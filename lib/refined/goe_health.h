@@ -1,5 +1,5 @@
 /* How well the images fit: the running means of the NIS, points that are refused again and again, and when the filter has to
- * start anew. SPDX-License-Identifier: MIT */
+ * start again. SPDX-License-Identifier: MIT */
 #ifndef GOE_HEALTH_H
 #define GOE_HEALTH_H
 
@@ -8,15 +8,15 @@
 /* Before an image: it has given nothing yet. */
 void goe_health_expect(goe_health_t *health);
 
-/* After the update by an image: its normalised innovation squared, of verdict->rows rows. */
+/* After the update by an image: its normalized innovation squared, of verdict->rows rows. */
 void goe_health_take(goe_health_t *health, goe_verdict_t verdict, float nis);
 
 /* ... or, if every point of it was refused: nothing could fit worse. */
 void goe_health_take_refused(goe_health_t *health, goe_verdict_t verdict);
 
-/* Judges the filter after an image: counts what was refused, frees the top if that alone was refused for some images. Returns
- * whether the filter has to start anew: points that
- * are refused image after image captured the state when they were outliers, or the state is none of an obstacle. A box of base
+/* Judges the filter after an image: counts refused points, frees the top if that alone was refused for some images. Returns
+ * whether the filter has to start again: points that
+ * are refused image after image captured the state when they were outliers, or the state is impossible. A box of base
  * corners that proved wrong so more than once loses them. */
 bool goe_health_judge(goe_filter_t *filter, const goe_settings_t *settings, goe_verdict_t verdict);
 

@@ -10,11 +10,11 @@
 #include "refined/goe_ground.h"
 #include "refined/goe_prism.h"
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 
-#define NEAR_IMAGES 8u /* in which a near corner that is not seen is a missed one, not one that is not there */
+#define NEAR_IMAGES 8u /* in which an invisible near corner is a missed one, not a nonexistent one */
 
-/* Base corners tell more than a box: with them it starts as a disc that stands in for one. */
+/* Base corners are more informative than a box: with them it starts as a disc that substitutes for one. */
 static bool shows_prism(const goe_settings_t *settings, const goe_view_t *view) {
     const goe_point_t *p = view->point;
     return view->sides.usable != 0 && settings->model != GOE_MODEL_LINE &&

@@ -27,8 +27,8 @@ void goe_model_recall(goe_filter_t *filter, const goe_observation_t *obs, goe_ro
 /* After the gate. */
 void goe_model_learn(goe_filter_t *filter, goe_rows_t *rows, const goe_verdict_t *verdict);
 
-/* The update by whitened rows, and what follows the change of the state. change: of it and of what is beside it. Returns the
- * normalised innovation squared. */
+/* The update by whitened rows, and the consequences of the change of the state. change: of it and of the augmented states. Returns the
+ * normalized innovation squared. */
 float goe_model_update(goe_filter_t *filter, float nuisance_root, goe_rows_t *rows, float change[GOE_UNKNOWNS]);
 
 /* Quantities with their derivatives. */

@@ -7,11 +7,11 @@
 #include "maths/goe_scalar.h"
 #include "refined/goe_gate.h"
 
-#if GOE_BESIDE
+#if GOE_AUGMENTED
 
 #define LATENCY_PRIOR_S 0.05f /* one sigma of what poses are late by before anything is known */
 #define SPREAD_GROWN 4.0f     /* of a velocity's variance, when the obstacle begins to be followed */
-#define LATE_MIN_S 0.02f      /* poses are told as late from here on ... */
+#define LATE_MIN_S 0.02f      /* poses are reported as late from here on ... */
 #define LATE_SIGMAS 2.7f      /* ... and if it is that much more than nothing */
 #define RATE_PREDICTED 0.8f   /* of a rate of turn, by the one before it: the mean over usual swaying */
 #define MOVES_CHI2 25.0f      /* a velocity's two degrees of freedom: 4e-6 by chance, if nothing but noise is wrong */
@@ -19,46 +19,47 @@
 #define REST_CHI2 9.0f        /* something moves if a latency leaves at least this unexplained ... */
 #define REST_SHARE 0.15f      /* ... and a velocity at most this share of that */
 #define LATE_SHARE 0.3f       /* poses are late only if a velocity leaves more than this share of that */
-#define MOVING_SIGMAS2 9.0f   /* what is late moves as well if its velocity is that much more than nothing */
-#define MOVES_MIN_M_S 1.0f    /* what is slower is taken for none */
+#define MOVING_SIGMAS2 9.0f   /* a late track moves as well if its velocity is that significant */
+#define MOVES_MIN_M_S 1.0f    /* a slower motion counts as none */
 #define MOVES_S 0.4f          /* for which it says so, image after image ... */
 #define MOVES_IMAGES 3        /* ... of which there are at least so many */
-#define SETTLED_S 1.4f        /* that images told something: less says nothing of a velocity */
+#define SETTLED_S 1.4f        /* of informative images: less gives no velocity */
 #define SINCE_MAX_S 0.5f      /* a gap between images counts as that */
 #define COLUMN_MAX 1.0e3f     /* focal lengths per second, or per m/s: beyond that no flight is */
-#define BESIDE_MAX 1.0e9f /* of what is beside the state, and of its rows of the triangle: more is none of a flight */
-#define TIME_MIN_S 0.1f   /* keeps a walk over time finite */
+#define AUGMENTED_MAX                                                                                                  \
+    1.0e9f              /* of the augmented states, and of their rows of the triangle: more is impossible in a flight */
+#define TIME_MIN_S 0.1f /* keeps a walk over time finite */
 #define DETERMINANT_MIN 1.0e-5f /* of a covariance of two, over the product of the variances */
 
-/*@ requires \valid(root) && i <= j < GOE_BESIDE; */
-static float *beside_at(goe_triangle_t *root, size_t i, size_t j) {
+/*@ requires \valid(root) && i <= j < GOE_AUGMENTED; */
+static float *augmented_at(goe_triangle_t *root, size_t i, size_t j) {
     return goe_srif_at(root, GOE_STATES + i, GOE_STATES + j);
 }
 
-static void forget_beside(goe_triangle_t *root) {
-    const size_t first = goe_srif_beside_row();
+static void forget_augmented(goe_triangle_t *root) {
+    const size_t first = goe_srif_augmented_row();
     memset(&root->element[first], 0, sizeof root->element - first * sizeof root->element[0]);
     memset(root->right, 0, sizeof root->right);
 }
 
 /* Of the inverse: the part that unknown i has in independent error j. */
-/*@ requires \valid_read(inverse) && i < GOE_BESIDE && j < GOE_BESIDE; */
+/*@ requires \valid_read(inverse) && i < GOE_AUGMENTED && j < GOE_AUGMENTED; */
 static float part_of(const goe_inverse_t *inverse, size_t i, size_t j) {
     return i <= j ? inverse->element[goe_inverse_column(GOE_STATES + j) + GOE_STATES + i] : 0.0f;
 }
 
 void goe_mover_clear(goe_filter_t *filter) {
     memset(&filter->mover, 0, sizeof filter->mover);
-    forget_beside(&filter->root);
-    *beside_at(&filter->root, GOE_BESIDE_LATENCY, GOE_BESIDE_LATENCY) = 1.0f / LATENCY_PRIOR_S;
+    forget_augmented(&filter->root);
+    *augmented_at(&filter->root, GOE_AUGMENTED_LATENCY, GOE_AUGMENTED_LATENCY) = 1.0f / LATENCY_PRIOR_S;
     filter->root.estimated = 0;
     filter->inverse.estimated = 0;
 }
 
 void goe_mover_doubt(goe_filter_t *filter) {
-    for (size_t i = GOE_BESIDE_VELOCITY_X; i < GOE_BESIDE && !filter->mover.followed; i++) {
-        for (size_t j = i; j < GOE_BESIDE; j++) {
-            *beside_at(&filter->root, i, j) = 0.0f;
+    for (size_t i = GOE_AUGMENTED_VELOCITY_X; i < GOE_AUGMENTED && !filter->mover.followed; i++) {
+        for (size_t j = i; j < GOE_AUGMENTED; j++) {
+            *augmented_at(&filter->root, i, j) = 0.0f;
         }
         filter->root.right[i] = 0.0f;
     }
@@ -75,14 +76,14 @@ void goe_mover_columns(const goe_observation_t *obs, goe_rows_t *rows) {
     const float q = obs->state[GOE_INVERSE_RANGE];
     for (size_t i = 0; i < rows->count; i++) {
         float *row = rows->matrix->row[i];
-        float *by = &row[GOE_BESIDE_COLUMN];
-        const goe_xz_t place = {by[GOE_BESIDE_VELOCITY_X], by[GOE_BESIDE_VELOCITY_Z]};
+        float *by = &row[GOE_AUGMENTED_COLUMN];
+        const goe_xz_t place = {by[GOE_AUGMENTED_VELOCITY_X], by[GOE_AUGMENTED_VELOCITY_Z]};
         const goe_xz_t moved = goe_xz_out_of(place, obs->turn_cos, obs->turn_sin);
         const float *rate = obs->rate_before_rad_s;
         const float turned = row[0] * rate[1] + row[1] * rate[0] + row[2] * rate[2];
-        by[GOE_BESIDE_LATENCY] = sane(-RATE_PREDICTED * turned - q * goe_xz_dot(place, obs->gained_m_s));
-        by[GOE_BESIDE_VELOCITY_X] = sane(moved.x * q * obs->elapsed_s);
-        by[GOE_BESIDE_VELOCITY_Z] = sane(moved.z * q * obs->elapsed_s);
+        by[GOE_AUGMENTED_LATENCY] = sane(-RATE_PREDICTED * turned - q * goe_xz_dot(place, obs->gained_m_s));
+        by[GOE_AUGMENTED_VELOCITY_X] = sane(moved.x * q * obs->elapsed_s);
+        by[GOE_AUGMENTED_VELOCITY_Z] = sane(moved.z * q * obs->elapsed_s);
     }
 }
 
@@ -91,29 +92,29 @@ void goe_mover_columns(const goe_observation_t *obs, goe_rows_t *rows) {
 float goe_mover_variance(const goe_filter_t *filter, goe_xz_t along) {
     const goe_inverse_t *inverse = &filter->inverse;
     float sum = 0.0f;
-    const size_t estimated = goe_inverse_beside(inverse);
-    for (size_t j = GOE_BESIDE_VELOCITY_X; j < estimated; j++) {
-        sum += goe_square(along.x * part_of(inverse, GOE_BESIDE_VELOCITY_X, j) +
-                          along.z * part_of(inverse, GOE_BESIDE_VELOCITY_Z, j));
+    const size_t estimated = goe_inverse_augmented(inverse);
+    for (size_t j = GOE_AUGMENTED_VELOCITY_X; j < estimated; j++) {
+        sum += goe_square(along.x * part_of(inverse, GOE_AUGMENTED_VELOCITY_X, j) +
+                          along.z * part_of(inverse, GOE_AUGMENTED_VELOCITY_Z, j));
     }
     return sum;
 }
 
 float goe_mover_own_variance(const goe_navigation_t *navigation, float elapsed_s) {
-    return goe_square(navigation->velocity_bias_m_s) +
-           goe_square(navigation->position_walk_m) / goe_larger(elapsed_s, TIME_MIN_S);
+    return goe_square(navigation->velocity_bias_sd_m_s) +
+           goe_square(navigation->position_walk_sd_m) / goe_larger(elapsed_s, TIME_MIN_S);
 }
 
 float goe_mover_latency_sd(const goe_filter_t *filter) {
     const goe_inverse_t *inverse = &filter->inverse;
     const float wider = goe_larger(filter->health.mean_nis, 1.0f);
     float variance = 0.0f;
-    const size_t estimated = goe_inverse_beside(inverse);
+    const size_t estimated = goe_inverse_augmented(inverse);
     for (size_t j = 0; j < estimated; j++) {
-        variance += goe_square(part_of(inverse, GOE_BESIDE_LATENCY, j));
+        variance += goe_square(part_of(inverse, GOE_AUGMENTED_LATENCY, j));
     }
     if (estimated == 0) {
-        variance = 1.0f / goe_square(filter->root.element[goe_srif_beside_row()]);
+        variance = 1.0f / goe_square(filter->root.element[goe_srif_augmented_row()]);
     }
     return sqrtf(wider * variance);
 }
@@ -128,15 +129,15 @@ typedef struct {
     float latency_s;                   /* if nothing moves */
     float by_latency;                  /* what that explains of the sum of squares ... */
     float rest_latency, rest_velocity; /* ... and what the one or the other leaves */
-    float wider;                       /* by what the variance of the residuals is larger than told */
+    float wider;                       /* excess of the variance of the residuals over the configured one */
 } fit_t;
 
-static bool fit_beside(const goe_filter_t *filter, const goe_observation_t *obs, fit_t *fit) {
-    const float *r = &filter->root.element[goe_srif_beside_row()];
-    const float t[GOE_BESIDE][GOE_BESIDE] = {{r[0], r[1], r[2]}, {0.0f, r[3], r[4]}, {0.0f, 0.0f, r[5]}};
-    const float latency_s = filter->mover.beside[GOE_BESIDE_LATENCY];
-    const float z[GOE_BESIDE] = {filter->root.right[0] + t[0][0] * latency_s, filter->root.right[1],
-                                 filter->root.right[2]};
+static bool fit_augmented(const goe_filter_t *filter, const goe_observation_t *obs, fit_t *fit) {
+    const float *r = &filter->root.element[goe_srif_augmented_row()];
+    const float t[GOE_AUGMENTED][GOE_AUGMENTED] = {{r[0], r[1], r[2]}, {0.0f, r[3], r[4]}, {0.0f, 0.0f, r[5]}};
+    const float latency_s = filter->mover.augmented[GOE_AUGMENTED_LATENCY];
+    const float z[GOE_AUGMENTED] = {filter->root.right[0] + t[0][0] * latency_s, filter->root.right[1],
+                                    filter->root.right[2]};
     const float xx = t[0][1] * t[0][1] + t[1][1] * t[1][1];
     const float xz = t[0][1] * t[0][2] + t[1][1] * t[1][2];
     const float zz = t[0][2] * t[0][2] + t[1][2] * t[1][2] + t[2][2] * t[2][2];
@@ -164,12 +165,12 @@ static bool fit_beside(const goe_filter_t *filter, const goe_observation_t *obs,
     return true;
 }
 
-/* Something in the image tells a scale that does not hang on the obstacle standing still: its foot, by the height. */
+/* The image gives a scale that does not require a static obstacle: its foot, by the height. */
 static bool has_scale(const goe_filter_t *filter, const goe_observation_t *obs) {
-    return filter->phase == GOE_PHASE_PRISM ? goe_sides_see(obs->sides, GOE_SEES_BOTTOM) : obs->base;
+    return filter->phase == GOE_PHASE_PRISM ? goe_sides_see(obs->sides, GOE_SIDE_BOTTOM) : obs->base;
 }
 
-/* Of the covariance (x, both; both, z). One that is nearer to singular than float can tell is taken for as wide as it may be. */
+/* Of the covariance (x, both; both, z). One too close to singular for float is taken as wide as it may be. */
 static float determinant_of(float x, float both, float z) {
     return goe_larger(x * z - both * both, DETERMINANT_MIN * (x * z));
 }
@@ -183,9 +184,9 @@ static bool is_unlike_static(const fit_t *fit, float least) {
            fit->rest_latency > REST_CHI2 * fit->wider && fit->rest_velocity < REST_SHARE * fit->rest_latency;
 }
 
-static bool is_seen_to_move(goe_filter_t *filter, const fit_t *fit, float since_s) {
+static bool is_moving(goe_filter_t *filter, const fit_t *fit, float since_s) {
     goe_mover_t *m = &filter->mover;
-    if (!(m->heard_s > SETTLED_S) ||
+    if (!(m->observed_s > SETTLED_S) ||
         !is_unlike_static(fit, filter->phase == GOE_PHASE_PRISM ? BOXES_CHI2 : MOVES_CHI2)) {
         m->unlike_s = 0.0f;
         m->images = 0;
@@ -195,8 +196,8 @@ static bool is_seen_to_move(goe_filter_t *filter, const fit_t *fit, float since_
     return goe_count_image(&m->images) >= MOVES_IMAGES && m->unlike_s >= MOVES_S;
 }
 
-/* (R37): from the velocity that the images spoke of, as uncertain as it was, and more, as it was linearised at a place that was
- * wrong; the latency is open again. */
+/* (R37): from the velocity that the images showed, with more than its uncertainty, as it was linearized at a wrong
+ * place; the latency is open again. */
 static void follow(goe_filter_t *filter, const fit_t *fit) {
     goe_mover_t *m = &filter->mover;
     goe_triangle_t *root = &filter->root;
@@ -208,15 +209,15 @@ static void follow(goe_filter_t *filter, const fit_t *fit) {
     m->moves = true;
     m->followed = true;
     m->late = false;
-    m->beside[GOE_BESIDE_LATENCY] = 0.0f;
-    m->beside[GOE_BESIDE_VELOCITY_X] = fit->velocity_m_s.x;
-    m->beside[GOE_BESIDE_VELOCITY_Z] = fit->velocity_m_s.z;
-    forget_beside(root);
-    *beside_at(root, GOE_BESIDE_LATENCY, GOE_BESIDE_LATENCY) = 1.0f / LATENCY_PRIOR_S;
-    *beside_at(root, GOE_BESIDE_VELOCITY_X, GOE_BESIDE_VELOCITY_X) = root_x;
-    *beside_at(root, GOE_BESIDE_VELOCITY_X, GOE_BESIDE_VELOCITY_Z) = -both / (determinant * root_x);
-    *beside_at(root, GOE_BESIDE_VELOCITY_Z, GOE_BESIDE_VELOCITY_Z) = 1.0f / sqrtf(z);
-    root->estimated = GOE_BESIDE;
+    m->augmented[GOE_AUGMENTED_LATENCY] = 0.0f;
+    m->augmented[GOE_AUGMENTED_VELOCITY_X] = fit->velocity_m_s.x;
+    m->augmented[GOE_AUGMENTED_VELOCITY_Z] = fit->velocity_m_s.z;
+    forget_augmented(root);
+    *augmented_at(root, GOE_AUGMENTED_LATENCY, GOE_AUGMENTED_LATENCY) = 1.0f / LATENCY_PRIOR_S;
+    *augmented_at(root, GOE_AUGMENTED_VELOCITY_X, GOE_AUGMENTED_VELOCITY_X) = root_x;
+    *augmented_at(root, GOE_AUGMENTED_VELOCITY_X, GOE_AUGMENTED_VELOCITY_Z) = -both / (determinant * root_x);
+    *augmented_at(root, GOE_AUGMENTED_VELOCITY_Z, GOE_AUGMENTED_VELOCITY_Z) = 1.0f / sqrtf(z);
+    root->estimated = GOE_AUGMENTED;
 }
 
 /* From here on it is estimated with the state. */
@@ -229,11 +230,11 @@ static void judge_latency(goe_filter_t *filter, const fit_t *fit) {
     filter->mover.late = late && filter->root.estimated > 0;
 }
 
-/* Late poses in a turn look like a motion at first; followed, what moves and what is late come apart. */
+/* Late poses in a turn look like a motion at first; later, motion and latency separate. */
 static void judge_followed(goe_filter_t *filter) {
     goe_mover_t *m = &filter->mover;
-    const goe_xz_t v = {m->beside[GOE_BESIDE_VELOCITY_X], m->beside[GOE_BESIDE_VELOCITY_Z]};
-    const float late = goe_absolute(m->beside[GOE_BESIDE_LATENCY]);
+    const goe_xz_t v = {m->augmented[GOE_AUGMENTED_VELOCITY_X], m->augmented[GOE_AUGMENTED_VELOCITY_Z]};
+    const float late = goe_absolute(m->augmented[GOE_AUGMENTED_LATENCY]);
     const float squared = goe_xz_dot(v, v); /* of v, and its variance along itself times that */
     const float wider = goe_larger(filter->health.mean_nis, 1.0f);
     const float spread = wider * goe_mover_variance(filter, v);
@@ -243,28 +244,28 @@ static void judge_followed(goe_filter_t *filter) {
 
 /* An outline that is of another shape drifts, too, but fits. */
 static bool is_misfit(const goe_filter_t *filter, const goe_observation_t *obs) {
-    return filter->health.mean_nis > obs->settings->refined.misfit_max;
+    return filter->health.mean_nis > obs->settings->filter.nis_ratio_max;
 }
 
 static bool is_sound(const goe_filter_t *filter) {
-    const float *corner = &filter->root.element[goe_srif_beside_row()];
+    const float *corner = &filter->root.element[goe_srif_augmented_row()];
     uint32_t largest = 0;
-    for (size_t i = 0; i < GOE_BESIDE; i++) {
-        largest = goe_larger_bits(largest, goe_magnitude(filter->mover.beside[i]));
+    for (size_t i = 0; i < GOE_AUGMENTED; i++) {
+        largest = goe_larger_bits(largest, goe_magnitude(filter->mover.augmented[i]));
         largest = goe_larger_bits(largest, goe_magnitude(filter->root.right[i]));
     }
-    for (size_t i = 0; i < GOE_BESIDE * (GOE_BESIDE + 1) / 2; i++) {
+    for (size_t i = 0; i < GOE_AUGMENTED * (GOE_AUGMENTED + 1) / 2; i++) {
         largest = goe_larger_bits(largest, goe_magnitude(corner[i]));
     }
-    return largest <= goe_magnitude(BESIDE_MAX);
+    return largest <= goe_magnitude(AUGMENTED_MAX);
 }
 
 bool goe_mover_judge(goe_filter_t *filter, const goe_observation_t *obs, const float change[GOE_UNKNOWNS],
                      float since_s) {
     goe_mover_t *m = &filter->mover;
     fit_t fit;
-    for (size_t i = 0; i < GOE_BESIDE; i++) {
-        m->beside[i] += change[GOE_STATES + i];
+    for (size_t i = 0; i < GOE_AUGMENTED; i++) {
+        m->augmented[i] += change[GOE_STATES + i];
     }
     if (!is_sound(filter)) {
         const bool followed = m->followed; /* the axes stand still again */
@@ -274,18 +275,18 @@ bool goe_mover_judge(goe_filter_t *filter, const goe_observation_t *obs, const f
         return followed;
     }
     since_s = since_s < SINCE_MAX_S ? since_s : SINCE_MAX_S;
-    m->heard_s += since_s;
+    m->observed_s += since_s;
     m->nis += filter->health.nis / goe_gate_repeated(obs->settings, filter);
     m->rows += (float)filter->health.nis_rows;
     if (m->followed) {
         judge_followed(filter);
         return false;
     }
-    if (!fit_beside(filter, obs, &fit)) {
+    if (!fit_augmented(filter, obs, &fit)) {
         return false;
     }
     judge_latency(filter, &fit);
-    const bool seen = is_seen_to_move(filter, &fit, since_s);
+    const bool seen = is_moving(filter, &fit, since_s);
     if (!seen || !has_scale(filter, obs)) {
         m->moves = m->moves || (seen && is_misfit(filter, obs));
         return false;

@@ -1,14 +1,14 @@
-/* What stands beside the state: how late the poses are, and how the obstacle moves. (R35) to (R38). SPDX-License-Identifier: MIT
+/* The augmented states: latency of the poses, and motion of the obstacle. (R35) to (R38). SPDX-License-Identifier: MIT
  *
- * The latency is estimated with the state, from the first image on. The velocity is taken as 0, and what the images say of it is
- * kept apart, until that can be no chance: then the filter begins anew, in axes that move along. */
+ * The latency is estimated with the state, from the first image on. The velocity is taken as 0, and the images' information on it is
+ * kept separately, until it is significant: then the filter begins again, in axes that move along. */
 #ifndef GOE_MOVER_H
 #define GOE_MOVER_H
 
 #include "refined/goe_filter.h"
 #include "refined/goe_observation.h"
 
-#if GOE_BESIDE
+#if GOE_AUGMENTED
 
 /* A new track: the poses are in time, as far as is known, and nothing moves. */
 void goe_mover_clear(goe_filter_t *filter);
@@ -16,11 +16,11 @@ void goe_mover_clear(goe_filter_t *filter);
 /* The model proved to be another: what it said of a velocity is forgotten. */
 void goe_mover_doubt(goe_filter_t *filter);
 
-/* The columns of what is beside the state. They hold the derivatives by the place until then; after goe_rows_end(). */
+/* The columns of the augmented states. They hold the derivatives by the place until then; after goe_rows_end(). */
 void goe_mover_columns(const goe_observation_t *obs, goe_rows_t *rows);
 
-/* After an image's update: follows what it changed beside the state, and decides what is late and what moves. True if the filter
- * is to begin anew, as the obstacle has been found to move. */
+/* After an image's update: follows the changes of the augmented states, and decides on latency and motion. True if the filter
+ * must begin again, as the obstacle has been found to move. */
 bool goe_mover_judge(goe_filter_t *filter, const goe_observation_t *obs, const float change[GOE_UNKNOWNS],
                      float since_s);
 

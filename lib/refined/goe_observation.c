@@ -8,7 +8,7 @@
 #include "maths/goe_angle.h"
 #include "maths/goe_scalar.h"
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 
 #define ABEAM 0.02f           /* third component of an aligned point's ray after the turn */
 #define WHITE_MIN_DEG 1.0e-4f /* errors of an image: as of the settings */
@@ -84,19 +84,20 @@ static float given_or(float given, float least, float setting) {
 static void take_noise(goe_observation_t *obs, const goe_filter_t *filter, const goe_image_noise_t *noise) {
     const goe_settings_t *settings = obs->settings;
     const goe_navigation_t *navigation = &settings->navigation;
-    obs->white_rad = given_or(noise->attitude_deg, WHITE_MIN_DEG, navigation->attitude_white_deg) * GOE_RAD_PER_DEG;
-    obs->point_px = given_or(noise->pixel_px, PIXEL_MIN_PX, settings->detector.point_px);
-    obs->side_px = given_or(noise->pixel_px, PIXEL_MIN_PX, settings->detector.box_px);
-    obs->height_sd_m = given_or(obs->height_sd_m, HEIGHT_SD_MIN_M, navigation->height_bias_m);
-    if (navigation->height_white_m > 0.0f) {
+    obs->white_rad =
+        given_or(noise->attitude_sd_deg, WHITE_MIN_DEG, navigation->attitude_white_sd_deg) * GOE_RAD_PER_DEG;
+    obs->point_px = given_or(noise->pixel_sd_px, PIXEL_MIN_PX, settings->detector.point_noise_px);
+    obs->side_px = given_or(noise->pixel_sd_px, PIXEL_MIN_PX, settings->detector.box_noise_px);
+    obs->height_sd_m = given_or(obs->height_sd_m, HEIGHT_SD_MIN_M, navigation->height_bias_sd_m);
+    if (navigation->height_white_sd_m > 0.0f) {
         const float readings =
             filter->datum.readings > 0 ? (float)filter->datum.readings : 1.0f; /* none without a height */
         obs->height_m = filter->datum.height_m;
-        obs->height_sd_m = sqrtf(goe_square(obs->height_sd_m) + goe_square(navigation->height_white_m) / readings);
+        obs->height_sd_m = sqrtf(goe_square(obs->height_sd_m) + goe_square(navigation->height_white_sd_m) / readings);
     }
 }
 
-#if GOE_BESIDE
+#if GOE_AUGMENTED
 static void turn_rate(const goe_filter_t *filter, const float rate[3], float turned[3]) {
     const goe_xz_t level = {rate[0], rate[2]};
     const goe_xz_t into = goe_xz_into(level, filter->axes.turn_cos, filter->axes.turn_sin);
@@ -108,12 +109,12 @@ static void turn_rate(const goe_filter_t *filter, const float rate[3], float tur
 
 /*@ requires \valid(obs) && \valid_read(filter) && \valid_read(motion); */
 static void note_pace(goe_observation_t *obs, const goe_filter_t *filter, const goe_motion_t *motion) {
-#if GOE_BESIDE
+#if GOE_AUGMENTED
     obs->turn_cos = filter->axes.turn_cos;
     obs->turn_sin = filter->axes.turn_sin;
     obs->elapsed_s = goe_filter_elapsed_s(filter, motion);
     obs->gained_m_s = goe_filter_gained(filter, motion);
-    obs->latency_s = filter->mover.beside[GOE_BESIDE_LATENCY];
+    obs->latency_s = filter->mover.augmented[GOE_AUGMENTED_LATENCY];
     turn_rate(filter, motion->rate_rad_s, obs->rate_rad_s);
     turn_rate(filter, motion->rate_before_rad_s, obs->rate_before_rad_s);
 #else
@@ -140,7 +141,7 @@ unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *sett
     obs->position_sd = 0.0f;
     obs->height_sd_m = filter->datum.sd_m;
     take_noise(obs, filter, &view->image->noise);
-    obs->outline_share = settings->detector.point_share;
+    obs->outline_share = settings->detector.point_noise_rel;
     obs->depth_variance = 0.0f;
     obs->two_faces = false;
     obs->stand_in = false;
@@ -154,7 +155,7 @@ void goe_observation_linearise(goe_observation_t *obs) {
     obs->ex = m[0] * b[0] + m[1] * b[1] + m[2] * b[2];
     obs->ey = m[3] * b[0] + m[4] * b[1] + m[5] * b[2];
     obs->ez = m[6] * b[0] + m[7] * b[1] + m[8] * b[2];
-#if GOE_BESIDE
+#if GOE_AUGMENTED
     obs->ex -= obs->latency_s * obs->rate_rad_s[0];
     obs->ey -= obs->latency_s * obs->rate_rad_s[1];
     obs->ez -= obs->latency_s * obs->rate_rad_s[2];
@@ -169,25 +170,25 @@ static float nearness(const goe_observation_t *obs, float x, float y, float z) {
 
 void goe_observation_project_x(const goe_observation_t *obs, float x, float y, float z, goe_gradient_t *of_x) {
     const float reciprocal = nearness(obs, x, y, z);
-    const float seen_x = (x + obs->ey * z - obs->ez * y) * reciprocal;
-    of_x->at = seen_x;
-    of_x->x = (1.0f + seen_x * obs->ey) * reciprocal;
-    of_x->y = (-obs->ez - seen_x * obs->ex) * reciprocal;
-    of_x->z = (obs->ey - seen_x) * reciprocal;
-    of_x->ey = (z + seen_x * x) * reciprocal;
-    of_x->ex = -(seen_x * y) * reciprocal;
+    const float image_x = (x + obs->ey * z - obs->ez * y) * reciprocal;
+    of_x->at = image_x;
+    of_x->x = (1.0f + image_x * obs->ey) * reciprocal;
+    of_x->y = (-obs->ez - image_x * obs->ex) * reciprocal;
+    of_x->z = (obs->ey - image_x) * reciprocal;
+    of_x->ey = (z + image_x * x) * reciprocal;
+    of_x->ex = -(image_x * y) * reciprocal;
     of_x->ez = -y * reciprocal;
 }
 
 void goe_observation_project_y(const goe_observation_t *obs, float x, float y, float z, goe_gradient_t *of_y) {
     const float reciprocal = nearness(obs, x, y, z);
-    const float seen_y = (y + obs->ez * x - obs->ex * z) * reciprocal;
-    of_y->at = seen_y;
-    of_y->x = (obs->ez + seen_y * obs->ey) * reciprocal;
-    of_y->y = (1.0f - seen_y * obs->ex) * reciprocal;
-    of_y->z = (-obs->ex - seen_y) * reciprocal;
-    of_y->ey = (seen_y * x) * reciprocal;
-    of_y->ex = (-z - seen_y * y) * reciprocal;
+    const float image_y = (y + obs->ez * x - obs->ex * z) * reciprocal;
+    of_y->at = image_y;
+    of_y->x = (obs->ez + image_y * obs->ey) * reciprocal;
+    of_y->y = (1.0f - image_y * obs->ex) * reciprocal;
+    of_y->z = (-obs->ex - image_y) * reciprocal;
+    of_y->ey = (image_y * x) * reciprocal;
+    of_y->ex = (-z - image_y * y) * reciprocal;
     of_y->ez = x * reciprocal;
 }
 

@@ -25,12 +25,12 @@ typedef struct {
     float position_sd; /* prism: one sigma of the image's own position error, m, with what the uncertain range adds */
     float range_variance; /* of GOE_INVERSE_RANGE */
     float depth_variance; /* box: of GOE_DEPTH_DIFFERENCE */
-    bool two_faces;       /* box: both were seen, its length is estimated */
-    bool stand_in;        /* disc: it stands in for a box */
-    bool base;            /* both outer base corners are seen */
-    bool edge;            /* an edge of the base is seen */
+    bool two_faces;       /* box: both were visible, its length is estimated */
+    bool stand_in;        /* disc: it substitutes for a box */
+    bool base;            /* both outer base corners are visible */
+    bool edge;            /* an edge of the base is visible */
     uint8_t number;       /* of the camera */
-#if GOE_BESIDE
+#if GOE_AUGMENTED
     float turn_cos, turn_sin;   /* of the state's axes from T */
     float elapsed_s;            /* since the filter's start */
     float rate_rad_s[3];        /* of the vehicle, the state's axes ... */
@@ -45,7 +45,7 @@ typedef struct {
         \valid_read(obs->state + (0 .. GOE_STATES - 1)); */
 
 /* The rows of an image. Until they are weighted each holds the derivatives of a predicted image coordinate by the image's own
- * attitude error and by the states, the residual, and beside them the variance of its own noise. */
+ * attitude error and by the states, the residual, and the variance of its own noise. */
 typedef struct {
     goe_matrix_t *matrix;
     float variance[GOE_ROWS_MAX];
@@ -78,13 +78,13 @@ unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *sett
                               const goe_view_t *view);
 void goe_observation_linearise(goe_observation_t *obs);
 
-/* (R3): where the point (X, Y, Z), in units of Z0 or any other, is seen along x, and along y. */
+/* (R3): the image of the point (X, Y, Z), in units of Z0 or any other, along x, and along y. */
 void goe_observation_project_x(const goe_observation_t *obs, float x, float y, float z, goe_gradient_t *of_x);
 void goe_observation_project_y(const goe_observation_t *obs, float x, float y, float z, goe_gradient_t *of_y);
 
 /* Variance of the height above the obstacle's ground, m2; of upright boxes that ground may lie off. */
 static inline float goe_observation_height_variance(const goe_observation_t *obs, bool boxes) {
-    const float ground_m = boxes ? obs->settings->navigation.ground_m : 0.0f;
+    const float ground_m = boxes ? obs->settings->navigation.terrain_height_sd_m : 0.0f;
     return obs->height_sd_m * obs->height_sd_m + ground_m * ground_m;
 }
 
@@ -129,14 +129,14 @@ void goe_rows_clear(goe_rows_t *rows, goe_matrix_t *matrix);
 float *goe_rows_add(goe_rows_t *rows, goe_feature_t feature, float measured, float variance,
                     const goe_gradient_t *gradient);
 
-/* An upright edge at the place (X, Z), seen along x at the height at which it was measured, freed of the attitude bias.
+/* An upright edge at the place (X, Z), measured along x at the height of the measurement, freed of the attitude bias.
  * Null if the feature is not usable. more: variance beyond the pixel noise. */
 /*@ requires goe_rows_hold(rows) && goe_observation_is_open(obs) && \valid(of_x);
     requires rows->count < GOE_ROWS_MAX && feature < GOE_FEATURES; */
 float *goe_rows_add_edge(goe_rows_t *rows, const goe_observation_t *obs, goe_xz_t place, goe_feature_t feature,
                          float more, goe_gradient_t *of_x);
 
-/* A point at the place (X, Z) and the height y, seen along y. */
+/* A point at the place (X, Z) and the height y, measured along y. */
 /*@ requires goe_rows_hold(rows) && goe_observation_is_open(obs) && \valid(of_y);
     requires rows->count < GOE_ROWS_MAX && feature < GOE_FEATURES; */
 float *goe_rows_add_level(goe_rows_t *rows, const goe_observation_t *obs, goe_xz_t place, float y,
@@ -148,14 +148,14 @@ float *goe_rows_add_level(goe_rows_t *rows, const goe_observation_t *obs, goe_xz
 static inline float *goe_rows_last_variance(goe_rows_t *rows) { return &rows->variance[rows->count - 1u]; }
 
 /* The derivatives of a coordinate whose point moves with the reference point, by whose X and Z it changes by by_x and by_z: by
- * GOE_BEARING, and by GOE_INVERSE_RANGE as far as the camera's way tells it. */
+ * GOE_BEARING, and by GOE_INVERSE_RANGE as far as the camera's path determines it. */
 /*@ requires \valid(by + (0 .. GOE_UNKNOWNS - 1)) && goe_observation_is_open(obs); */
 static inline void goe_rows_place(float *by, const goe_observation_t *obs, float by_x, float by_z) {
     by[GOE_BEARING] = by_x;
     by[GOE_INVERSE_RANGE] = -(by_x * obs->camera_m.x) - by_z * obs->camera_m.z;
-#if GOE_BESIDE
-    by[GOE_STATES + GOE_BESIDE_VELOCITY_X] = by_x; /* until goe_mover_columns() */
-    by[GOE_STATES + GOE_BESIDE_VELOCITY_Z] = by_z;
+#if GOE_AUGMENTED
+    by[GOE_STATES + GOE_AUGMENTED_VELOCITY_X] = by_x; /* until goe_mover_columns() */
+    by[GOE_STATES + GOE_AUGMENTED_VELOCITY_Z] = by_z;
 #endif
 }
 

@@ -12,15 +12,15 @@
 #include "refined/goe_side_memory.h"
 #include "refined/goe_touch.h"
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 
 #define AHEAD_MIN 0.02f        /* third component of a ray that is faced */
 #define DEPTH_MAX 2.0f         /* |s|: 7 times as deep as wide, or as flat */
 #define SHIFT_RATIO_MAX 300.0f /* of a shift that rows share, over a row's own noise */
-#define EARLY_SHARE 0.08f      /* of the time constant: sooner, differences of boxes are their linearisation's */
+#define EARLY_SHARE 0.08f      /* of the time constant: sooner, differences of boxes are their linearization's */
 #define GAP_MAX_US 1000000000u /* as the filter's: a longer gap counts as this one */
 #define GROUND_SIGMAS 3.0f     /* by which the foot must lie below the horizon to give the range */
-#define FOOT_SHARE 0.6f        /* of box_share of the width, in that sigma */
+#define FOOT_SHARE 0.6f        /* of box_noise_rel of the width, in that sigma */
 #define NEAR_SIDE 0.5f         /* the foot is nearer than the middle by half the width */
 #define RANGE_MIN_M 1.0f       /* of a first guess */
 #define RANGE_MAX_M 1.0e6f     /* the same */
@@ -31,13 +31,13 @@
 #define HALF_FREEDOM 2.5f      /* ... of the half width, in widths */
 #define TOP_FREEDOM 10.0f      /* ... of the top, in the larger of top and width */
 #define DEPTH_FREEDOM 0.3f     /* ... of s */
-#define DEPTH_UNSEEN 3.0f      /* one sigma of c: a factor of 20 in depth, from a plate to a wall seen end-on */
+#define DEPTH_SD 3.0f          /* one sigma of c: a factor of 20 in depth, from a plate to a wall viewed end-on */
 #define TURNED_SHARE 1.3f      /* of the width by which it changes while the line of sight turns by a radian */
-#define TURNED_MAX 0.15f       /* ... up to which: what was seen before counts on */
+#define TURNED_MAX 0.15f       /* ... up to which: earlier images still count */
 #define ROOF_SHARE 0.15f /* of the depth beyond the width: where the point of the roof may lie that the top is over */
-#define DISC_FREEDOM 1.0e-3f  /* both, where a disc is asked for */
+#define DISC_FREEDOM 1.0e-3f  /* both, where a disc is configured */
 #define GROUND_MIN 1.0e-6f    /* one sigma of the ground's offset, units of Z0 */
-#define BOX_SIZE_MIN 1.0e-12f /* of a box, angular: a smaller one tells no range */
+#define BOX_SIZE_MIN 1.0e-12f /* of a box, angular: a smaller one gives no range */
 
 GOE_STATIC_ASSERT(sizeof(((goe_filter_t *)0)->side) == GOE_BOX_SIDES * sizeof(goe_side_memory_t),
                   every_side_has_a_memory);
@@ -82,7 +82,7 @@ static void add_side(const goe_observation_t *obs, const goe_solid_t *o, size_t 
     by[GOE_PRISM_DEPTH] = outward * along * along / t.reach;
     by[GOE_PRISM_HALF] = outward * t.reach / o->half;
     by[GOE_PRISM_TOP] = t.foot ? 0.0f : -g.y;
-    by[GOE_PRISM_UNSEEN] = by[GOE_PRISM_DEPTH];
+    by[GOE_PRISM_UNOBSERVED] = by[GOE_PRISM_DEPTH];
     const float shift = -obs->position_sd * obs->state[GOE_INVERSE_RANGE];
     float *common = rows->shift[rows->count - 1u];
     common[0] = shift * g.x;
@@ -105,13 +105,13 @@ void goe_prism_rows(const goe_observation_t *obs, goe_rows_t *rows) {
 
 bool goe_prism_is_early(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion) {
     const float since_s = goe_time_between_s(filter->time_us, motion->time_us, GAP_MAX_US);
-    return filter->phase == GOE_PHASE_PRISM && since_s < EARLY_SHARE * settings->detector.correlation_s;
+    return filter->phase == GOE_PHASE_PRISM && since_s < EARLY_SHARE * settings->detector.box_correlation_time_s;
 }
 
 void goe_prism_recall(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
     const goe_detector_t *detector = &obs->settings->detector;
     for (size_t side = 0; side < GOE_BOX_SIDES; side++) {
-        goe_side_memory_fade(&filter->side[side], obs->fade, goe_square(detector->box_share * size_of(obs, side)));
+        goe_side_memory_fade(&filter->side[side], obs->fade, goe_square(detector->box_noise_rel * size_of(obs, side)));
     }
     for (size_t i = 0; i < rows->count; i++) {
         goe_side_memory_recall(&filter->side[goe_touch_side(rows->feature[i])], rows->matrix->row[i],
@@ -198,11 +198,11 @@ static bool ray_of(const goe_camera_t *camera, const float camera_to_axes[9], fl
     return ray->usable;
 }
 
-/* Of the box, as far as it is seen. */
+/* Of the visible part of the box. */
 static void middle_of(const goe_camera_t *camera, const goe_sides_t *sides, float *x, float *y) {
     *x =
         0.5f * (goe_touch_coordinate(camera, sides, GOE_BOX_LEFT) + goe_touch_coordinate(camera, sides, GOE_BOX_RIGHT));
-    *y = goe_sides_see(sides, GOE_SEES_TOP | GOE_SEES_BOTTOM)
+    *y = goe_sides_see(sides, GOE_SIDE_TOP | GOE_SIDE_BOTTOM)
              ? 0.5f * (goe_touch_coordinate(camera, sides, GOE_BOX_TOP) +
                        goe_touch_coordinate(camera, sides, GOE_BOX_BOTTOM))
              : 0.0f;
@@ -212,7 +212,7 @@ bool goe_prism_face(goe_filter_t *filter, const goe_view_t *view) {
     float x;
     float y;
     goe_point_t ray;
-    if (!goe_sides_see(&view->sides, GOE_SEES_LEFT | GOE_SEES_RIGHT)) {
+    if (!goe_sides_see(&view->sides, GOE_SIDE_LEFT | GOE_SIDE_RIGHT)) {
         return false;
     }
     middle_of(view->camera, &view->sides, &x, &y);
@@ -230,32 +230,33 @@ static float height_sd_m(const goe_observation_t *obs) { return sqrtf(goe_observ
 /* From flat ground, if the foot lies clearly below the horizon; otherwise from the typical size. size: angular. */
 static float first_range_m(const goe_observation_t *obs, float size, const goe_point_t *foot) {
     const goe_settings_t *s = obs->settings;
-    const float attitude = goe_square(s->navigation.attitude_bias_deg * GOE_RAD_PER_DEG) + goe_square(obs->white_rad);
+    const float attitude =
+        goe_square(s->navigation.attitude_bias_sd_deg * GOE_RAD_PER_DEG) + goe_square(obs->white_rad);
     const float foot_sd = sqrtf(attitude + goe_square(obs->side_px / obs->camera->fy_px) +
-                                goe_square(FOOT_SHARE * s->detector.box_share * size));
+                                goe_square(FOOT_SHARE * s->detector.box_noise_rel * size));
     const bool grounded =
         foot->usable && foot->y > GROUND_SIGMAS * foot_sd && obs->steady_height_m > GROUND_SIGMAS * height_sd_m(obs);
     return grounded ? obs->steady_height_m / foot->y * (1.0f + NEAR_SIDE * size)
-                    : s->refined.typical_size_m / goe_larger(size, BOX_SIZE_MIN);
+                    : s->filter.prior_width_m / goe_larger(size, BOX_SIZE_MIN);
 }
 
 static void set_root(const goe_observation_t *obs, const float state[GOE_STATES], float width, goe_triangle_t *root) {
     const goe_settings_t *settings = obs->settings;
     const goe_navigation_t *navigation = &settings->navigation;
-    const float bias = navigation->attitude_bias_deg * GOE_RAD_PER_DEG;
+    const float bias = navigation->attitude_bias_sd_deg * GOE_RAD_PER_DEG;
     const float q = state[GOE_INVERSE_RANGE];
     const bool disc = settings->model == GOE_MODEL_DISC;
     float sd[GOE_STATES];
     sd[GOE_BIAS_X] = bias;
     sd[GOE_BIAS_Y] = bias;
-    sd[GOE_BIAS_Z] = sqrtf(goe_square(bias) + goe_square(HEADING_ARM * navigation->velocity_bias_m_s));
+    sd[GOE_BIAS_Z] = sqrtf(goe_square(bias) + goe_square(HEADING_ARM * navigation->velocity_bias_sd_m_s));
     sd[GOE_GROUND] = goe_larger(height_sd_m(obs) * q, GROUND_MIN);
     sd[GOE_BEARING] = BEARING_FREEDOM;
     sd[GOE_INVERSE_RANGE] = RANGE_FREEDOM * q;
     sd[GOE_PRISM_DEPTH] = disc ? DISC_FREEDOM : DEPTH_FREEDOM;
     sd[GOE_PRISM_HALF] = HALF_FREEDOM * width;
     sd[GOE_PRISM_TOP] = TOP_FREEDOM * goe_larger(goe_absolute(state[GOE_PRISM_TOP]), width);
-    sd[GOE_PRISM_UNSEEN] = disc ? DISC_FREEDOM : DEPTH_UNSEEN;
+    sd[GOE_PRISM_UNOBSERVED] = disc ? DISC_FREEDOM : DEPTH_SD;
     goe_srif_clear(root);
     for (size_t i = 0; i < GOE_STATES; i++) {
         root->element[goe_srif_row(i) + i] = 1.0f / sd[i];
@@ -270,10 +271,10 @@ bool goe_prism_start(const goe_observation_t *obs, float state[GOE_STATES], goe_
     float x;
     float y;
     middle_of(camera, sides, &x, &y);
-    if (goe_sides_see(sides, GOE_SEES_TOP)) {
+    if (goe_sides_see(sides, GOE_SIDE_TOP)) {
         (void)ray_of(camera, obs->camera_to_axes, x, goe_touch_coordinate(camera, sides, GOE_BOX_TOP), &head);
     }
-    if (goe_sides_see(sides, GOE_SEES_BOTTOM)) {
+    if (goe_sides_see(sides, GOE_SIDE_BOTTOM)) {
         (void)ray_of(camera, obs->camera_to_axes, x, goe_touch_coordinate(camera, sides, GOE_BOX_BOTTOM), &foot);
     }
     const float size = size_of(obs, GOE_BOX_LEFT) / (1.0f + x * x);

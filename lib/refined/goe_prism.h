@@ -1,10 +1,10 @@
-/* Something upright, seen by its upright bounding boxes. SPDX-License-Identifier: MIT
+/* An upright obstacle, observed by its upright bounding boxes. SPDX-License-Identifier: MIT
  *
  * A side of the box is an image line, and the plane through it and the camera touches the obstacle: left and right at an
  * upright edge's foot or head, top and bottom at the rim. The footprint is an ellipse about (X0, Z0), half widths w across
  * and w e^(s + c) along the line of sight of the first image; the support function of an ellipse is smooth, has no corners
- * to mistake, and is exact for a mast, and for a wall that is seen end-on or broadside. Boxes hardly tell how deep a thing
- * is: s, with a prior of its own, is estimated, and c stands for what a pilot must still reckon with; it is considered,
+ * to mistake, and is exact for a mast, and for a wall viewed end-on or broadside. Boxes hardly determine the depth of an
+ * obstacle: s, with a prior of its own, is estimated, and c represents the remaining depth that a pilot must reckon with; it is considered,
  * never estimated. (R25) to (R29), (R33). */
 #ifndef GOE_PRISM_H
 #define GOE_PRISM_H
@@ -26,12 +26,12 @@ bool goe_prism_is_early(const goe_filter_t *filter, const goe_settings_t *settin
 /*@ requires goe_observation_is_open(obs) && goe_rows_hold(rows) && rows->count == 0; */
 void goe_prism_rows(const goe_observation_t *obs, goe_rows_t *rows);
 
-/* After goe_rows_end(): takes what is known of the sides' errors out of the rows. */
+/* After goe_rows_end(): removes the known part of the sides' errors from the rows. */
 /*@ requires \valid(filter) && goe_observation_is_open(obs) && goe_rows_hold(rows);
     requires rows->count <= GOE_BOX_SIDES; */
 void goe_prism_recall(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows);
 
-/* After the gate: keeps what the rows tell of these errors, and frees the rows of the image's position noise, which they
+/* After the gate: keeps the rows' information on these errors, and frees the rows of the image's position noise, which they
  * share. */
 /*@ requires \valid(filter) && goe_rows_hold(rows) && rows->count <= GOE_BOX_SIDES; */
 void goe_prism_learn(goe_filter_t *filter, goe_rows_t *rows);
@@ -42,8 +42,8 @@ void goe_prism_follow(goe_filter_t *filter, const float change[GOE_UNKNOWNS]);
 /* Quantities. */
 void goe_prism_shape(const goe_filter_t *filter, goe_shape_t *shape);
 
-/* What the width and the height are uncertain by as the footprint is no ellipse across the first line of sight, (R41): unless a disc
- * was asked for. camera_m: since the filter's start. */
+/* Uncertainty of the width and the height, as the footprint is no ellipse across the first line of sight, (R41): unless a disc
+ * was configured. camera_m: since the filter's start. */
 void goe_prism_doubt(const goe_filter_t *filter, goe_xz_t camera_m, goe_shape_t *shape);
 
 #endif

@@ -15,17 +15,17 @@
 #include "refined/goe_prism.h"
 #include "refined/goe_scatter.h"
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 
 #define EXTENT_SHARE 0.3f /* ... width, length and height */
 #define HEIGHT_MIN_M 2.0f /* a lower obstacle's height may be off by the share of this */
-#define FAR_ROOF 2.0f     /* of the width: one sigma of where the farthest corner of the roof stands */
+#define FAR_ROOF 2.0f     /* of the width: one sigma of the position of the farthest corner of the roof */
 #define ORIENTATION_MAX_RAD 0.174532925f
 #define OUTLINE_IMAGES 10 /* of a box by its outline, before its extents are reported */
 #define OUTLINE_NIS 1.8f  /* recent_nis up to which they are */
 #define PATH_MIN_M 0.1f
 #define RANGE_MIN_M 1.0f
-#define METRES_MAX 1.0e6f
+#define METERS_MAX 1.0e6f
 
 static bool depends_on_corner(int quantity) { return quantity >= GOE_ORIENTATION && quantity <= GOE_LENGTH; }
 
@@ -51,10 +51,10 @@ static drift_t drift_of(const goe_filter_t *filter, const goe_navigation_t *navi
     const float s = goe_filter_elapsed_s(filter, motion);
     drift.camera_m = goe_filter_camera(filter, motion);
     const float path_m = path_over_ground(filter, motion);
-    drift.share = navigation->velocity_bias_m_s * s / (path_m > PATH_MIN_M ? path_m : PATH_MIN_M);
-    drift.walk_m2 = goe_square(navigation->position_walk_m) * s;
+    drift.share = navigation->velocity_bias_sd_m_s * s / (path_m > PATH_MIN_M ? path_m : PATH_MIN_M);
+    drift.walk_m2 = goe_square(navigation->position_walk_sd_m) * s;
     const float straight = filter->flown_m > path_m ? path_m / filter->flown_m : 1.0f;
-    drift.turned_m2 = goe_square(navigation->velocity_bias_m_s * s) * (1.0f - straight * straight);
+    drift.turned_m2 = goe_square(navigation->velocity_bias_sd_m_s * s) * (1.0f - straight * straight);
     return drift;
 }
 
@@ -62,10 +62,10 @@ static drift_t drift_of(const goe_filter_t *filter, const goe_navigation_t *navi
 static float early_variance(const goe_filter_t *filter, const goe_navigation_t *navigation,
                             const goe_motion_t *motion) {
     const float s = goe_time_between_s(motion->start_time_us, filter->axes.start_time_us, GOE_TIME_MAX_US);
-    return goe_square(navigation->velocity_bias_m_s * s) + goe_square(navigation->position_walk_m) * s;
+    return goe_square(navigation->velocity_bias_sd_m_s * s) + goe_square(navigation->position_walk_sd_m) * s;
 }
 
-/* The roof's corner that the top is over stands beside the middle; seen from above or from below it seems lower or higher, by the
+/* The roof's corner below the top is off the middle; from above or from below it appears lower or higher, by the
  * tangent of that angle, which from nearby is taken as its sine. */
 static float top_variance(const goe_motion_t *motion, drift_t drift, const goe_shape_t *shape) {
     const float x_m = shape->middle.at.x * shape->scale_m - drift.camera_m.x;
@@ -129,34 +129,36 @@ static float variance_of(const goe_filter_t *filter, const widening_t *wider, fl
     return dot(by, by, 0.0f);
 }
 
-/* ------------------------------------------------------------------------------------------------- beside the state -- */
+/* ------------------------------------------------------------------------------------------------- augmented --------- */
 
-/* What the estimates beside the state add, as independent unit errors. at_s: the place counts that long after the filter's start,
+/* The contribution of the augmented states, as independent unit errors. at_s: the place counts that long after the filter's start,
  * and (x, z), T axes, is its derivative by the place there; it matters of an obstacle that is followed. */
-#if GOE_BESIDE
+#if GOE_AUGMENTED
 typedef struct {
-    float part[GOE_BESIDE];
-} beside_t;
+    float part[GOE_AUGMENTED];
+} augmented_t;
 
 static float since_start_s(const goe_filter_t *filter, const goe_motion_t *motion) {
     return goe_filter_elapsed_s(filter, motion);
 }
 
-static void beside_of(const goe_filter_t *filter, const float by[GOE_STATES], float x, float z, float at_s,
-                      beside_t *beside) {
-    const float direct[GOE_BESIDE] = {0.0f, x * at_s, z * at_s};
-    goe_srif_beside(&filter->inverse, by, filter->mover.followed ? direct : NULL, beside->part);
+static void augmented_of(const goe_filter_t *filter, const float by[GOE_STATES], float x, float z, float at_s,
+                         augmented_t *augmented) {
+    const float direct[GOE_AUGMENTED] = {0.0f, x * at_s, z * at_s};
+    goe_srif_augmented(&filter->inverse, by, filter->mover.followed ? direct : NULL, augmented->part);
 }
 
-static float beside_dot(const beside_t *a, const beside_t *b) { return goe_srif_beside_dot(a->part, b->part); }
+static float augmented_dot(const augmented_t *a, const augmented_t *b) {
+    return goe_srif_augmented_dot(a->part, b->part);
+}
 
-static void beside_scale(beside_t *beside, float factor) {
-    for (size_t i = 0; i < GOE_BESIDE; i++) {
-        beside->part[i] *= factor;
+static void augmented_scale(augmented_t *augmented, float factor) {
+    for (size_t i = 0; i < GOE_AUGMENTED; i++) {
+        augmented->part[i] *= factor;
     }
 }
 #else
-typedef char beside_t; /* nothing is */
+typedef char augmented_t; /* nothing is */
 
 static float since_start_s(const goe_filter_t *filter, const goe_motion_t *motion) {
     (void)filter;
@@ -164,33 +166,33 @@ static float since_start_s(const goe_filter_t *filter, const goe_motion_t *motio
     return 0.0f;
 }
 
-static void beside_of(const goe_filter_t *filter, const float by[GOE_STATES], float x, float z, float at_s,
-                      beside_t *beside) {
+static void augmented_of(const goe_filter_t *filter, const float by[GOE_STATES], float x, float z, float at_s,
+                         augmented_t *augmented) {
     (void)filter;
     (void)by;
     (void)x;
     (void)z;
     (void)at_s;
-    *beside = 0;
+    *augmented = 0;
 }
 
-static float beside_dot(const beside_t *a, const beside_t *b) {
+static float augmented_dot(const augmented_t *a, const augmented_t *b) {
     (void)a;
     (void)b;
     return 0.0f;
 }
 
-static void beside_scale(const beside_t *beside, float factor) {
-    (void)beside;
+static void augmented_scale(const augmented_t *augmented, float factor) {
+    (void)augmented;
     (void)factor;
 }
 #endif
 
-/*@ requires \valid_read(filter) && \valid_read(by + (0 .. GOE_STATES - 1)) && \valid(beside);
+/*@ requires \valid_read(filter) && \valid_read(by + (0 .. GOE_STATES - 1)) && \valid(augmented);
     requires 0 <= quantity < GOE_QUANTITIES; */
-static void beside_quantity(const goe_filter_t *filter, const float by[GOE_STATES], int quantity, float at_s,
-                            beside_t *beside) {
-    beside_of(filter, by, quantity == GOE_X0 ? 1.0f : 0.0f, quantity == GOE_Z0 ? 1.0f : 0.0f, at_s, beside);
+static void augmented_quantity(const goe_filter_t *filter, const float by[GOE_STATES], int quantity, float at_s,
+                               augmented_t *augmented) {
+    augmented_of(filter, by, quantity == GOE_X0 ? 1.0f : 0.0f, quantity == GOE_Z0 ? 1.0f : 0.0f, at_s, augmented);
 }
 
 /* ---------------------------------------------------------------------------------------------------------- validity -- */
@@ -198,19 +200,19 @@ static void beside_quantity(const goe_filter_t *filter, const float by[GOE_STATE
 /* Within a share of the value, and finite, by the bits. */
 static bool is_known(float value, float sigma, float least, float share) {
     const float size = goe_larger(goe_absolute(value), least);
-    return goe_within(value, METRES_MAX) && goe_within(sigma, share * size);
+    return goe_within(value, METERS_MAX) && goe_within(sigma, share * size);
 }
 
 /*@ requires \valid_read(q) && 0 <= quantity < GOE_QUANTITIES; */
 static bool is_extent(const goe_quantities_t *q, int quantity, float least) {
-    return q->value[quantity] > 0.0f && goe_within(q->sigma[quantity], METRES_MAX) &&
+    return q->value[quantity] > 0.0f && goe_within(q->sigma[quantity], METERS_MAX) &&
            is_known(q->value[quantity], q->worked_out[quantity], least, EXTENT_SHARE);
 }
 
 /* from: where the values count from, in T. */
 static bool is_position(const goe_quantities_t *q, goe_xz_t from, float share) {
-    return goe_within(q->value[GOE_X0] + from.x, METRES_MAX) && goe_within(q->value[GOE_Z0] + from.z, METRES_MAX) &&
-           goe_within(q->sigma[GOE_X0], METRES_MAX) && goe_within(q->sigma[GOE_Z0], METRES_MAX) &&
+    return goe_within(q->value[GOE_X0] + from.x, METERS_MAX) && goe_within(q->value[GOE_Z0] + from.z, METERS_MAX) &&
+           goe_within(q->sigma[GOE_X0], METERS_MAX) && goe_within(q->sigma[GOE_Z0], METERS_MAX) &&
            goe_within(q->worked_out[GOE_X0], share * q->value[GOE_Z0]) &&
            is_known(q->value[GOE_Z0], q->worked_out[GOE_Z0], 0.0f, share);
 }
@@ -246,32 +248,33 @@ static unsigned known_now(const goe_filter_t *filter, const goe_quantities_t *q,
 
 /* --------------------------------------------------------------------------------------------------------- quantities -- */
 
-/* What is no ellipse adds to a prism's sigmas. */
+/* Addition to a prism's sigmas for other shapes than an ellipse. */
 static float doubt_of(const goe_shape_t *shape, int quantity) {
     return quantity == GOE_WIDTH ? shape->width_m2 : (quantity == GOE_HEIGHT ? shape->top_m2 : 0.0f);
 }
 
-/* What the scatter adds widens the sigmas; what is known is decided without it, as doubt must
+/* The scatter widens the sigmas; validity is decided without it, as doubt must
  * not silence an answer. */
 static void set_quantities(const goe_filter_t *filter, const goe_motion_t *motion, goe_shape_t *shape, drift_t drift,
                            const widening_t *wider, goe_quantities_t *q) {
     const float elapsed_s = since_start_s(filter, motion);
     for (int i = 0; i < GOE_QUANTITIES; i++) {
-        const float unseen = q->prism ? goe_srif_last_variance(&filter->inverse, shape->quantity[i].by) : 0.0f;
-        beside_t beside;
-        beside_quantity(filter, shape->quantity[i].by, i, elapsed_s, &beside);
+        const float unobserved = q->prism ? goe_srif_last_variance(&filter->inverse, shape->quantity[i].by) : 0.0f;
+        augmented_t augmented;
+        augmented_quantity(filter, shape->quantity[i].by, i, elapsed_s, &augmented);
         float moved;
-        const float found = (variance_of(filter, wider, shape->quantity[i].by, &moved) + beside_dot(&beside, &beside)) *
-                            (depends_on_corner(i) ? shape->early : 1.0f);
+        const float found =
+            (variance_of(filter, wider, shape->quantity[i].by, &moved) + augmented_dot(&augmented, &augmented)) *
+            (depends_on_corner(i) ? shape->early : 1.0f);
         float turns; /* with the orientation, whose own sigma comes first */
-        const float told = drift_variance(motion, drift, shape, q->box, i) +
-                           goe_box_outline_variance(filter, shape, drift.camera_m, i, &turns);
+        const float given = drift_variance(motion, drift, shape, q->box, i) +
+                            goe_box_outline_variance(filter, shape, drift.camera_m, i, &turns);
         q->value[i] = shape->quantity[i].value;
         q->sigma[i] =
-            sqrtf(wider->scatter * found + told + turns * goe_square(q->sigma[GOE_ORIENTATION]) + moved * moved);
-        const float unasked = q->prism ? unseen + doubt_of(shape, i) : 0.0f;
+            sqrtf(wider->scatter * found + given + turns * goe_square(q->sigma[GOE_ORIENTATION]) + moved * moved);
+        const float excluded = q->prism ? unobserved + doubt_of(shape, i) : 0.0f;
         q->worked_out[i] =
-            sqrtf(goe_larger(found + told + turns * goe_square(q->worked_out[GOE_ORIENTATION]) - unasked, 0.0f));
+            sqrtf(goe_larger(found + given + turns * goe_square(q->worked_out[GOE_ORIENTATION]) - excluded, 0.0f));
     }
 }
 
@@ -281,31 +284,31 @@ static void set_center(const goe_filter_t *filter, const goe_motion_t *motion, c
     const goe_xz_t place = goe_filter_into_trajectory(filter, shape->middle.at);
     const goe_xz_t gone = goe_filter_moved(filter, motion);
     const float elapsed_s = since_start_s(filter, motion);
-    beside_t beside[3];
+    augmented_t augmented[3];
     /* from the state's axes to north: the heading of T and the turn */
     const float c = motion->heading_cos * filter->axes.turn_cos - motion->heading_sin * filter->axes.turn_sin;
     const float s = motion->heading_sin * filter->axes.turn_cos + motion->heading_cos * filter->axes.turn_sin;
     goe_motion_place(motion, place.x * shape->scale_m + filter->axes.start_dx_m + gone.x,
                      place.z * shape->scale_m + filter->axes.start_dz_m + gone.z, &q->center_m[0], &q->center_m[1]);
     const float drifted = drift_variance(motion, drift, shape, q->box, GOE_Z0);
-    float variance[3] = {0.0f, 0.0f, 0.0f}; /* along north, east, and (1, 1), which tells how the two go together */
+    float variance[3] = {0.0f, 0.0f, 0.0f}; /* along north, east, and (1, 1), which gives their correlation */
     float moved[3] = {0.0f, 0.0f, 0.0f};
     float by[3][GOE_STATES] = {{0.0f}};
-    const bool disc = filter->phase == GOE_PHASE_DISC; /* its derivatives tell by themselves */
+    const bool disc = filter->phase == GOE_PHASE_DISC; /* its derivatives suffice */
     for (int i = 0; i < (disc ? 2 : 3); i++) {
         const goe_xz_t along = {i == 0 ? -s : (i == 1 ? c : c - s), i == 0 ? c : (i == 1 ? s : c + s)};
         const goe_xz_t in_trajectory = goe_filter_into_trajectory(filter, along);
         goe_shape_place(&shape->middle, shape->scale_m, along.x, along.z, by[i]);
-        beside_of(filter, by[i], in_trajectory.x, in_trajectory.z, elapsed_s, &beside[i]);
-        const float found = variance_of(filter, wider, by[i], &moved[i]) + beside_dot(&beside[i], &beside[i]);
+        augmented_of(filter, by[i], in_trajectory.x, in_trajectory.z, elapsed_s, &augmented[i]);
+        const float found = variance_of(filter, wider, by[i], &moved[i]) + augmented_dot(&augmented[i], &augmented[i]);
         variance[i] = wider->scatter * found + moved[i] * moved[i];
     }
     q->center_sd_m[0] = sqrtf(variance[0] + drifted);
     q->center_sd_m[1] = sqrtf(variance[1] + drifted);
-    q->center_ne_m2 = disc
-                          ? wider->scatter * dot(by[0], by[1], beside_dot(&beside[0], &beside[1])) + moved[0] * moved[1]
-                          : 0.5f * (variance[2] - variance[0] - variance[1]);
-    if (goe_within(q->center_sd_m[0], METRES_MAX) && goe_within(q->center_sd_m[1], METRES_MAX)) {
+    q->center_ne_m2 =
+        disc ? wider->scatter * dot(by[0], by[1], augmented_dot(&augmented[0], &augmented[1])) + moved[0] * moved[1]
+             : 0.5f * (variance[2] - variance[0] - variance[1]);
+    if (goe_within(q->center_sd_m[0], METERS_MAX) && goe_within(q->center_sd_m[1], METERS_MAX)) {
         q->known |= GOE_HAS_CENTER;
     }
 }
@@ -313,15 +316,16 @@ static void set_center(const goe_filter_t *filter, const goe_motion_t *motion, c
 static void set_velocity(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
                          const widening_t *wider, goe_quantities_t *q) {
     q->moves = false;
-#if GOE_BESIDE
-    const float *beside = filter->mover.beside;
+#if GOE_AUGMENTED
+    const float *augmented = filter->mover.augmented;
     const float c = motion->heading_cos;
     const float s = motion->heading_sin;
     const goe_xz_t axis[2] = {{-s, c}, {c, s}};
     const float own = goe_mover_own_variance(&settings->navigation, goe_filter_elapsed_s(filter, motion));
     q->moves = filter->mover.followed;
     for (size_t i = 0; i < 2; i++) {
-        q->velocity_m_s[i] = axis[i].x * beside[GOE_BESIDE_VELOCITY_X] + axis[i].z * beside[GOE_BESIDE_VELOCITY_Z];
+        q->velocity_m_s[i] =
+            axis[i].x * augmented[GOE_AUGMENTED_VELOCITY_X] + axis[i].z * augmented[GOE_AUGMENTED_VELOCITY_Z];
         q->velocity_sd_m_s[i] = sqrtf(wider->scatter * goe_mover_variance(filter, axis[i]) + own);
     }
 #else
@@ -332,13 +336,13 @@ static void set_velocity(const goe_filter_t *filter, const goe_settings_t *setti
 #endif
 }
 
-/* (R42): the highest point of a roof seen from above is a far corner, and no image shows how far while one face is seen, or a disc stands
- * in for the box. */
+/* (R42): the highest point of a roof from above is a far corner, and no image shows how far while one face is visible, or a disc
+ * substitutes for the box. */
 static void doubt_far_roof(const goe_filter_t *filter, const goe_settings_t *settings, goe_shape_t *shape) {
-    const bool highest = settings->refined.top_is_highest;
-    const bool stands_in = filter->phase == GOE_PHASE_DISC && filter->candidate.stand_in && highest;
+    const bool highest = settings->filter.top_is_highest;
+    const bool is_substitute = filter->phase == GOE_PHASE_DISC && filter->candidate.stand_in && highest;
     const bool is_face = filter->phase == GOE_PHASE_BOX_FACE && (filter->datum.boxes || highest);
-    if (stands_in || is_face) {
+    if (is_substitute || is_face) {
         const float size_m = goe_larger(shape->quantity[GOE_WIDTH].value, shape->quantity[GOE_LENGTH].value);
         shape->roof_m2 = goe_square(FAR_ROOF * size_m);
     }
@@ -384,7 +388,7 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
     set_quantities(filter, motion, &shape, drift, &wider, q);
     const goe_xz_t gone = goe_filter_moved(filter, motion);
     const goe_xz_t from = {filter->axes.start_dx_m + gone.x, filter->axes.start_dz_m + gone.z};
-    q->now = known_now(filter, q, from, settings->refined.range_share);
+    q->now = known_now(filter, q, from, settings->filter.range_sd_rel_max);
     q->known = q->now & filter->known;
     q->value[GOE_X0] += from.x;
     q->value[GOE_Z0] += from.z;
@@ -410,19 +414,19 @@ void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t 
     const float early = sqrtf(shape.early) * scatter;
     const float elapsed_s = since_start_s(filter, motion) + ahead_s;
     float moved[GOE_QUANTITIES];
-    beside_t beside[GOE_QUANTITIES];
+    augmented_t augmented[GOE_QUANTITIES];
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         float *by = shape.quantity[i].by;
-        beside_quantity(filter, by, i, elapsed_s, &beside[i]);
+        augmented_quantity(filter, by, i, elapsed_s, &augmented[i]);
         moved[i] = project(filter, &wider, by);
         const float factor = depends_on_corner(i) ? early : scatter;
         for (int k = 0; k < GOE_STATES; k++) {
             by[k] *= factor;
         }
-        beside_scale(&beside[i], factor);
+        augmented_scale(&augmented[i], factor);
         for (int j = 0; j <= i; j++) {
             const float drifted = i == j ? drift_variance(motion, drift, &shape, goe_filter_is_box(filter), i) : 0.0f;
-            const float shared = drifted + moved[i] * moved[j] + beside_dot(&beside[i], &beside[j]);
+            const float shared = drifted + moved[i] * moved[j] + augmented_dot(&augmented[i], &augmented[j]);
             const float sum = dot(by, shape.quantity[j].by, shared);
             covariance[i][j] = sum;
             covariance[j][i] = sum;

@@ -10,7 +10,7 @@ typedef struct {
     unsigned known;              /* ... and the one before knew, too; 0: the rest does not hold */
     float value[GOE_QUANTITIES]; /* X0, Z0 from the track's first image, T axes; m, orientation in rad */
     float sigma[GOE_QUANTITIES];
-    float worked_out[GOE_QUANTITIES]; /* ... without what no image can show: decides what is known */
+    float worked_out[GOE_QUANTITIES]; /* ... excluding unobservable depth: decides on validity */
     float early_m2;       /* variance of X0 and Z0 by what the own position drifted before the filter's start */
     goe_xz_t length_axis; /* unit vector, T axes */
     bool moves;           /* and is followed; the place is that at the latest image ... */
@@ -24,7 +24,7 @@ typedef struct {
 void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
                          goe_quantities_t *quantities);
 
-/* (R22): covariance of the six quantities, metres and radians, of the filter's present state. from_datum: the top's height
+/* (R22): covariance of the six quantities, meters and radians, of the filter's present state. from_datum: the top's height
  * is counted from the altimeter's zero, not from the ground: its constant error cancels between camera and top. */
 void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
                                bool from_datum, float ahead_s, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]);

@@ -1,9 +1,9 @@
-/* One image through the refined method. SPDX-License-Identifier: MIT
+/* One image through the filter method. SPDX-License-Identifier: MIT
  *
  *   time -> start, change of model -> rows of the model -> gate -> square-root update -> health
  *
- * One Gauss-Newton step per image, linearised at the predicted state: in these states the image is so nearly linear that
- * linearising older images anew gains next to nothing. */
+ * One Gauss-Newton step per image, linearized at the predicted state: in these states the image is so nearly linear that
+ * linearizing older images again gains next to nothing. */
 #include "refined/goe_refined.h"
 
 #include <math.h>
@@ -22,13 +22,13 @@
 #include "refined/goe_report.h"
 #include "refined/goe_scatter.h"
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 
 #define GAP_MAX_US 1000000000u /* a longer gap between images counts as this one */
 #define FADE_MAX 0.95f         /* of what a box's error keeps from image to image, where it is not remembered */
 #define AHEAD_MIN 0.02f        /* of the reference point, units of Z0 */
 #define AGREE_SIGMA 3.0f       /* within which two answers say the same */
-#define STANDS_S 3.0f          /* since the new start, for which the answer before it may stand */
+#define KEPT_S 3.0f            /* since the new start, for which the answer before it may stand */
 #define REACH_MAX_M 1.0e6f     /* as all positions */
 
 /* --------------------------------------------------------------------------------------------------------------- time -- */
@@ -39,7 +39,7 @@ static GOE_NOINLINE void walk_along_z(goe_filter_t *filter, float sigma) {
     memcpy(direction, filter->state, sizeof direction);
     if (filter->phase == GOE_PHASE_PRISM) {
         direction[GOE_PRISM_DEPTH] = 0.0f;
-        direction[GOE_PRISM_UNSEEN] = 0.0f;
+        direction[GOE_PRISM_UNOBSERVED] = 0.0f;
     }
     goe_srif_spread(&filter->root, direction, GOE_GROUND, GOE_STATES - 1u, sigma);
 }
@@ -70,14 +70,14 @@ static void fly_on(goe_filter_t *filter, const goe_motion_t *motion) {
     filter->flown_m += sqrtf(dx_m * dx_m + dz_m * dz_m);
     filter->last.dx_m = motion->dx_m;
     filter->last.dz_m = motion->dz_m;
-#if GOE_BESIDE
+#if GOE_AUGMENTED
     goe_filter_pace(filter, motion);
 #endif
 }
 
 /* (R14), process noise: the attitude's bias drifts, the own position walks. */
 static void let_time_pass(goe_filter_t *filter, const goe_navigation_t *navigation, float since_s, int64_t time_us) {
-    const float drift = navigation->attitude_drift_deg * GOE_RAD_PER_DEG * sqrtf(since_s);
+    const float drift = navigation->attitude_walk_sd_deg * GOE_RAD_PER_DEG * sqrtf(since_s);
     filter->time_us = time_us;
     filter->drift_rad2 += drift * drift;
     if (drift > 0.0f) {
@@ -85,13 +85,13 @@ static void let_time_pass(goe_filter_t *filter, const goe_navigation_t *navigati
         goe_filter_inflate(filter, GOE_BIAS_Y, drift);
         goe_filter_inflate(filter, GOE_BIAS_Z, drift);
     }
-    walk(filter, navigation->position_walk_m, since_s);
+    walk(filter, navigation->position_walk_sd_m, since_s);
     goe_ground_climb(filter, navigation);
 }
 
 /* ------------------------------------------------------------------------------------------------------------- update -- */
 
-/* (R15): what linearising at an uncertain range may miss, the second order of 1/Z. */
+/* (R15): possible linearization error at an uncertain range, the second order of 1/Z. */
 static void allow_for_curvature(const goe_observation_t *obs, goe_rows_t *rows) {
     const float ahead = goe_larger(goe_observation_reference(obs).z, AHEAD_MIN);
     const float missed = obs->camera_m.z * obs->range_variance / ahead;
@@ -107,7 +107,7 @@ static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t 
     rows.white_rad = obs->white_rad;
     goe_model_rows(filter, obs, &rows);
     goe_rows_end(&rows, obs);
-#if GOE_BESIDE
+#if GOE_AUGMENTED
     goe_mover_columns(obs, &rows);
 #endif
     allow_for_curvature(obs, &rows);
@@ -122,7 +122,7 @@ static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t 
     filter->answer.outdated = true;
     filter->measured.dx_m = obs->camera_m.x;
     filter->measured.dz_m = obs->camera_m.z;
-    verdict->rows += goe_ground_tell(filter, obs, &rows);
+    verdict->rows += goe_ground_row(filter, obs, &rows);
     const float nis = goe_model_update(filter, 1.0f / rows.white_rad, &rows, change);
     /* Variances were inflated by (1+r)/(1-r) for the correlation in time, the scatter within one image is not: undone for the
      * NIS. */
@@ -132,11 +132,11 @@ static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t 
 
 /* -------------------------------------------------------------------------------------------------------------- image -- */
 
-/* Points that stand for the sides of a box have its errors; as they are not remembered, the variance counts
+/* Points that replace the sides of a box have its errors; as they are not modeled, the variance counts
  * (1 + fade)/(1 - fade) times, which for a first-order process is that of a long mean. */
 static float outline_share(const goe_detector_t *detector, float fade) {
     const float kept = fade < FADE_MAX ? fade : FADE_MAX;
-    return detector->box_share * sqrtf((1.0f + kept) / (1.0f - kept));
+    return detector->box_noise_rel * sqrtf((1.0f + kept) / (1.0f - kept));
 }
 
 /* What of a box's error is left since the image before; and what an image's own position error does, with the second order that
@@ -146,12 +146,14 @@ static void note_time(goe_filter_t *filter, float since_s, goe_observation_t *ob
     obs->range_variance = goe_filter_variance(filter, GOE_INVERSE_RANGE);
     const float relative2 = obs->range_variance / goe_square(filter->state[GOE_INVERSE_RANGE]);
     if (filter->phase == GOE_PHASE_PRISM || obs->sides->usable != 0) {
-        const bool same = filter->camera == obs->number; /* what was alike in one camera says nothing of another */
-        obs->fade = same && detector->correlation_s > 0.0f ? goe_exp(-since_s / detector->correlation_s) : 0.0f;
+        const bool same = filter->camera == obs->number; /* a correlation in one camera is no evidence about another */
+        obs->fade = same && detector->box_correlation_time_s > 0.0f
+                        ? goe_exp(-since_s / detector->box_correlation_time_s)
+                        : 0.0f;
         obs->outline_share = outline_share(detector, obs->fade);
         filter->camera = obs->number;
     }
-    obs->position_sd = obs->settings->navigation.position_white_m * sqrtf(1.0f + relative2);
+    obs->position_sd = obs->settings->navigation.position_white_sd_m * sqrtf(1.0f + relative2);
 }
 
 /* False if the image does not start the filter. */
@@ -176,7 +178,7 @@ static bool open_image(goe_filter_t *filter, const goe_settings_t *settings, con
 /* Whether the obstacle has just been found to move. */
 static bool starts_to_move(goe_filter_t *filter, const goe_observation_t *obs, const float change[GOE_UNKNOWNS],
                            float since_s) {
-#if GOE_BESIDE
+#if GOE_AUGMENTED
     return goe_mover_judge(filter, obs, change, since_s);
 #else
     (void)filter;
@@ -216,7 +218,7 @@ bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, co
     goe_health_expect(&filter->health);
     *swapped = 0;
     if (filter->phase > GOE_PHASE_BOX_OUTLINE) {
-        goe_filter_enter(filter, GOE_PHASE_NONE); /* none that there is: it starts anew */
+        goe_filter_enter(filter, GOE_PHASE_NONE); /* an unknown one: it starts again */
     }
     goe_ground_read(filter, &settings->navigation, view);
     if (goe_prism_is_early(filter, settings, view->motion) || !open_image(filter, settings, view, &obs, swapped)) {
@@ -236,7 +238,7 @@ bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, co
 
 /* ------------------------------------------------------------------------------------------------------------- answer -- */
 
-/* Half of the extent about the reference point as far as it is seen, m, also while the width is not valid. */
+/* Half of the visible extent about the reference point, m, also while the width is not valid. */
 static float reach_of(const goe_filter_t *filter) {
     const float *x = filter->state;
     if (filter->phase == GOE_PHASE_PRISM) {
@@ -256,15 +258,15 @@ static bool agrees(const place_t *now, const place_t *before, float reach_m) {
     return goe_absolute(now->value - before->value) <= AGREE_SIGMA * sigma + reach_m;
 }
 
-/* Whether the answer from before a new start of the filter stands: the new one says the same, and knows it less well. One that
+/* Whether the answer from before a new start of the filter is kept: the new one agrees, and is less certain. One that
  * disagrees, or that is of an obstacle that moves, takes over; after some seconds any does. */
-static bool previous_stands(const goe_filter_t *filter, const goe_motion_t *motion, const goe_quantities_t *quantities,
-                            const goe_estimate_t *estimate) {
+static bool keeps_previous(const goe_filter_t *filter, const goe_motion_t *motion, const goe_quantities_t *quantities,
+                           const goe_estimate_t *estimate) {
     const place_t now[2] = {{quantities->value[GOE_X0], quantities->sigma[GOE_X0]},
                             {quantities->value[GOE_Z0], quantities->sigma[GOE_Z0]}};
     const place_t before[2] = {{estimate->x0_m, estimate->sigma.x_m}, {estimate->z0_m, estimate->sigma.z_m}};
     const bool answered = (estimate->valid & GOE_HAS_POSITION) != 0u && !quantities->moves && estimate->z_m > 0.0f &&
-                          goe_filter_elapsed_s(filter, motion) < STANDS_S;
+                          goe_filter_elapsed_s(filter, motion) < KEPT_S;
     const float reach_m = filter->answer.reach_m;
     return answered && (filter->answer.previous != 0u) &&
            goe_square(now[0].sigma) + goe_square(now[1].sigma) >
@@ -302,7 +304,7 @@ bool goe_refined_report(goe_filter_t *filter, const goe_settings_t *settings, co
         goe_filter_enter(filter, GOE_PHASE_NONE);
         return false;
     }
-    if (placed && previous_stands(filter, motion, &quantities, estimate)) {
+    if (placed && keeps_previous(filter, motion, &quantities, estimate)) {
         return false;
     }
     const bool fresh = goe_report_quantities(&quantities, motion, estimate);

@@ -10,7 +10,7 @@
 #include "refined/goe_disc.h"
 #include "refined/goe_mover.h"
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 
 #define SUSPECT_IMAGES 8 /* fewer say nothing */
 
@@ -28,7 +28,7 @@ static void report_position(const goe_quantities_t *q, const goe_motion_t *motio
 static void report_orientation(const goe_quantities_t *q, goe_estimate_t *estimate) {
     estimate->orientation_deg = goe_fold_deg(q->value[GOE_ORIENTATION] * GOE_DEG_PER_RAD);
     estimate->sigma.orientation_deg = q->sigma[GOE_ORIENTATION] * GOE_DEG_PER_RAD;
-    estimate->other_side_deg = goe_fold_deg(estimate->orientation_deg + 90.0f);
+    estimate->front_orientation_deg = goe_fold_deg(estimate->orientation_deg + 90.0f);
     estimate->orientation_raw_deg = estimate->orientation_deg;
     estimate->length_axis[0] = q->length_axis.x;
     estimate->length_axis[1] = q->length_axis.z;
@@ -81,7 +81,7 @@ bool goe_report_quantities(const goe_quantities_t *quantities, const goe_motion_
     const bool is_known = (quantities->known & GOE_HAS_POSITION) != 0;
     if (is_known || !(estimate->valid & GOE_HAS_POSITION)) {
         memset(estimate, 0, sizeof *estimate);
-        estimate->method = GOE_METHOD_REFINED;
+        estimate->method = GOE_METHOD_FILTER;
     }
     if (is_known) {
         report_known(quantities, motion, estimate);
@@ -91,16 +91,16 @@ bool goe_report_quantities(const goe_quantities_t *quantities, const goe_motion_
 }
 
 static bool is_misfit(const goe_health_t *health, const goe_settings_t *settings) {
-    return health->images >= SUSPECT_IMAGES && health->mean_nis > settings->refined.misfit_max;
+    return health->images >= SUSPECT_IMAGES && health->mean_nis > settings->filter.nis_ratio_max;
 }
 
-/* A disc was asked for, and it is none. */
+/* A disc was configured, and it is none. */
 static bool is_forced(const goe_filter_t *filter, const goe_settings_t *settings) {
     return settings->model == GOE_MODEL_DISC && filter->phase == GOE_PHASE_DISC && goe_disc_is_skewed(filter);
 }
 
 static bool moves(const goe_filter_t *filter) {
-#if GOE_BESIDE
+#if GOE_AUGMENTED
     return filter->mover.moves;
 #else
     (void)filter;
@@ -109,7 +109,7 @@ static bool moves(const goe_filter_t *filter) {
 }
 
 static bool is_late(const goe_filter_t *filter) {
-#if GOE_BESIDE
+#if GOE_AUGMENTED
     return filter->mover.late;
 #else
     (void)filter;
@@ -152,15 +152,15 @@ void goe_report_fit(const goe_filter_t *filter, const goe_settings_t *settings, 
     estimate->reason = reason_of(filter, settings);
     estimate->suspect =
         is_misfit(health, settings) || (estimate->reason != GOE_REASON_NONE && estimate->reason != GOE_REASON_LATE);
-#if GOE_BESIDE
-    estimate->latency_s = filter->mover.beside[GOE_BESIDE_LATENCY];
+#if GOE_AUGMENTED
+    estimate->latency_s = filter->mover.augmented[GOE_AUGMENTED_LATENCY];
     estimate->sigma.latency_s = goe_mover_latency_sd(filter);
 #endif
-    if (estimate->method == GOE_METHOD_REFINED) {
-        estimate->points = health->images;
+    if (estimate->method == GOE_METHOD_FILTER) {
+        estimate->images_used = health->images;
         estimate->nis = health->nis;
         estimate->nis_rows = health->nis_rows;
-        estimate->misfit = health->mean_nis;
+        estimate->nis_ratio = health->mean_nis;
     }
 }
 

@@ -1,15 +1,15 @@
-/* Scatter beyond what was told. SPDX-License-Identifier: MIT */
+/* Scatter beyond the configured noise. SPDX-License-Identifier: MIT */
 #include "refined/goe_scatter.h"
 
 #include "maths/goe_scalar.h"
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 
 #define KEPT 0.985f          /* of the sums from image to image: some 67 images count */
 #define RESIDUAL_MAX 10.0f   /* sigmas: one outlier must not decide */
 #define SEED 10.0f           /* squares that are always there: few images alone say little */
 #define CHANCE 0.07f         /* one sigma that the mean of NIS and the correlation have over their memory */
-#define CORRELATION_MAX 0.9f /* beyond it the sums cannot tell */
+#define CORRELATION_MAX 0.9f /* beyond it the sums are not informative */
 
 static float clipped(float residual) {
     if (goe_within(residual, RESIDUAL_MAX)) {
@@ -23,7 +23,7 @@ static float clipped(float residual) {
 
 /* A refused row joins nothing. */
 void goe_scatter_take(goe_scatter_t *scatter, const goe_rows_t *rows) {
-    const unsigned seen_before = scatter->seen;
+    const unsigned previous = scatter->seen;
     unsigned seen = 0;
     float products = scatter->products * KEPT;
     float squares = scatter->squares * KEPT;
@@ -32,7 +32,7 @@ void goe_scatter_take(goe_scatter_t *scatter, const goe_rows_t *rows) {
         const size_t series = 2u * rows->feature[i] + (second ? 1u : 0u);
         const float residual = clipped(rows->matrix->row[i][GOE_RESIDUAL]);
         const float before = scatter->before[series];
-        if ((seen_before >> series & 1u) != 0 && rows->variance[i] > 0.0f) {
+        if ((previous >> series & 1u) != 0 && rows->variance[i] > 0.0f) {
             products += residual * before;
             squares += residual * residual;
         }
@@ -52,8 +52,8 @@ float goe_scatter_factor(const goe_filter_t *filter, float repeated) {
     const float excess = goe_larger(filter->health.mean_nis - 1.0f, filter->health.excess);
     const float scale = 1.0f + (excess > 0.0f ? beyond_chance(excess) : excess);
     const float correlation = beyond_chance(scatter->products / (scatter->squares + SEED));
-    const float alike = correlation < CORRELATION_MAX ? correlation : CORRELATION_MAX;
-    const float series = goe_larger((1.0f + alike) / ((1.0f - alike) * repeated), 1.0f);
+    const float limited = correlation < CORRELATION_MAX ? correlation : CORRELATION_MAX;
+    const float series = goe_larger((1.0f + limited) / ((1.0f - limited) * repeated), 1.0f);
     return goe_larger(scale * series, 1.0f);
 }
 

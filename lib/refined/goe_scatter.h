@@ -1,5 +1,5 @@
-/* How much farther the images scatter than their noise was told, and how alike their residuals are from image to image: the
- * factor on the variances that answers for it. SPDX-License-Identifier: MIT */
+/* How much farther the images scatter than their configured noise, and how correlated their residuals are from image to image: the
+ * resulting factor on the variances. SPDX-License-Identifier: MIT */
 #ifndef GOE_SCATTER_H
 #define GOE_SCATTER_H
 
@@ -8,8 +8,8 @@
 /* Takes the whitened rows of an image, before the update. */
 void goe_scatter_take(goe_scatter_t *scatter, const goe_rows_t *rows);
 
-/* (R34): factor on the variance of what the filter found, at least 1. repeated: (1 + c)/(1 - c) of the correlation c that was
- * told and counts already. */
+/* (R34): factor on the variance of the filter's estimates, at least 1. repeated: (1 + c)/(1 - c) of the configured correlation c
+ * that counts already. */
 float goe_scatter_factor(const goe_filter_t *filter, float repeated);
 
 #endif

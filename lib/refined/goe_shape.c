@@ -1,4 +1,4 @@
-/* What all models' quantities have alike. SPDX-License-Identifier: MIT */
+/* Common quantities of all models. SPDX-License-Identifier: MIT */
 #include "refined/goe_shape.h"
 
 #include <math.h>
@@ -6,7 +6,7 @@
 
 #include "maths/goe_scalar.h"
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 
 #define RANGE_MIN 1.0e-3f /* units of Z0 */
 

@@ -5,7 +5,7 @@
 
 #include "refined/goe_filter.h"
 
-/* Of the width by which the middle of what is no disc may lie beside the centre of the obstacle. */
+/* Of the width by which the middle of a shape that is no disc may be off the center of the obstacle. */
 #define GOE_PLACE_SHARE 0.4f
 
 /* A quantity and its derivatives by the states. */
@@ -14,7 +14,7 @@ typedef struct {
     float by[GOE_STATES];
 } goe_linear_t;
 
-/* A place seen from above, in the state's axes and units of Z0, with its derivatives by GOE_SIDE_X, GOE_FRONT_X and
+/* A place in the horizontal plane, in the state's axes and units of Z0, with its derivatives by GOE_SIDE_X, GOE_FRONT_X and
  * GOE_DEPTH_DIFFERENCE; that of x by GOE_BEARING is 1. */
 typedef struct {
     goe_xz_t at;
@@ -31,7 +31,7 @@ typedef struct {
     goe_spot_t middle;    /* of the base */
     goe_xz_t length_axis; /* unit vector, T axes; along the edge that is reported as side */
     float scale_m;        /* Z0: the unit of the state */
-    float place_m2;       /* variance of the centre beyond that of the state, along X as along Z ... */
+    float place_m2;       /* variance of the center beyond that of the state, along X as along Z ... */
     float width_m2;       /* ... of the width ... */
     float turned_rad2;    /* ... of the orientation ... */
     float roof_m2;        /* ... of the place of the roof's point that the top is over ... */
@@ -41,10 +41,10 @@ typedef struct {
     float early;        /* factor on the variance of orientation, width and length, see goe_box_shape() */
 } goe_shape_t;
 
-/* Sets by[] to the derivatives of by_x X + by_z Z of a spot, metres, X and Z in the state's axes. */
+/* Sets by[] to the derivatives of by_x X + by_z Z of a spot, meters, X and Z in the state's axes. */
 void goe_shape_place(const goe_spot_t *spot, float scale_m, float by_x, float by_z, float by[GOE_STATES]);
 
-/* What all models have alike, from the state x (the filter's own, or that under a condition): scale, height, and X0, Z0 of
+/* The common part of all models, from the state x (the filter's own, or that under a condition): scale, height, and X0, Z0 of
  * the reference point. The rest becomes 0. */
 void goe_shape_start(const goe_filter_t *filter, const float x[GOE_STATES], const goe_spot_t *reference,
                      goe_shape_t *shape);

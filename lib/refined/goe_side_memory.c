@@ -3,7 +3,7 @@
 
 #include "maths/goe_scalar.h"
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 
 void goe_side_memory_fade(goe_side_memory_t *side, float fade, float variance) {
     if (!(side->variance > 0.0f)) {

@@ -1,7 +1,7 @@
-/* The error of a box's side that stays alike from image to image. SPDX-License-Identifier: MIT
+/* The slowly varying (correlated) error of a box's side. SPDX-License-Identifier: MIT
  *
- * A first-order process of the sigma s and the time constant tau. As the obstacle stands still, the residuals so far tell what
- * the error is, given the state: it is linear in the state, so that the process needs no state of its own. (R30) to (R32). */
+ * A first-order process of the sigma s and the time constant tau. As the obstacle stands still, the residuals so far determine
+ * the error, given the state: it is linear in the state, so the process needs no state of its own. (R30) to (R32). */
 #ifndef GOE_SIDE_MEMORY_H
 #define GOE_SIDE_MEMORY_H
 
@@ -10,10 +10,10 @@
 /* Over the time that an image's share of the error fades to `fade`. variance: s^2 now. */
 void goe_side_memory_fade(goe_side_memory_t *side, float fade, float variance);
 
-/* Takes what is known of the error out of a row: its residual, its derivatives, its variance. */
+/* Removes the known part of the error from a row: its residual, its derivatives, its variance. */
 void goe_side_memory_recall(const goe_side_memory_t *side, float row[GOE_COLUMNS], float *variance);
 
-/* What the row tells of the error. row: after the gate, times its weight; common: variance, in units of the row's, of what all
+/* The row's information on the error. row: after the gate, times its weight; common: variance, in units of the row's, of the part that all
  * rows of the image share (attitude, position). */
 void goe_side_memory_learn(goe_side_memory_t *side, const float row[GOE_COLUMNS], float weight, float common);
 

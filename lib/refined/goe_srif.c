@@ -6,12 +6,14 @@
 #include <math.h>
 #include <string.h>
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 
 #define PIVOT_MIN 1.0e-12f /* of the diagonal: a covariance this near to singular is taken as if it were this far */
 
 /* The rows of the state come first. */
-void goe_srif_clear(goe_triangle_t *root) { memset(root->element, 0, goe_srif_beside_row() * sizeof root->element[0]); }
+void goe_srif_clear(goe_triangle_t *root) {
+    memset(root->element, 0, goe_srif_augmented_row() * sizeof root->element[0]);
+}
 
 /* -------------------------------------------------------------------------------------------------------- reflections -- */
 
@@ -123,7 +125,7 @@ static void reflect_unknowns(goe_triangle_t *root, goe_matrix_t *matrix, size_t 
     }
 }
 
-/* R x = right, in place; what is not estimated is 0. */
+/* R x = right, in place; 0 for states that are not estimated. */
 static void solve_back(const goe_triangle_t *root, float right[GOE_UNKNOWNS]) {
     const size_t count = goe_srif_count(root);
     for (size_t i = count; i-- > 0;) {
@@ -136,11 +138,11 @@ static void solve_back(const goe_triangle_t *root, float right[GOE_UNKNOWNS]) {
     }
 }
 
-#if GOE_BESIDE
-static void reflect_beside(goe_triangle_t *root, goe_matrix_t *matrix, float change[GOE_UNKNOWNS]) {
-    const size_t count = goe_srif_beside_count(root);
+#if GOE_AUGMENTED
+static void reflect_augmented(goe_triangle_t *root, goe_matrix_t *matrix, float change[GOE_UNKNOWNS]) {
+    const size_t count = goe_srif_augmented_count(root);
     reflect_unknowns(root, matrix, GOE_STATES, GOE_UNKNOWNS, root->right);
-    for (size_t j = 0; j < GOE_BESIDE; j++) {
+    for (size_t j = 0; j < GOE_AUGMENTED; j++) {
         const bool estimated = j < count;
         change[GOE_STATES + j] = estimated ? root->right[j] : 0.0f;
         root->right[j] = estimated ? 0.0f : root->right[j];
@@ -155,8 +157,8 @@ GOE_NOINLINE static float update(goe_triangle_t *root, float nuisance_root, goe_
     memset(change, 0, GOE_STATES * sizeof change[0]);
     reflect_unknowns(root, matrix, 0, states, change);
     const column_t residual = load(&matrix->row[0][GOE_RESIDUAL]);
-#if GOE_BESIDE
-    reflect_beside(root, matrix, change);
+#if GOE_AUGMENTED
+    reflect_augmented(root, matrix, change);
 #endif
     solve_back(root, change);
     return dot(residual, residual, 0.0f);
@@ -220,7 +222,7 @@ float goe_inverse_variance(const goe_inverse_t *inverse, size_t state) {
 
 GOE_STATIC_ASSERT(GOE_UNWEIGHTED == 3, as_many_elements_of_a_column_are_left_0);
 
-/* Column j of the inverse solves R v = (0 ... 1 at j ... 0)'. Of a column beside the state the first GOE_UNWEIGHTED elements, which
+/* Column j of the inverse solves R v = (0 ... 1 at j ... 0)'. Of a column of the augmented states the first GOE_UNWEIGHTED elements, which
  * no quantity depends on, are left 0. */
 /*@ requires \valid_read(root) && \valid(inverse) && first <= GOE_STATES; */
 static void invert_from(const goe_triangle_t *root, size_t first, goe_inverse_t *inverse) {
@@ -240,8 +242,8 @@ static void invert_from(const goe_triangle_t *root, size_t first, goe_inverse_t 
         }
         v += j + 1;
     }
-#if GOE_BESIDE
-    inverse->estimated = (uint8_t)goe_srif_beside_count(root);
+#if GOE_AUGMENTED
+    inverse->estimated = (uint8_t)goe_srif_augmented_count(root);
 #endif
 }
 
@@ -308,13 +310,13 @@ float goe_srif_variance_of_rest(const goe_inverse_t *inverse, const float weight
     return sum + p * p;
 }
 
-#if GOE_BESIDE
-GOE_STATIC_ASSERT(GOE_BESIDE == 3, what_is_added_beside_the_state_is_cleared_by_three_writes);
+#if GOE_AUGMENTED
+GOE_STATIC_ASSERT(GOE_AUGMENTED == 3, augmented_states_are_cleared_by_three_writes);
 
 /* Written out, as above. */
-void goe_srif_beside(const goe_inverse_t *inverse, const float weight[GOE_STATES], const float direct[GOE_BESIDE],
-                     float part[GOE_BESIDE]) {
-    const size_t count = goe_inverse_beside(inverse);
+void goe_srif_augmented(const goe_inverse_t *inverse, const float weight[GOE_STATES], const float direct[GOE_AUGMENTED],
+                        float part[GOE_AUGMENTED]) {
+    const size_t count = goe_inverse_augmented(inverse);
     part[0] = 0.0f;
     part[1] = 0.0f;
     part[2] = 0.0f;
@@ -411,7 +413,7 @@ void goe_srif_from_covariance(float covariance[GOE_KEPT][GOE_KEPT], const float 
 
 GOE_STATIC_ASSERT(GOE_CHANGED <= GOE_ROWS_MAX && GOE_CHANGED < GOE_STATES, the_changed_states_fit_into_the_rows);
 
-/* R times the derivative is square from the changed states on: these rows go in anew, as if they were measured. */
+/* R times the derivative is square from the changed states on: these rows go in again, as if they were measured. */
 void goe_srif_substitute(goe_triangle_t *root, const goe_substitution_t *old, goe_matrix_t *rows) {
     const size_t kept = GOE_STATES - GOE_CHANGED;
     float change[GOE_UNKNOWNS];
@@ -436,8 +438,8 @@ void goe_srif_substitute(goe_triangle_t *root, const goe_substitution_t *old, go
         }
         memset(&r[i], 0, (GOE_UNKNOWNS - i) * sizeof r[0]);
     }
-#if GOE_BESIDE
-    const uint8_t estimated = root->estimated; /* what is beside the state keeps what it is yet to move by */
+#if GOE_AUGMENTED
+    const uint8_t estimated = root->estimated; /* the augmented states keep their pending change */
     root->estimated = 0;
     (void)goe_srif_update(root, 1.0f, rows, change);
     root->estimated = estimated;

@@ -1,17 +1,17 @@
-/* Square-root information filter: the triangle R and what is done to it. SPDX-License-Identifier: MIT
+/* Square-root information filter: the triangle R and its operations. SPDX-License-Identifier: MIT
  *
  * R'R is the information of the state, R^-1 R^-1' its covariance; G. J. Bierman, "Factorization Methods for Discrete
- * Sequential Estimation" (1977), chapters V and VI. The state is the linearisation point, so the right-hand side that
+ * Sequential Estimation" (1977), chapters V and VI. The state is the linearization point, so the right-hand side that
  * belongs to R is always zero. */
 #ifndef GOE_SRIF_H
 #define GOE_SRIF_H
 
 #include "goe.h"
 
-/* Columns of a row of goe_matrix_t: the image's own nuisances, the states, what is beside them, the residual (measured minus
+/* Columns of a row of goe_matrix_t: the image's own nuisances, the states, the augmented states, the residual (measured minus
  * predicted). */
 #define GOE_STATE_COLUMN GOE_NUISANCES
-#define GOE_BESIDE_COLUMN (GOE_STATE_COLUMN + GOE_STATES)
+#define GOE_AUGMENTED_COLUMN (GOE_STATE_COLUMN + GOE_STATES)
 #define GOE_RESIDUAL (GOE_COLUMNS - 1)
 
 /* Element (i, j), i <= j, is element[goe_srif_row(i) + j]. */
@@ -25,19 +25,19 @@ static inline size_t goe_inverse_column(size_t j) { return j * (j + 1u) / 2u; }
 /*@ requires \valid(r) && i <= j < GOE_UNKNOWNS; */
 static inline float *goe_srif_at(goe_triangle_t *r, size_t i, size_t j) { return &r->element[goe_srif_row(i) + j]; }
 
-/* How many of what is beside the state are estimated; never more than there are. */
-static inline size_t goe_srif_beside_count(const goe_triangle_t *r) {
-#if GOE_BESIDE
-    return r->estimated < GOE_BESIDE ? r->estimated : GOE_BESIDE;
+/* Number of estimated augmented states; at most all of them. */
+static inline size_t goe_srif_augmented_count(const goe_triangle_t *r) {
+#if GOE_AUGMENTED
+    return r->estimated < GOE_AUGMENTED ? r->estimated : GOE_AUGMENTED;
 #else
     (void)r;
     return 0;
 #endif
 }
 
-static inline size_t goe_inverse_beside(const goe_inverse_t *inverse) {
-#if GOE_BESIDE
-    return inverse->estimated < GOE_BESIDE ? inverse->estimated : GOE_BESIDE;
+static inline size_t goe_inverse_augmented(const goe_inverse_t *inverse) {
+#if GOE_AUGMENTED
+    return inverse->estimated < GOE_AUGMENTED ? inverse->estimated : GOE_AUGMENTED;
 #else
     (void)inverse;
     return 0;
@@ -45,39 +45,39 @@ static inline size_t goe_inverse_beside(const goe_inverse_t *inverse) {
 }
 
 /* ... and with the state. */
-static inline size_t goe_srif_count(const goe_triangle_t *r) { return GOE_STATES + goe_srif_beside_count(r); }
+static inline size_t goe_srif_count(const goe_triangle_t *r) { return GOE_STATES + goe_srif_augmented_count(r); }
 static inline size_t goe_inverse_count(const goe_inverse_t *inverse) {
-    return GOE_STATES + goe_inverse_beside(inverse);
+    return GOE_STATES + goe_inverse_augmented(inverse);
 }
 
-/* Where the rows of what is beside the state begin. */
-static inline size_t goe_srif_beside_row(void) { return goe_srif_row(GOE_STATES) + GOE_STATES; }
+/* First row of the augmented states. */
+static inline size_t goe_srif_augmented_row(void) { return goe_srif_row(GOE_STATES) + GOE_STATES; }
 
-/* Clears the elements by the state from `first` on, and by what is beside it: in two steps, each too short to be worth a call of
+/* Clears the elements by the state from `first` on, and by the augmented states: in two steps, each too short to be worth a call of
  * memset(). */
 /*@ requires \valid(by + (0 .. GOE_UNKNOWNS - 1)) && first <= GOE_STATES; */
 static inline void goe_srif_zero(float by[GOE_UNKNOWNS], size_t first) {
     for (size_t i = first; i < GOE_STATES; i++) {
         by[i] = 0.0f;
     }
-#if GOE_BESIDE
+#if GOE_AUGMENTED
     by[GOE_STATES] = 0.0f;
     by[GOE_STATES + 1] = 0.0f;
     by[GOE_STATES + 2] = 0.0f;
 #endif
 }
 
-/* Forgets the state; what is beside it stays known. */
+/* Forgets the state; the augmented states stay known. */
 void goe_srif_clear(goe_triangle_t *root);
 
-/* (R17): rotates whitened rows into R by Householder reflections and solves for the change of the state and of what is estimated
- * beside it. nuisance_root:
- * 1/sigma of the nuisances. *matrix is used up. Returns the squared norm that is left of the residuals: the normalised
+/* (R17): rotates whitened rows into R by Householder reflections and solves for the change of the state and of the estimated
+ * augmented states. nuisance_root:
+ * 1/sigma of the nuisances. *matrix is used up. Returns the remaining squared norm of the residuals: the normalized
  * innovation squared. */
 float goe_srif_update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, float change[GOE_UNKNOWNS]);
 
 /* The same, with the last state considered, not estimated (Schmidt 1966; Bierman 1977, chapter VIII): the gain is as if it were
- * known to be 0, and what is known of it stays as it was; the inverse then holds its part in the variances of the others. */
+ * known to be 0, and its own information stays as it was; the inverse then holds its part in the variances of the others. */
 float goe_srif_update_considering(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix,
                                   float change[GOE_UNKNOWNS]);
 
@@ -95,25 +95,25 @@ void goe_srif_invert_diagonal(const goe_triangle_t *root, goe_inverse_t *inverse
 /*@ requires \valid_read(inverse) && state < GOE_STATES; */
 float goe_inverse_variance(const goe_inverse_t *inverse, size_t state);
 
-/* Variance of w' x, as if what is beside the state were known. */
+/* Variance of w' x, as if the augmented states were known. */
 float goe_srif_variance(const goe_inverse_t *inverse, const float weight[GOE_STATES]);
 
 /* The same if the first GOE_UNWEIGHTED weights are 0, for half of that. */
 #define GOE_UNWEIGHTED 3
 float goe_srif_variance_of_rest(const goe_inverse_t *inverse, const float weight[GOE_STATES]);
 
-#if GOE_BESIDE
-/* What the estimates beside the state add to the variance of w' x + direct' beside, as its squares' sum. direct may be null. */
+#if GOE_AUGMENTED
+/* The contribution of the augmented states to the variance of w' x + direct' augmented, as its squares' sum. direct may be null. */
 /*@ requires \valid_read(inverse) && \valid_read(weight + (0 .. GOE_STATES - 1));
-    requires direct == \null || \valid_read(direct + (0 .. GOE_BESIDE - 1));
-    requires \valid(part + (0 .. GOE_BESIDE - 1)); */
-void goe_srif_beside(const goe_inverse_t *inverse, const float weight[GOE_STATES], const float direct[GOE_BESIDE],
-                     float part[GOE_BESIDE]);
+    requires direct == \null || \valid_read(direct + (0 .. GOE_AUGMENTED - 1));
+    requires \valid(part + (0 .. GOE_AUGMENTED - 1)); */
+void goe_srif_augmented(const goe_inverse_t *inverse, const float weight[GOE_STATES], const float direct[GOE_AUGMENTED],
+                        float part[GOE_AUGMENTED]);
 
 /* Covariance of two such sums, or the variance of one. */
-static inline float goe_srif_beside_dot(const float a[GOE_BESIDE], const float b[GOE_BESIDE]) {
+static inline float goe_srif_augmented_dot(const float a[GOE_AUGMENTED], const float b[GOE_AUGMENTED]) {
     float sum = 0.0f;
-    for (size_t i = 0; i < GOE_BESIDE; i++) {
+    for (size_t i = 0; i < GOE_AUGMENTED; i++) {
         sum += a[i] * b[i];
     }
     return sum;

@@ -6,7 +6,7 @@
 #include "image/goe_camera.h"
 #include "maths/goe_scalar.h"
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 
 #define AHEAD_MIN 0.02f     /* of a touching point, and of the reference point, units of Z0 */
 #define LEVEL_MIN 1.0e-6f   /* horizontal part of a side's normal: without one the nearest point touches */
@@ -49,7 +49,7 @@ float goe_touch_size(const goe_observation_t *obs, size_t side, float extent) {
 float goe_touch_white_variance(const goe_observation_t *obs, size_t side, float size) {
     const float pixel = obs->side_px / focal_px(obs->camera, side);
     return goe_square(pixel) + goe_square(SCATTER_SHARE * size) +
-           (obs->sides->cut ? goe_square(obs->settings->detector.cut_noise * size) : 0.0f);
+           (obs->sides->cut ? goe_square(obs->settings->detector.truncation_noise_rel * size) : 0.0f);
 }
 
 float goe_touch_variance(const goe_observation_t *obs, size_t side, float size) {
@@ -152,7 +152,7 @@ static line_t line_at(const goe_camera_t *camera, size_t side, float x, float y)
 
 static float sign_of(size_t side) { return side == GOE_BOX_LEFT || side == GOE_BOX_TOP ? -1.0f : 1.0f; }
 
-/* By the line as it lies where it touches, which the first call tells about, (R28). */
+/* By the line at its touching point, which the first call gives, (R28). */
 /*@ requires goe_observation_is_open(obs) && goe_solid_is_closed(solid) && \valid_read(straight + (0 .. 2));
     requires \valid(t) && side < GOE_BOX_SIDES; */
 static bool touch_bent(const goe_observation_t *obs, const goe_solid_t *solid, size_t side, const float straight[3],

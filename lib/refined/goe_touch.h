@@ -51,16 +51,16 @@ float goe_touch_size(const goe_observation_t *obs, size_t side, float extent);
 /*@ requires goe_observation_is_open(obs) && side < GOE_BOX_SIDES; */
 float goe_touch_white_variance(const goe_observation_t *obs, size_t side, float size);
 
-/* ... and of the error that stays alike, for models that do not remember it. */
+/* ... and of the correlated error, for models that do not model it. */
 /*@ requires goe_observation_is_open(obs) && side < GOE_BOX_SIDES; */
 float goe_touch_variance(const goe_observation_t *obs, size_t side, float size);
 
-/* Sets what all sides of an image have alike: the camera's axes in the state's, freed of the attitude bias. */
+/* Sets the common part of all sides of an image: the camera's axes in the state's, freed of the attitude bias. */
 /*@ requires goe_observation_is_open(obs) && \valid(solid); */
 void goe_touch_open(const goe_observation_t *obs, goe_solid_t *solid);
 
-/* Adds the row of a side that is seen, (R29), and returns its derivatives by the states as goe_rows_add() does: those by
- * GOE_GROUND are set, the others are the model's. Null if the touching point does not lie ahead. */
+/* Adds the row of a visible side, (R29), and returns its derivatives by the states as goe_rows_add() does: those by
+ * GOE_GROUND are set, the others are the model's. Null if the touching point is not ahead. */
 /*@ requires goe_observation_is_open(obs) && goe_solid_is_closed(solid) && goe_rows_hold(rows);
     requires side < GOE_BOX_SIDES && rows->count < GOE_ROWS_MAX && \valid(touch) && \valid(gradient); */
 float *goe_touch_add(goe_rows_t *rows, const goe_observation_t *obs, const goe_solid_t *solid, size_t side,

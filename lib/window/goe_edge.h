@@ -8,7 +8,7 @@ typedef struct {
     const goe_point_t *left, *right; /* end points in image order */
     bool counts;                     /* long enough in the raw image */
     bool has_heading;                /* ... and steep enough in the aligned one */
-    float heading_deg;               /* from Z, (-90, 90]; holds if has_heading */
+    float heading_deg;               /* from Z, (-90, 90]; valid if has_heading */
 } goe_edge_t;
 
 typedef struct {

@@ -12,7 +12,7 @@ typedef struct {
 } goe_extent_t;
 
 /* (6), (7). GOE_OK, or GOE_EDGE_ON if an end of the side edge is within min_x (of the focal length) of x' = 0, where the
- * side cannot be seen. faces must have a front and a side. */
+ * side is not visible. faces must have a front and a side. */
 goe_status_t goe_extent_length(const goe_faces_t *faces, const goe_span_t *front, goe_turn_t turn,
                                const goe_estimate_t *reference, float min_x, goe_extent_t *length);
 

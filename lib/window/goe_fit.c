@@ -12,7 +12,7 @@
 #if GOE_WITH_WINDOW
 
 #define PARALLAX_MIN 1.0e-6f /* change of the rows over the window, of their size: below lies the rounding of floats */
-#define METRES_MAX 1.0e6f    /* no obstacle is farther away or wider */
+#define METERS_MAX 1.0e6f    /* no obstacle is farther away or wider */
 #define SIGMA_MAX_M 1.0e9f   /* so that squares and products of sigmas stay finite */
 
 typedef struct {
@@ -104,11 +104,11 @@ goe_status_t goe_fit_solve(const goe_fit_ring_t *ring, int length, float min_bas
     const float width_m = 1.0f / inverse_width;
     const float x0_m = width_m * m.xi + m.dx_m;
     const float z0_m = width_m * m.zeta + m.dz_m;
-    if (!goe_within(width_m, METRES_MAX) || !goe_within(x0_m, METRES_MAX) || !goe_within(z0_m, METRES_MAX)) {
+    if (!goe_within(width_m, METERS_MAX) || !goe_within(x0_m, METERS_MAX) || !goe_within(z0_m, METERS_MAX)) {
         return GOE_NO_PARALLAX;
     }
     if (z0_m <= m.largest_dz_m) {
-        return GOE_PASSED;
+        return GOE_ABEAM;
     }
     fit->x0_m = x0_m;
     fit->z0_m = z0_m;

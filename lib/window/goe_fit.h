@@ -21,7 +21,7 @@ static inline void goe_fit_add(goe_fit_ring_t *ring, int length, float dx_m, flo
 
 /* Solves (5) over the newest `length` rows, which must be there. GOE_OK with x0, z0, width, residual,
  * baseline and their sigmas set, or with *fit untouched GOE_NO_BASELINE,
- * GOE_NO_PARALLAX or GOE_PASSED. */
+ * GOE_NO_PARALLAX or GOE_ABEAM. */
 /*@ requires \valid_read(ring) && \valid(fit) && 3 <= length <= GOE_WINDOW_MAX; */
 goe_status_t goe_fit_solve(const goe_fit_ring_t *ring, int length, float min_baseline_m, goe_estimate_t *fit);
 

@@ -8,7 +8,7 @@
 
 #if GOE_WITH_WINDOW
 
-/* Between +-30 and +-60 degrees the smaller angle no longer tells the side edge from the front edge under noise: there
+/* Between +-30 and +-60 degrees the smaller angle no longer separates the side edge from the front edge under noise: there
  * the low-pass decides, or it would average +45 with -45. */
 #define AMBIGUOUS_DEG 30.0f
 #define FOLDED_MAX_DEG 90.0f
@@ -48,7 +48,7 @@ static void low_pass(goe_orientation_t *orientation, float measured_deg, int mem
     orientation->variance_deg2 += (step * step - orientation->variance_deg2) * gain;
 }
 
-/* What no image can have left begins anew. */
+/* A value that no image can have left begins again. */
 static void mend(goe_orientation_t *orientation, int memory) {
     if (orientation->count < 0 || orientation->count > memory ||
         !goe_within(orientation->filtered_deg, FOLDED_MAX_DEG)) {

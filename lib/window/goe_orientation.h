@@ -13,7 +13,7 @@ typedef struct {
     bool side_is_right;      /* the side edge lies right of the front edge */
 } goe_faces_t;
 
-/* Tells front from side and, if an edge has a heading, takes it into the low-pass. memory: images, >= 1. */
+/* Separates front from side and, if an edge has a heading, takes it into the low-pass. memory: images, >= 1. */
 /*@ requires \valid(orientation) && \valid_read(edges) && \valid(faces) && 1 <= memory <= 1000; */
 void goe_orientation_update(goe_orientation_t *orientation, const goe_edges_t *edges, int memory, goe_faces_t *faces);
 

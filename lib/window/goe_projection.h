@@ -28,7 +28,7 @@ typedef struct {
 /* (2), b = 0. GOE_OK, or GOE_SWAPPED if left is not left of right. */
 goe_status_t goe_projection_disc(const goe_point_t *left, const goe_point_t *right, goe_row_t *row);
 
-/* (3), (4) of the front edge from its left to its right end. GOE_OK, or GOE_EDGE_ON if it is seen from its end or from
+/* (3), (4) of the front edge from its left to its right end. GOE_OK, or GOE_EDGE_ON if the camera views it from its end or from
  * behind. */
 goe_status_t goe_projection_line(const goe_point_t *left, const goe_point_t *right, goe_turn_t turn, goe_span_t *span,
                                  goe_row_t *row);

@@ -29,7 +29,7 @@ typedef struct {
     goe_edges_t edges;
     goe_faces_t faces;
     goe_turn_t turn;  /* filtered orientation */
-    goe_span_t front; /* holds if line_row */
+    goe_span_t front; /* valid if line_row */
     goe_faults_t faults;
     bool disc_row, line_row; /* the image added a row to that model's ring */
 } frame_t;
@@ -110,19 +110,19 @@ static void take_fit(const frame_t *frame, goe_model_t model) {
     estimate->model = model;
     estimate->valid |= GOE_HAS_POSITION | GOE_HAS_WIDTH;
     estimate->fresh = true;
-    estimate->points = frame->settings->window.points;
+    estimate->images_used = frame->settings->window.points;
 }
 
-/* GOE_OK: solved. GOE_COLLECTING, GOE_HELD: nothing to solve. Otherwise why there is no solution. */
+/* GOE_OK: solved. GOE_CONVERGING, GOE_STALE: nothing to solve. Otherwise why there is no solution. */
 static goe_status_t solve(goe_window_t *window, const frame_t *frame) {
     const goe_model_t model = reported_model(window, frame->settings);
     const goe_fit_ring_t *ring = model == GOE_MODEL_LINE ? &window->line : &window->disc;
     const int length = frame->settings->window.points;
     if (ring->count < length) {
-        return GOE_COLLECTING;
+        return GOE_CONVERGING;
     }
     if (!(model == GOE_MODEL_LINE ? frame->line_row : frame->disc_row)) {
-        return GOE_HELD;
+        return GOE_STALE;
     }
     const goe_status_t status = goe_fit_solve(ring, length, frame->settings->window.min_baseline_m, frame->estimate);
     if (status == GOE_OK) {
@@ -182,7 +182,7 @@ static void report_orientation(const goe_orientation_t *orientation, const frame
     estimate->valid |= GOE_HAS_ORIENTATION;
     estimate->orientation_deg = orientation->filtered_deg;
     estimate->orientation_raw_deg = orientation->raw_deg;
-    estimate->other_side_deg = goe_fold_deg(orientation->filtered_deg + 90.0f);
+    estimate->front_orientation_deg = goe_fold_deg(orientation->filtered_deg + 90.0f);
     estimate->length_axis[0] = turn.s;
     estimate->length_axis[1] = turn.c;
     estimate->width_axis[0] = turn.c;
@@ -236,17 +236,17 @@ static goe_status_t judge(const frame_t *frame, goe_status_t solving) {
         return frame->faults.first == GOE_OK ? GOE_OK : GOE_PARTIAL;
     }
     if (solving < GOE_OK) {
-        goe_count_cause(frame->faults.causes, solving);
+        goe_count_cause(frame->faults.fault_counts, solving);
         return solving;
     }
     if (frame->faults.first != GOE_OK) {
         return frame->faults.first;
     }
     if (!frame->view->seen) {
-        return GOE_NOTHING_SEEN;
+        return GOE_NO_DETECTION;
     }
     if (frame->settings->model == GOE_MODEL_LINE && frame->edges.count > 0 && !frame->line_row) {
-        goe_count_cause(frame->faults.causes, GOE_NO_EDGE);
+        goe_count_cause(frame->faults.fault_counts, GOE_NO_EDGE);
         return GOE_NO_EDGE;
     }
     return solving;
@@ -271,7 +271,7 @@ goe_status_t goe_window_update(goe_window_t *window, const goe_settings_t *setti
     start_frame(&frame, settings, view, faults, estimate);
     const goe_status_t fault = add_disc_row(window, &frame);
     if (task == GOE_WINDOW_COLLECTS) {
-        return GOE_HELD;
+        return GOE_STALE;
     }
     estimate->fresh = false;
     goe_fault_note(&frame.faults, fault);

@@ -7,7 +7,7 @@
 
 typedef enum {
     GOE_WINDOW_SOLVES,
-    GOE_WINDOW_COLLECTS /* rows of the disc only, so that it can solve when it is asked to */
+    GOE_WINDOW_COLLECTS /* rows of the disc only, to be able to solve on request */
 } goe_window_task_t;
 
 /* Forgets the track. */

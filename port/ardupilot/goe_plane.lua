@@ -18,7 +18,7 @@ counts there; nor on a link on which anybody's signed HEARTBEAT comes.
 No target counts that is farther than GOEP_DIST, lower than GOEP_ALT_MIN, far below or above the aircraft, or outside the fence.
 ]]
 
-local HAZARD = { id = 42702, crc_extra = 114, length = 67 }
+local HAZARD = { id = 42702, crc_extra = 62, length = 67 }
 local STATUS = { id = 42703, crc_extra = 89, length = 32 }
 local HEARTBEAT = { id = 0, crc_extra = 50, length = 9 } -- the parser knows it: scripts get it only if the link accepts it
 local KINDS = { [HAZARD.id] = HAZARD, [STATUS.id] = STATUS, [HEARTBEAT.id] = HEARTBEAT }
@@ -66,9 +66,9 @@ local from_landing = false -- it was landing then
 local overruled = false
 local standing -- the order: whose, action, lat, lon, down; is_past: that one is reported without an order; over_ms: since then
 -- the companion gives none
-local heard_ms = uint32_t(0)
+local received_ms = uint32_t(0)
 local sent_ms = uint32_t(0)
-local silence_told = false
+local silence_reported = false
 local said = {} -- texts that were sent once, and are not sent again
 
 local function say(severity, text)
@@ -227,7 +227,7 @@ local function take_status(payload)
 end
 
 local function take(payload, kind)
-    heard_ms = millis()
+    received_ms = millis()
     if kind == HAZARD then
         take_hazard(payload)
     else
@@ -378,8 +378,8 @@ end
 -- The same of a place. What the firmware does at a fence, it still does.
 local function fence_forbids_place(place)
     local kinds = fence_kinds()
-    local room_m = value_of("FENCE_RADIUS") - value_of("FENCE_MARGIN") - math.abs(value_of("WP_LOITER_RAD"))
-    if kinds & FENCE_CIRCLE ~= 0 and ahrs:get_home():get_distance(place) > room_m then
+    local radius_left_m = value_of("FENCE_RADIUS") - value_of("FENCE_MARGIN") - math.abs(value_of("WP_LOITER_RAD"))
+    if kinds & FENCE_CIRCLE ~= 0 and ahrs:get_home():get_distance(place) > radius_left_m then
         return "outside the fence"
     elseif kinds & FENCE_POLYGON ~= 0 and value_of("FENCE_TOTAL") > 0 and any_polygon:get() < 1 then
         return "polygon fence, not visible"
@@ -514,13 +514,13 @@ local function is_over()
         (standing.is_past or not mode_before or millis() - standing.over_ms > SILENCE_MS)
 end
 
--- An order stands on, at its target, while nothing is heard.
+-- An order stays active, at its target, while no message arrives.
 local function watch_silence()
-    local silent = millis() - heard_ms > SILENCE_MS
-    if silent and mode_before and not silence_told then
+    local silent = millis() - received_ms > SILENCE_MS
+    if silent and mode_before and not silence_reported then
         say(TEXT_WARNING, "companion silent, circling: pilot to decide")
     end
-    silence_told = silent and mode_before ~= nil
+    silence_reported = silent and mode_before ~= nil
     return silent
 end
 

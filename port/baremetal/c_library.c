@@ -1,7 +1,7 @@
-/* What the C library of the test programs asks of a system. SPDX-License-Identifier: MIT
+/* System calls that the C library of the test programs needs. SPDX-License-Identifier: MIT
  *
- * The library goe needs none of this. Test programs ask for an environment; what else the C library might want (files,
- * a heap) is refused. */
+ * The library goe needs none of them. Test programs need an environment; all other calls of the C library (files,
+ * a heap) are refused. */
 #include <stddef.h>
 #include <string.h>
 

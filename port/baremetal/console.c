@@ -1,5 +1,5 @@
-/* What newlib's printf() asks of a system: text goes out by semihosting, floats take a small heap. For images that print; the
- * library goe needs none of this. SPDX-License-Identifier: MIT */
+/* System calls that newlib's printf() needs: text goes out by semihosting, floats take a small heap. For images that print; the
+ * library goe needs none of them. SPDX-License-Identifier: MIT */
 #include <stddef.h>
 
 #include "semihosting.h"

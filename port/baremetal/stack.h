@@ -1,4 +1,4 @@
-/* How deep the stack was: what is left of a pattern it was painted with. SPDX-License-Identifier: MIT */
+/* Measures the stack depth by the rest of a painted pattern. SPDX-License-Identifier: MIT */
 #ifndef GOE_PORT_STACK_H
 #define GOE_PORT_STACK_H
 

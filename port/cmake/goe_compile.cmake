@@ -18,7 +18,7 @@ function(goe_library_sources variable)
     set(${variable} ${sources} PARENT_SCOPE)
 endfunction()
 
-# goe_compile(<target> [LIBRARY]): C99 and warnings; LIBRARY: what holds for lib/ alone.
+# goe_compile(<target> [LIBRARY]): C99 and warnings; LIBRARY: the rules of lib/ alone.
 function(goe_compile target)
     cmake_parse_arguments(PARSE_ARGV 1 arg "LIBRARY" "" "")
     set_target_properties(${target} PROPERTIES C_STANDARD 99 C_STANDARD_REQUIRED ON C_EXTENSIONS OFF)

@@ -1,6 +1,6 @@
 # goe_pkg_config(<name> <target> <description> [REQUIRES <name>...]): installs <name>.pc for a static library. Its paths are
-# relative to the file, so that a staged or moved tree still tells where it is; but where a folder is given as an absolute path.
-# The definitions that a target tells whoever links it are in the flags: the estimator's size depends on them.
+# relative to the file, so a staged or moved tree still gives its place, unless a folder is given as an absolute path.
+# The public definitions of a target are in the flags: the estimator's size depends on them.
 function(goe_pkg_config name target description)
     cmake_parse_arguments(PARSE_ARGV 3 arg "" "" "REQUIRES")
     set(pc_name ${name})

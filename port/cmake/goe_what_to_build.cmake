@@ -1,9 +1,9 @@
 # GOE_BUILD_HOST and GOE_BUILD_TESTS that are AUTO become ON or OFF for this run: ON if the project is not part of another one and
-# what they need is found. What is left out is said, with what would bring it in.
+# their requirements are found. A message names the parts that are left out and their missing requirements.
 
 # goe_left_out(<variable> <what> <missing>)
 function(goe_left_out variable what missing)
-    message(STATUS "${what} left out: no ${missing}. tools/setup.sh installs what is missing; -D${variable}=ON insists")
+    message(STATUS "${what} left out: no ${missing}. tools/setup.sh installs it; -D${variable}=ON insists")
 endfunction()
 
 if(GOE_BUILD_HOST STREQUAL AUTO)

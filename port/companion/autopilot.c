@@ -11,10 +11,10 @@
 #define ASK_US 250000        /* between two questions for the clock */
 #define REQUEST_US 5000000   /* between two rounds of requests for rates, while no samples come */
 #define ORIGIN_US 5000000    /* between two requests for the origin */
-#define SILENT_US 3000000    /* without a sample for this long the autopilot is asked for its rates anew */
+#define SILENT_US 3000000    /* without a sample for this long the rates are requested again */
 #define CLOCK_OFF_US 1000000 /* a sample's time that far from the clock is another clock's */
 #define STRANGE_MAX 3
-#define UNANSWERED 40u        /* questions, after which it is told: ten seconds */
+#define UNANSWERED 40u        /* unanswered requests before a report: ten seconds */
 #define HEIGHT_OLD_US 2000000 /* a range finder or terrain that is older counts as none */
 
 /* A step between two positions that the velocities do not explain is a reset of the autopilot's filter: beyond what an
@@ -40,7 +40,7 @@ void autopilot_init(autopilot_t *autopilot, const companion_config_t *config, go
     autopilot->flight = flight;
     autopilot->wire = wire;
     autopilot->system = (uint8_t)config->link_system;
-    wire->heard = autopilot->system;
+    wire->autopilot_system = autopilot->system;
 }
 
 int64_t autopilot_clock_us(const autopilot_t *autopilot, int64_t now_us) {
@@ -79,7 +79,7 @@ static void count_reset(autopilot_t *autopilot, bool known) {
 
 /* All that was known of another run of the autopilot. A clock that merely slips against the own one (a simulator that is starved
  * of its processor, a computer that was suspended) ends nothing: poses and tracks are of the autopilot's clock alone. */
-static void start_anew(autopilot_t *autopilot) {
+static void start_again(autopilot_t *autopilot) {
     clock_sync_reset(&autopilot->clock);
     (void)goe_flight_restart(autopilot->flight);
     count_reset(autopilot, false);
@@ -88,10 +88,10 @@ static void start_anew(autopilot_t *autopilot) {
     autopilot->has_origin = autopilot->origin_given = autopilot->has_home = autopilot->has_home_alt = false;
     autopilot->has_odometry_resets = autopilot->answered = false;
     autopilot->landing = autopilot->flaring = autopilot->on_ground = false;
-    autopilot->told_us = autopilot->jump_us = 0;
+    autopilot->report_us = autopilot->jump_us = 0;
     autopilot->strange_times = 0;
     message_rates_clear(&autopilot->rates);
-    autopilot->requested_us = autopilot->origin_asked_us = 0;
+    autopilot->requested_us = autopilot->origin_requested_us = 0;
 }
 
 /* Whether a sample's time goes on from the latest. A few that do not, or that lie ahead of the clock, mean a restart. One that
@@ -112,14 +112,14 @@ static bool is_of_the_clock(autopilot_t *autopilot, int64_t time_us, int64_t lat
     if (autopilot->strange_times >= STRANGE_MAX) {
         autopilot->restarts++;
         event("the autopilot's clock jumped by %+.1f s: all tracks end", (double)off_us / US_PER_S);
-        start_anew(autopilot);
+        start_again(autopilot);
     }
     return false;
 }
 
-static bool was_asked(const autopilot_t *autopilot, int64_t asked_us) {
+static bool was_requested(const autopilot_t *autopilot, int64_t question_us) {
     for (unsigned i = 0; i < AUTOPILOT_QUESTIONS; i++) {
-        if (autopilot->asked_us[i] == asked_us && asked_us != 0) {
+        if (autopilot->question_us[i] == question_us && question_us != 0) {
             return true;
         }
     }
@@ -136,14 +136,14 @@ static void take_timesync(autopilot_t *autopilot, const mavlink_message_t *messa
         wire_send(autopilot->wire, &answer);
         return;
     }
-    const int64_t asked_us = sync.ts1 / 1000;
-    if (!was_asked(autopilot, asked_us)) {
+    const int64_t question_us = sync.ts1 / 1000;
+    if (!was_requested(autopilot, question_us)) {
         return; /* an answer to somebody else */
     }
     autopilot->answered = true;
     const int64_t before_us = autopilot_clock_us(autopilot, now_us);
-    if (!clock_sync_answer(&autopilot->clock, asked_us, now_us, sync.tc1 / 1000)) {
-        (void)clock_sync_answer(&autopilot->clock, asked_us, now_us, sync.tc1 / 1000);
+    if (!clock_sync_answer(&autopilot->clock, question_us, now_us, sync.tc1 / 1000)) {
+        (void)clock_sync_answer(&autopilot->clock, question_us, now_us, sync.tc1 / 1000);
         autopilot->slips++;
         event("the autopilot's clock slipped by %+.0f ms against this one",
               (double)(autopilot_clock_us(autopilot, now_us) - before_us) / US_PER_MS);
@@ -214,7 +214,7 @@ static bool find_step(const mavlink_local_position_ned_t *from, const mavlink_lo
     return hypotf(step_m[0], step_m[1]) > allowed_m || fabsf(step_m[2]) > allowed_m;
 }
 
-/* Heights come more rarely than positions: what is kept is where the ground is. */
+/* Heights come more rarely than positions: the ground's altitude is kept. */
 static void put_heights(const autopilot_t *autopilot, int64_t time_us, goe_flight_position_t *sample) {
     const float down_m = sample->position_ned_m[2];
     sample->height_m[GOE_FLIGHT_RANGE_FINDER] = autopilot->range_finder_down_m - down_m;
@@ -265,7 +265,7 @@ static void mark_step(autopilot_t *autopilot, const float step_m[3], int64_t now
           (double)step_m[2]);
 }
 
-/* As the flight layer asks it: here already, so that no step is made of it. NaN is in no range. */
+/* The flight layer's requirement, checked here already to keep an invalid value from becoming a step. NaN is in no range. */
 static bool is_in_range(const mavlink_local_position_ned_t *p) {
     return fabsf(p->x) <= POSITION_MAX_M && fabsf(p->y) <= POSITION_MAX_M && fabsf(p->z) <= POSITION_MAX_M &&
            fabsf(p->vx) <= SPEED_MAX_M_S && fabsf(p->vy) <= SPEED_MAX_M_S && fabsf(p->vz) <= SPEED_MAX_M_S;
@@ -299,27 +299,27 @@ static void take_position(autopilot_t *autopilot, const mavlink_message_t *messa
     }
 }
 
-/* Of ODOMETRY the counter of resets alone, which does not tell by how much. What is large enough is found in the samples, a
- * moment before or after: then the counter tells nothing new. */
+/* Of ODOMETRY only the reset counter, which does not give the size of the jump. A large jump is found in the samples, a
+ * moment before or after: then the counter adds nothing. */
 static void take_odometry(autopilot_t *autopilot, const mavlink_message_t *message, int64_t now_us) {
     const uint8_t resets = mavlink_msg_odometry_get_reset_counter(message);
     if (autopilot->has_odometry_resets && resets != autopilot->odometry_resets) {
-        autopilot->told_us = now_us;
+        autopilot->report_us = now_us;
     }
     autopilot->odometry_resets = resets;
     autopilot->has_odometry_resets = true;
 }
 
-static void judge_told_reset(autopilot_t *autopilot, int64_t now_us) {
-    if (autopilot->told_us == 0 || now_us - autopilot->told_us < RESET_WAIT_US) {
+static void judge_reported_reset(autopilot_t *autopilot, int64_t now_us) {
+    if (autopilot->report_us == 0 || now_us - autopilot->report_us < RESET_WAIT_US) {
         return;
     }
-    if (autopilot->jump_us == 0 || autopilot->told_us - autopilot->jump_us > RESET_BEFORE_US) {
+    if (autopilot->jump_us == 0 || autopilot->report_us - autopilot->jump_us > RESET_BEFORE_US) {
         autopilot->reset_attitude++;
         count_reset(autopilot, false);
-        event("the autopilot tells of a reset, and not by how much: all tracks end");
+        event("the autopilot reports a reset of unknown size: all tracks end");
     }
-    autopilot->told_us = 0;
+    autopilot->report_us = 0;
 }
 
 /* ----------------------------------------------------------------------------------------------------------- heights -- */
@@ -368,7 +368,7 @@ static void take_altitude(autopilot_t *autopilot, const mavlink_message_t *messa
     }
 }
 
-/* ArduPilot tells home in its own frame as the origin whatever its height: there the altitudes of both count. */
+/* ArduPilot reports home in its own frame as the origin whatever its height: there the altitudes of both count. */
 static void place_home(autopilot_t *autopilot) {
     if (autopilot->kind == MAV_AUTOPILOT_ARDUPILOTMEGA && autopilot->has_home_alt && autopilot->has_origin) {
         autopilot->home_down_m = autopilot->origin_alt_m - autopilot->home_alt_m;
@@ -413,12 +413,12 @@ static void take_heartbeat(autopilot_t *autopilot, const mavlink_message_t *mess
         return;
     }
     if (autopilot->heartbeat_us != 0 && !link_is_answered(autopilot->wire->link)) {
-        event("the autopilot is heard at another address now");
+        event("the autopilot now sends from another address");
     }
     if (autopilot->heartbeat_us == 0) {
         autopilot->system = message->sysid;
         autopilot->kind = beat.autopilot;
-        autopilot->wire->heard = message->sysid;
+        autopilot->wire->autopilot_system = message->sysid;
         autopilot->wire->system = message->sysid;
         event("%s found: system %u", autopilot_kind_text(autopilot), message->sysid);
     }
@@ -556,14 +556,14 @@ static void command(autopilot_t *autopilot, uint16_t number, float first, float 
 }
 
 static int64_t latest_question_us(const autopilot_t *autopilot) {
-    return autopilot->asked == 0 ? 0 : autopilot->asked_us[(autopilot->asked - 1u) % AUTOPILOT_QUESTIONS];
+    return autopilot->questions == 0 ? 0 : autopilot->question_us[(autopilot->questions - 1u) % AUTOPILOT_QUESTIONS];
 }
 
 static void ask_clock(autopilot_t *autopilot, int64_t now_us) {
     mavlink_message_t message;
-    autopilot->asked_us[autopilot->asked % AUTOPILOT_QUESTIONS] = now_us;
-    autopilot->asked++;
-    if (!autopilot->answered && autopilot->asked % UNANSWERED == 0) {
+    autopilot->question_us[autopilot->questions % AUTOPILOT_QUESTIONS] = now_us;
+    autopilot->questions++;
+    if (!autopilot->answered && autopilot->questions % UNANSWERED == 0) {
         event("the autopilot does not answer TIMESYNC: the link's delay is taken as flight.delay_sd_s");
     }
     (void)mavlink_msg_timesync_pack(autopilot->wire->system, autopilot->wire->component, &message, 0, now_us * 1000);
@@ -607,15 +607,15 @@ static void ask_rates(autopilot_t *autopilot, int64_t now_us) {
 }
 
 static void ask_origin(autopilot_t *autopilot, int64_t now_us) {
-    if (!autopilot->has_origin && now_us - autopilot->origin_asked_us >= ORIGIN_US) {
-        autopilot->origin_asked_us = now_us;
+    if (!autopilot->has_origin && now_us - autopilot->origin_requested_us >= ORIGIN_US) {
+        autopilot->origin_requested_us = now_us;
         command(autopilot, MAV_CMD_REQUEST_MESSAGE, (float)MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN, 0.0f);
         command(autopilot, MAV_CMD_REQUEST_MESSAGE, (float)MAVLINK_MSG_ID_HOME_POSITION, 0.0f);
     }
 }
 
 void autopilot_ask(autopilot_t *autopilot, int64_t now_us) {
-    judge_told_reset(autopilot, now_us);
+    judge_reported_reset(autopilot, now_us);
     if (autopilot->heartbeat_us == 0) {
         return;
     }

@@ -10,7 +10,7 @@
 
 #define AUTOPILOT_QUESTIONS 8 /* that are under way at most: a round trip of two seconds */
 
-/* Samples are taken only from the one autopilot: the first one that is heard, or that of the configuration. */
+/* Samples are taken only from one autopilot: the first to send, or that of the configuration. */
 typedef struct {
     const companion_config_t *config;
     goe_flight_t *flight;
@@ -18,7 +18,7 @@ typedef struct {
     clock_sync_t clock;
 
     /* identity */
-    uint8_t system; /* 0: none heard yet */
+    uint8_t system; /* 0: none yet */
     uint8_t kind;   /* MAV_AUTOPILOT_... */
     uint32_t custom_mode;
     uint8_t base_mode;
@@ -41,7 +41,7 @@ typedef struct {
     unsigned resets;       /* of all kinds, restarts included, for the log ... */
     bool last_reset_known; /* ... and whether the latest was a step by reset_delta_ned_m */
     int64_t jump_us;       /* own time of the latest jump that was found */
-    int64_t told_us;       /* ... and of a reset that ODOMETRY tells, and no jump has explained yet; 0: none */
+    int64_t report_us;     /* ... and of a reset reported by ODOMETRY that no jump has explained yet; 0: none */
     uint8_t odometry_resets;
     bool has_odometry_resets;
     int strange_times;                /* in a row, against the clock that is known */
@@ -60,20 +60,20 @@ typedef struct {
     float home_alt_m;  /* over the sea */
     bool has_home_alt;
 
-    int64_t asked_us[AUTOPILOT_QUESTIONS]; /* own times of the latest questions for its clock, a ring ... */
-    unsigned asked;                        /* ... with so many of them ever */
-    bool answered;                         /* one was */
+    int64_t question_us[AUTOPILOT_QUESTIONS]; /* own times of the latest questions for its clock, a ring ... */
+    unsigned questions;                       /* ... with so many of them ever */
+    bool answered;                            /* one was */
     message_rates_t rates;
-    int64_t requested_us, origin_asked_us; /* own times of the latest requests */
+    int64_t requested_us, origin_requested_us; /* own times of the latest requests */
 
-    /* counted; summary and status line tell them */
+    /* counters for summary and status line */
     unsigned long attitudes, positions, bad_samples, restarts, slips, jumps, strangers;
 } autopilot_t;
 
 void autopilot_init(autopilot_t *autopilot, const companion_config_t *config, goe_flight_t *flight, wire_t *wire);
 
-/* Whether what was read last came from another address than the autopilot's, while that is not silent: then it is counted, and no
- * message of it is to be taken. */
+/* Whether the latest bytes came from another address than the autopilot's, while the autopilot is not silent: then they are counted,
+ * and no message of them may be used. */
 bool autopilot_is_stranger(autopilot_t *autopilot, int64_t now_us);
 
 /* Whether a message is of the autopilot that was found. */
@@ -82,7 +82,7 @@ bool autopilot_is_from(const autopilot_t *autopilot, const mavlink_message_t *me
 /* Any message; those that are not the autopilot's, or of no interest, are passed over. */
 void autopilot_take(autopilot_t *autopilot, const mavlink_message_t *message, int64_t now_us);
 
-/* Asks for its clock, its rates and its origin, as often as is due. */
+/* Requests its clock, its rates and its origin, at their intervals. */
 void autopilot_ask(autopilot_t *autopilot, int64_t now_us);
 
 /* GOE_FLIGHT_FLYING, _APPROACH, _FLARE or _LANDED, for goe_flight_assess(). */

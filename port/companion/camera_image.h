@@ -1,4 +1,4 @@
-/* What a detector told of one image. SPDX-License-Identifier: MIT */
+/* A detector's report of one image. SPDX-License-Identifier: MIT */
 #ifndef CAMERA_IMAGE_H
 #define CAMERA_IMAGE_H
 

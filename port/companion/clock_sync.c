@@ -11,7 +11,7 @@
 #define DRIFT_SD_US 250.0 /* of 25 ppm over half of that time */
 #define UNIFORM_SD                                                                                                     \
     0.28867513 /* of a uniform distribution, by its width: the way there may be any share of the round trip */
-#define ROUND_MAX_US 1000000 /* a slower answer tells nothing */
+#define ROUND_MAX_US 1000000 /* a slower answer is useless */
 
 void clock_sync_reset(clock_sync_t *sync) { (void)memset(sync, 0, sizeof *sync); }
 
@@ -42,9 +42,9 @@ static int64_t round_trip(const clock_sync_t *sync) {
     return use_before(sync) ? sync->round_before_us : sync->round_us;
 }
 
-bool clock_sync_answer(clock_sync_t *sync, int64_t asked_us, int64_t now_us, int64_t autopilot_us) {
-    const int64_t round_us = now_us - asked_us;
-    const int64_t offset_us = autopilot_us - asked_us - round_us / 2;
+bool clock_sync_answer(clock_sync_t *sync, int64_t question_us, int64_t now_us, int64_t autopilot_us) {
+    const int64_t round_us = now_us - question_us;
+    const int64_t offset_us = autopilot_us - question_us - round_us / 2;
     if (round_us < 0 || round_us > ROUND_MAX_US) {
         return true;
     }

@@ -59,7 +59,7 @@ static void run_queue(companion_t *c) {
     image_queue_run(&c->queue, &c->flight, (uint32_t)autopilot_us, on_image_taken, c);
 }
 
-/* The flight layer's history begins with a pose: what was seen before has none. */
+/* The flight layer's history begins with a pose: earlier detections have none. */
 static void take_image(companion_t *c) {
     if (!clock_sync_known(&c->autopilot.clock)) {
         c->counts.clockless++;
@@ -215,7 +215,7 @@ static void on_message(void *user, const mavlink_message_t *message) {
     }
 }
 
-/* ---------------------------------------------------------------------------------------------------------- what is due -- */
+/* ---------------------------------------------------------------------------------------------------------- due work ----- */
 
 static bool is_due(int64_t *last_us, int64_t now_us, double hz) {
     const int64_t period_us = (int64_t)(US_PER_S / hz);
@@ -224,12 +224,12 @@ static bool is_due(int64_t *last_us, int64_t now_us, double hz) {
     }
     *last_us += period_us;
     if (now_us - *last_us >= period_us) {
-        *last_us = now_us; /* what was missed is not made up for */
+        *last_us = now_us; /* missed turns are skipped */
     }
     return true;
 }
 
-static void tell_alive(companion_t *c) {
+static void send_alive(companion_t *c) {
     const goe_flight_assessment_t *a = &c->assessment;
     if (a->detector_alive != c->detector_alive) {
         event(a->detector_alive ? "the detector is alive"
@@ -267,7 +267,7 @@ static void show_advice(companion_t *c) {
     const goe_flight_assessment_t *a = &c->assessment;
     if (c->config.reaction_mode == REACTION_OFF && a->action != c->advised && a->action != GOE_FLIGHT_NONE) {
         screen_show(&c->screen, SCREEN_ORDER, MAV_SEVERITY_WARNING, "GOE advises %s: obstacle in %.0f s",
-                    goe_flight_action_text(a->action), (double)a->hazard.time_s);
+                    goe_flight_action_text(a->action), (double)a->hazard.tcpa_s);
     }
     c->advised = a->action;
 }
@@ -281,19 +281,19 @@ static void assess(companion_t *c, int64_t now_us) {
     const goe_mavlink_own_t own = reports_own(&c->autopilot, now_us, clock_us(CLOCK_REALTIME));
     const uint8_t phase = autopilot_phase(&c->autopilot);
     const goe_flight_status_t status = goe_flight_assess(&c->flight, autopilot_us, phase, &c->assessment);
-    tell_alive(c);
+    send_alive(c);
     if (status == GOE_FLIGHT_CORRUPTED) {
-        event("its memory was corrupted: obstacles are looked for anew");
+        event("its memory was corrupted: the search for obstacles starts again");
         (void)begin_flight(c, NULL);
         (void)margins_set(&c->flight, &c->config, c->health.doubts != 0);
     }
-    if (status == GOE_FLIGHT_OK) { /* without a pose nothing is known, and what stands stands */
+    if (status == GOE_FLIGHT_OK) { /* without a pose nothing is known, and the active order stays */
         orders_follow(&c->orders, &c->assessment, &own, now_us);
         show_advice(c);
     }
 }
 
-/* Lines by the UNIX clock are timed by what that clock shows now: a step of it makes those under way wrong, and is told. */
+/* The UNIX clock gives the time of lines: a step of it makes those under way wrong, and is reported. */
 static void watch_own_clock(companion_t *c, int64_t now_us) {
     const int64_t difference_us = clock_us(CLOCK_REALTIME) - now_us;
     const int64_t step_us = difference_us - c->clock_difference_us;
@@ -316,11 +316,11 @@ static void mend_links(companion_t *c, int64_t now_us) {
     c->links_lost = lost;
 }
 
-/* Who listens to this computer alone hears no autopilot of another. */
+/* A socket on this computer alone receives no autopilot of another. */
 static void watch_deafness(companion_t *c, int64_t now_us) {
     const bool is_deaf = c->autopilot.heartbeat_us == 0 && now_us - c->begun_us > DEAF_US;
     if (is_deaf && !c->deafness_reported) {
-        event("no autopilot is heard on %s%s", c->config.link_autopilot,
+        event("no message from an autopilot on %s%s", c->config.link_autopilot,
               link_is_local(c->config.link_autopilot) ? ": udpin:0.0.0.0:PORT listens to other computers, too" : "");
         c->deafness_reported = true;
     }
@@ -346,7 +346,7 @@ static void end_second(companion_t *c, int64_t now_us) {
     mend_links(c, now_us);
 }
 
-static bool do_what_is_due(companion_t *c) {
+static bool do_due_work(companion_t *c) {
     const int64_t now_us = clock_us(CLOCK_MONOTONIC);
     autopilot_ask(&c->autopilot, now_us);
     watch_health(c, now_us);
@@ -379,7 +379,7 @@ bool companion_turn(companion_t *c) {
     if (c->detections_link != NULL) {
         read_lines(c);
     }
-    return do_what_is_due(c);
+    return do_due_work(c);
 }
 
 static bool open_all(companion_t *c, char *fault, size_t fault_size) {

@@ -1,4 +1,4 @@
-/* The companion: everything it holds, and what it does with what comes. SPDX-License-Identifier: MIT
+/* The companion: its memory, and the handling of its inputs. SPDX-License-Identifier: MIT
  *
  *   companion_turn()   reads links > autopilot, images > flight layer > assessment > orders, reports, log, status line
  *
@@ -55,9 +55,9 @@ typedef struct {
     companion_counts_t counts;
     companion_rates_t rates;
     unsigned self_check;
-    bool detector_alive, pose_alive; /* as they were told last ... */
+    bool detector_alive, pose_alive; /* as reported last ... */
     unsigned links_lost;             /* ... and how often the links were lost by then */
-    unsigned long restarts;          /* of the autopilot, that were seen here */
+    unsigned long restarts;          /* of the autopilot, as counted here */
     int64_t assessed_us, reported_us, second_us, begun_us;
     bool deafness_reported;
     int64_t clock_difference_us; /* UNIX time minus monotonic time, as it was last */
@@ -66,7 +66,7 @@ typedef struct {
 /* Opens links and log. Null on failure: fault says why. */
 companion_t *companion_new(const companion_config_t *config, char *fault, size_t fault_size);
 
-/* Waits for what comes, at most until something is due, and deals with it. Returns true once a second: time for a status line. */
+/* Waits for input, at most until the next due work, and handles it. Returns true once a second: time for a status line. */
 bool companion_turn(companion_t *companion);
 
 /* Null is ignored. */

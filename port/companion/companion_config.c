@@ -13,6 +13,7 @@
 #include "link.h"
 #include "nearest_name.h"
 #include "number_text.h"
+#include "renamed_names.h"
 #include "settings_text.h"
 
 #define LINE_MAX_LENGTH 190 /* what the parser takes */
@@ -147,7 +148,7 @@ typedef struct {
     input_error_t *error;
 } config_reader_t;
 
-/* The first fault counts; what follows from it is not told. */
+/* The first fault counts; faults that follow from it are not reported. */
 #define FAIL(reader, key, ...)                                                                                         \
     do {                                                                                                               \
         if (!(reader)->failed) {                                                                                       \
@@ -286,10 +287,17 @@ static void take_flight(config_reader_t *reader, const char *name, const char *t
         reader->flight_line[i] = reader->lines.number;
         return;
     }
-    FAIL(reader, name, "no setting of the flight layer");
+    char full[NAME_MAX];
+    (void)snprintf(full, sizeof full, "flight.%s", name);
+    const char *now = renamed_name(full, strlen(full));
+    if (now != NULL) {
+        FAIL(reader, NULL, "unknown setting %s: now %s", full, now);
+    } else {
+        FAIL(reader, name, "no setting of the flight layer");
+    }
 }
 
-static void tell_unknown(config_reader_t *reader, const char *name, bool in_section) {
+static void report_unknown(config_reader_t *reader, const char *name, bool in_section) {
     nearest_name_t nearest = nearest_name_of(name, strlen(name));
     for (size_t i = 0; i < KEYS; i++) {
         nearest_name_try(&nearest, keys[i].name);
@@ -318,7 +326,7 @@ static int on_key(void *user, const char *section, const char *name, const char 
             i++;
         }
         if (i == KEYS) {
-            tell_unknown(reader, *section != '\0' ? full : name, *section != '\0');
+            report_unknown(reader, *section != '\0' ? full : name, *section != '\0');
         } else {
             take_key(reader, i, text);
         }
@@ -344,15 +352,15 @@ static void read_keys(config_reader_t *reader) {
 }
 
 /* A path of the configuration is relative to its folder. False: too long. */
-static bool resolve(char path[CONFIG_TEXT_MAX], const char *beside) {
-    const char *slash = strrchr(beside, '/');
-    const size_t folder = *path != '/' && slash != NULL ? (size_t)(slash - beside) + 1u : 0u;
+static bool resolve(char path[CONFIG_TEXT_MAX], const char *config_path) {
+    const char *slash = strrchr(config_path, '/');
+    const size_t folder = *path != '/' && slash != NULL ? (size_t)(slash - config_path) + 1u : 0u;
     const size_t length = strlen(path) + 1u;
     if (folder + length > CONFIG_TEXT_MAX) {
         return false;
     }
     (void)memmove(path + folder, path, length);
-    (void)memcpy(path, beside, folder);
+    (void)memcpy(path, config_path, folder);
     return true;
 }
 
@@ -392,7 +400,7 @@ static void check_link(config_reader_t *reader, size_t offset, const char *none)
     }
 }
 
-/* What only holds of values together. */
+/* Rules for combinations of values. */
 static void check_whole(config_reader_t *reader) {
     check_link(reader, offsetof(companion_config_t, link_autopilot), NULL);
     check_link(reader, offsetof(companion_config_t, detections_from), "none");

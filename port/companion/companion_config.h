@@ -28,7 +28,7 @@ typedef enum { REACTION_OFF, REACTION_PX4, REACTION_ARDUPLANE } reaction_mode_t;
 #define REPORT_COLLISION 0x04u
 #define REPORT_TARGET_ABSOLUTE 0x08u
 
-/* One field a key; companion.ini tells each one's meaning, unit and default. */
+/* One field per key; companion.ini gives the meaning, unit and default of each. */
 typedef struct {
     char link_autopilot[CONFIG_TEXT_MAX];
     uint32_t link_system, link_component, link_request_rates;
@@ -58,8 +58,8 @@ typedef struct {
 } companion_config_t;
 
 /* Reads the file, and those of the camera and the key that it names.
- *   link  null, or what replaces link.autopilot
- * False on failure: *error says what is wrong and where. */
+ *   link  null, or the replacement of link.autopilot
+ * False on failure: *error gives the reason and the position. */
 bool companion_config_read(const char *path, const char *link, companion_config_t *config, input_error_t *error);
 
 /* All keys with their values, as the file would have them. */

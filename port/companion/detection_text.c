@@ -1,4 +1,4 @@
-/* A line of JSON that tells an image's detections. SPDX-License-Identifier: MIT */
+/* A line of JSON with an image's detections. SPDX-License-Identifier: MIT */
 #include "detection_text.h"
 
 #include <jansson.h>
@@ -137,7 +137,7 @@ static bool read_point(const json_t *object, const char *name, goe_pixel_t *poin
     }
     point->u_px = number_to_float(pair[0]);
     point->v_px = number_to_float(pair[1]);
-    point->seen = true;
+    point->visible = true;
     return true;
 }
 
@@ -159,7 +159,7 @@ static bool read_box(const json_t *object, goe_box_t *box, detection_fault_t *fa
         }
         *to[i] = number_to_float(json_number_value(number));
     }
-    box->seen = GOE_SEES_BOX;
+    box->sides = GOE_SIDES_ALL;
     return true;
 }
 
@@ -197,9 +197,9 @@ static bool read_detection(const json_t *object, goe_flight_detection_t *detecti
     detection->id = (uint32_t)id;
     detection->score = (float)score;
     detection->pixel_px = (float)pixel_px;
-    const bool marked = detection->left.seen || detection->right.seen || detection->top.seen ||
-                        detection->base_left.seen || detection->base_near.seen || detection->base_right.seen;
-    return detection->box.seen != 0 || marked || fail(fault, "a detection has neither a box nor points");
+    const bool marked = detection->left.visible || detection->right.visible || detection->top.visible ||
+                        detection->base_left.visible || detection->base_near.visible || detection->base_right.visible;
+    return detection->box.sides != 0 || marked || fail(fault, "a detection has neither a box nor points");
 }
 
 static bool read_detections(const json_t *list, const char *classes, camera_image_t *image, detection_fault_t *fault) {

@@ -1,4 +1,4 @@
-/* A line of JSON that tells an image's detections. README.md has its keys. SPDX-License-Identifier: MIT */
+/* A line of JSON with an image's detections. README.md has its keys. SPDX-License-Identifier: MIT */
 #ifndef DETECTION_TEXT_H
 #define DETECTION_TEXT_H
 
@@ -17,7 +17,7 @@ typedef struct {
 } detection_now_t;
 
 typedef struct {
-    char text[160]; /* what is wrong with a line */
+    char text[160]; /* the fault of a line */
 } detection_fault_t;
 
 /* False, with the fault, if the line cannot be understood. A detection of a class that is not wanted is left out. The image is

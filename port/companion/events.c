@@ -13,21 +13,21 @@
 #define TIME_MAX 32
 #define NS_PER_MS 1000000
 
-static int line_stands; /* a status line, on the terminal: it is cleared before the next event */
+static int line_shown; /* a status line, on the terminal: it is cleared before the next event */
 
-/* Kinds of events are told apart by their format, each a constant of its own. */
+/* Kinds of events are distinguished by their format, each a constant of its own. */
 static struct {
     const char *format;
-    time_t told_s;
+    time_t reported_s;
     unsigned long left_out;
 } kinds[KINDS];
 
 /* At once, or not at all: at most PIPE_BUF bytes, which a pipe takes whole. */
 static void put(const char *text) {
-    struct pollfd asked = {.fd = STDERR_FILENO, .events = POLLOUT, .revents = 0};
-    if (poll(&asked, 1, 0) > 0 && (asked.revents & POLLOUT) != 0) {
+    struct pollfd request = {.fd = STDERR_FILENO, .events = POLLOUT, .revents = 0};
+    if (poll(&request, 1, 0) > 0 && (request.revents & POLLOUT) != 0) {
         const ssize_t written = write(STDERR_FILENO, text, strlen(text));
-        (void)written; /* there is nobody to tell */
+        (void)written; /* no one can read it */
     }
 }
 
@@ -35,10 +35,10 @@ void events_show_line(const char *line, int on_terminal) {
     char text[TEXT_MAX + 16];
     (void)snprintf(text, sizeof text, "%s%s%s", on_terminal ? "\r\033[K" : "", line, on_terminal ? "" : "\n");
     put(text);
-    line_stands = on_terminal;
+    line_shown = on_terminal;
 }
 
-/* Whether an event of this kind is due; *left_out: how many were not told since. */
+/* Whether an event of this kind is due; *left_out: how many were dropped since. */
 static int is_due(const char *format, unsigned long *left_out) {
     struct timespec now;
     (void)clock_gettime(CLOCK_MONOTONIC, &now);
@@ -46,13 +46,13 @@ static int is_due(const char *format, unsigned long *left_out) {
     while (i < KINDS - 1 && kinds[i].format != NULL && kinds[i].format != format) {
         i++;
     }
-    if (kinds[i].format == format && now.tv_sec - kinds[i].told_s < 1) {
+    if (kinds[i].format == format && now.tv_sec - kinds[i].reported_s < 1) {
         kinds[i].left_out++;
         return 0;
     }
     *left_out = kinds[i].format == format ? kinds[i].left_out : 0;
     kinds[i].format = format;
-    kinds[i].told_s = now.tv_sec;
+    kinds[i].reported_s = now.tv_sec;
     kinds[i].left_out = 0;
     return 1;
 }
@@ -92,7 +92,7 @@ void event(const char *format, ...) {
         (void)snprintf(more, sizeof more, " (and %lu more)", left_out);
     }
     put_time(time);
-    (void)snprintf(line, sizeof line, "%s%s goe_companion: %s%s\n", line_stands ? "\r\033[K" : "", time, text, more);
+    (void)snprintf(line, sizeof line, "%s%s goe_companion: %s%s\n", line_shown ? "\r\033[K" : "", time, text, more);
     put(line);
-    line_stands = 0;
+    line_shown = 0;
 }

@@ -113,12 +113,12 @@ bool flight_record_open(flight_record_t *record, const companion_config_t *confi
 static int put(FILE *stream, float value) { return fprintf(stream, ",%.9g", (double)value); }
 
 static int put_point(FILE *stream, const goe_pixel_t *point) {
-    return point->seen ? fprintf(stream, ",%.9g,%.9g", (double)point->u_px, (double)point->v_px)
-                       : fprintf(stream, ",,");
+    return point->visible ? fprintf(stream, ",%.9g,%.9g", (double)point->u_px, (double)point->v_px)
+                          : fprintf(stream, ",,");
 }
 
 static int put_side(FILE *stream, const goe_box_t *box, unsigned bit, float value) {
-    return (box->seen & bit) != 0 ? put(stream, value) : fprintf(stream, ",");
+    return (box->sides & bit) != 0 ? put(stream, value) : fprintf(stream, ",");
 }
 
 static int put_pose(FILE *stream, const goe_pose_t *pose) {
@@ -139,10 +139,10 @@ static int put_features(FILE *stream, const goe_flight_detection_t *d) {
     for (size_t i = 0; i < sizeof points / sizeof points[0]; i++) {
         size += put_point(stream, points[i]);
     }
-    return size + put_side(stream, &d->box, GOE_SEES_LEFT, d->box.left_px) +
-           put_side(stream, &d->box, GOE_SEES_TOP, d->box.top_px) +
-           put_side(stream, &d->box, GOE_SEES_RIGHT, d->box.right_px) +
-           put_side(stream, &d->box, GOE_SEES_BOTTOM, d->box.bottom_px);
+    return size + put_side(stream, &d->box, GOE_SIDE_LEFT, d->box.left_px) +
+           put_side(stream, &d->box, GOE_SIDE_TOP, d->box.top_px) +
+           put_side(stream, &d->box, GOE_SIDE_RIGHT, d->box.right_px) +
+           put_side(stream, &d->box, GOE_SIDE_BOTTOM, d->box.bottom_px);
 }
 
 static void end(flight_record_t *record, const char *why) {
@@ -160,7 +160,7 @@ static int put_reset(FILE *stream, const autopilot_t *autopilot) {
     return size;
 }
 
-/* Times of a log go on: those of an autopilot that started anew follow the latest by a second. */
+/* Times of a log increase: those of an autopilot that restarted follow the latest by a second. */
 static double time_s(flight_record_t *record, int64_t time_us) {
     if (record->rows > 0 && time_us + record->shift_us < record->latest_us - US_PER_S) {
         record->shift_us = record->latest_us + US_PER_S - time_us;

@@ -1,4 +1,4 @@
-/* goe_companion: obstacles for a stock autopilot, from a computer beside it. SPDX-License-Identifier: MIT */
+/* goe_companion: obstacles for a stock autopilot, from a computer next to it. SPDX-License-Identifier: MIT */
 #include <errno.h>
 #include <popt.h>
 #include <signal.h>
@@ -28,7 +28,7 @@ static void on_signal(int number) {
     is_over = 1;
 }
 
-/* What the caller's shell told the program to ignore stays ignored. */
+/* A signal that the caller's shell made the program ignore stays ignored. */
 static void catch_signals(void) {
     static const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
     struct sigaction action, before;

@@ -1,9 +1,9 @@
 /* How sure the autopilot is of where it is. SPDX-License-Identifier: MIT */
 #include "health.h"
 
-#define SILENT_US 3000000      /* without GPS_RAW_INT, which is asked for twice a second */
+#define SILENT_US 3000000      /* without GPS_RAW_INT, which is requested twice a second */
 #define DOUBT_AFTER_US 1000000 /* a fault that lasts for so long is a doubt: a single message may be one of a moment */
-#define GOOD_AFTER_US 5000000  /* ... which ends when none was seen for so long */
+#define GOOD_AFTER_US 5000000  /* ... which ends when none occurred for so long */
 #define RATIO_MAX 1.0f         /* PX4: a measurement beyond it is refused by the filter */
 #define VARIANCE_MAX 0.8f      /* ArduPilot: what its own documents call bad */
 

@@ -1,9 +1,9 @@
-/* How sure the autopilot is of where it is. SPDX-License-Identifier: MIT
+/* Quality of the autopilot's position. SPDX-License-Identifier: MIT
  *
  *   GPS_RAW_INT                                          a fix that is lost, or messages that cease
- *   EKF_STATUS_REPORT (ArduPilot), ESTIMATOR_STATUS (PX4)  flags, and how far measurements lie off
+ *   EKF_STATUS_REPORT (ArduPilot), ESTIMATOR_STATUS (PX4)  flags, and test ratios of measurements
  *
- * A fault that lasts is a doubt; a doubt ends once no fault was seen for a while. */
+ * A fault that lasts is a doubt; a doubt ends after a while without a fault. */
 #ifndef HEALTH_H
 #define HEALTH_H
 

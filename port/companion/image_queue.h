@@ -17,7 +17,7 @@ typedef struct {
 
 void image_queue_clear(image_queue_t *queue);
 
-/* A copy goes in; the oldest makes room. */
+/* A copy goes in; the oldest is dropped if needed. */
 void image_queue_add(image_queue_t *queue, const camera_image_t *image);
 
 /* Gives all to the flight layer whose exposure it has a pose for. GOE_FLIGHT_TOO_NEW stays here, for half a second after its

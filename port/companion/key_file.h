@@ -9,7 +9,7 @@
 
 #define KEY_BYTES 32
 
-/* Reads 64 hexadecimal digits, and nothing else but blanks at the end. False on failure: *error says what is wrong. */
+/* Reads 64 hexadecimal digits, and nothing else but blanks at the end. False on failure: *error gives the reason. */
 bool key_file_read(const char *path, uint8_t key[KEY_BYTES], input_error_t *error);
 
 /* Whether others than its owner may read it. */

@@ -23,7 +23,7 @@ typedef struct {
 
 typedef void (*line_taker_t)(void *user, const char *text, size_t length);
 
-/* Hands every text that ends in these bytes to `take`; blank ones are not told. */
+/* Passes every text that ends in these bytes to `take`; blank ones are skipped. */
 void line_reader_take(line_reader_t *reader, const char *bytes, size_t size, line_taker_t take, void *user);
 
 /* A datagram has ended, and with it its last text. */

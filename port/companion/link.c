@@ -86,7 +86,7 @@ static void set_nonblocking(int descriptor) {
     (void)fcntl(descriptor, F_SETFD, FD_CLOEXEC);
 }
 
-/* Frames are small and must not wait for each other; a peer that was cut off is told by no other sign. */
+/* Frames are small and must not wait for each other; nothing else reveals a peer that was cut off. */
 static void set_tcp(int descriptor) {
     const int on = 1, dead_after_ms = DEAD_AFTER_MS;
     (void)setsockopt(descriptor, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
@@ -237,7 +237,7 @@ static bool open_now(link_t *link, const char **why) {
     return link->descriptor >= 0;
 }
 
-/* What may come later is waited for; what is wrong for good is a failure. */
+/* A temporary fault is waited out; a permanent one is a failure. */
 static bool may_come(const link_t *link) { return link->kind == LINK_TCP || link->kind == LINK_SERIAL; }
 
 static bool is_port(const char *text) {
@@ -317,8 +317,8 @@ static void lose(link_t *link) {
 static bool is_for_later(int why) { return why == EAGAIN || why == EINTR || why == EINPROGRESS; }
 
 static bool has_bytes(const link_t *link) {
-    struct pollfd asked = {.fd = link->descriptor, .events = POLLIN, .revents = 0};
-    return poll(&asked, 1, 0) > 0;
+    struct pollfd request = {.fd = link->descriptor, .events = POLLIN, .revents = 0};
+    return poll(&request, 1, 0) > 0;
 }
 
 size_t link_read(link_t *link, uint8_t *bytes, size_t size) {

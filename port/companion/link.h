@@ -1,6 +1,6 @@
 /* Bytes to and from somewhere: UDP, TCP, a serial line, a FIFO, standard input. SPDX-License-Identifier: MIT
  *
- * Nothing here blocks. What is lost (a TCP peer, a serial adapter that was pulled out) is tried again once a second. */
+ * Nothing here blocks. A lost link (a TCP peer, a serial adapter that was pulled out) is tried again once a second. */
 #ifndef LINK_H
 #define LINK_H
 
@@ -18,9 +18,9 @@ bool link_check(const char *where, char *fault, size_t fault_size);
 bool link_is_wide(const char *where);
 bool link_is_local(const char *where);
 
-/* `where`: udpin:HOST:PORT (receives there, answers to whom link_answer() was called for last), udpout:HOST:PORT (hears
- * nobody else), tcp:HOST:PORT, serial:DEVICE:BAUD, fifo:PATH, stdin. Null on failure: fault says why. A TCP peer or device that is not there
- * yet is no failure. */
+/* `where`: udpin:HOST:PORT (receives there, answers to the peer of the latest link_answer()), udpout:HOST:PORT (receives
+ * from its peer only), tcp:HOST:PORT, serial:DEVICE:BAUD, fifo:PATH, stdin. Null on failure: fault gives the reason. A TCP peer or
+ * device that does not exist yet is not a failure. */
 link_t *link_open(const char *where, char *fault, size_t fault_size);
 
 /* To be waited for; -1: nothing is open at the moment. */
@@ -32,22 +32,22 @@ bool link_has_messages(const link_t *link);
 /* Up to `size` bytes; 0: nothing there now. */
 size_t link_read(link_t *link, uint8_t *bytes, size_t size);
 
-/* udpin: answers from now on go to the sender of what was read last, and the system refuses what others send. */
+/* udpin: answers from now on go to the sender of the latest bytes, and the system refuses packets of others. */
 void link_answer(link_t *link);
 
-/* udpin: answers go there until the next link_answer(), and everybody is still heard. */
+/* udpin: answers go there until the next link_answer(), and packets of all senders are still received. */
 void link_greet(link_t *link);
 
-/* udpin: whoever sends is heard again; answers go on to the same peer. */
+/* udpin: packets of all senders are received again; answers continue to the same peer. */
 void link_release(link_t *link);
 
-/* Whether what was read last came from there; true for every other kind of link, and before the first link_answer(). */
+/* Whether the latest bytes came from there; true for every other kind of link, and before the first link_answer(). */
 bool link_is_answered(const link_t *link);
 
-/* False if it does not go out at once. Of a stream the rest of what was begun goes out before anything else. */
+/* False if it cannot be sent at once. On a stream the rest of a started frame goes out before anything else. */
 bool link_write(link_t *link, const uint8_t *bytes, size_t size);
 
-/* To be called now and then: opens again what was lost. */
+/* To be called now and then: reopens a lost link. */
 void link_mend(link_t *link, int64_t now_us);
 
 /* How often it was lost. Standard input that has ended: link_ended(). */

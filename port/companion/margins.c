@@ -11,8 +11,8 @@ static float widened_m(float margin_m, float doubt) {
 bool margins_set(goe_flight_t *flight, const companion_config_t *config, bool in_doubt) {
     goe_flight_settings_t settings = config->flight;
     if (in_doubt) {
-        settings.margin_m = widened_m(settings.margin_m, settings.doubt);
-        settings.clearance_m = widened_m(settings.clearance_m, settings.doubt);
+        settings.margin_m = widened_m(settings.margin_m, settings.suspect_factor);
+        settings.clearance_m = widened_m(settings.clearance_m, settings.suspect_factor);
     }
     return goe_flight_change_settings(flight, &settings, NULL) == GOE_FLIGHT_OK;
 }

@@ -56,7 +56,7 @@ static void go_on(message_rates_t *rates) {
 
 void message_rates_ask(message_rates_t *rates, wire_t *wire, uint8_t system, int64_t now_us) {
     mavlink_message_t message;
-    if (rates->awaiting && now_us - rates->asked_us < ANSWER_US) {
+    if (rates->awaiting && now_us - rates->question_us < ANSWER_US) {
         return;
     }
     if (rates->tries >= TRIES_MAX) {
@@ -68,7 +68,7 @@ void message_rates_ask(message_rates_t *rates, wire_t *wire, uint8_t system, int
     const message_rate_t *rate = &rates->rate[rates->next];
     rates->awaiting = true;
     rates->tries++;
-    rates->asked_us = now_us;
+    rates->question_us = now_us;
     (void)mavlink_msg_command_long_pack(wire->system, wire->component, &message, system, MAV_COMP_ID_AUTOPILOT1,
                                         MAV_CMD_SET_MESSAGE_INTERVAL, 0, (float)rate->message,
                                         (float)(US_PER_S / rate->hz), 0.0f, 0.0f, 0.0f, 0.0f, 0.0f);
@@ -109,7 +109,7 @@ void message_rates_answer(message_rates_t *rates, uint8_t result) {
         case MAV_RESULT_ACCEPTED:
             accept(rates);
             break;
-        case MAV_RESULT_IN_PROGRESS: /* it is asked again after ANSWER_US */
+        case MAV_RESULT_IN_PROGRESS: /* it is requested again after ANSWER_US */
             break;
         default: /* whatever it says of a rate that is beyond it: versions differ */
             refuse(rates);

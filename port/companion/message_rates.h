@@ -1,9 +1,9 @@
-/* How often the autopilot is to send what. SPDX-License-Identifier: MIT
+/* Requested rates of the autopilot's messages. SPDX-License-Identifier: MIT
  *
  *   message_rates_want()  each message, once        COMMAND_ACK > message_rates_answer()
  *   message_rates_ask()   one request at a time: an acknowledgement names the command, and not the message
  *
- * What is refused is asked for less often, down to LEAST_HZ; what is refused then is given up. Either is reported once. */
+ * A refused message is requested less often, down to LEAST_HZ; if refused then, it is given up. Either is reported once. */
 #ifndef MESSAGE_RATES_H
 #define MESSAGE_RATES_H
 
@@ -14,16 +14,16 @@
 typedef struct {
     uint32_t message;
     const char *name;
-    double wanted_hz, hz;           /* hz: that is asked for now */
+    double wanted_hz, hz;           /* hz: the present request */
     double reported_hz;             /* that was reported last; 0: none was */
     bool refused, refusal_reported; /* at every rate */
 } message_rate_t;
 
 typedef struct {
     message_rate_t rate[MESSAGE_RATES_MAX];
-    unsigned count, next; /* next: the one that is being asked for; count: all are done */
+    unsigned count, next; /* next: the one being requested; count: all are done */
     unsigned tries;       /* requests for it without an answer */
-    int64_t asked_us;     /* own time of the latest request */
+    int64_t question_us;  /* own time of the latest request */
     bool awaiting;        /* its answer */
 } message_rates_t;
 
@@ -36,7 +36,7 @@ void message_rates_want(message_rates_t *rates, uint32_t message, const char *na
 /* Whether every message was accepted, refused or left unanswered. */
 bool message_rates_done(const message_rates_t *rates);
 
-/* Begins again with the first message: each at the rate that was accepted, what was refused at the one that is wanted. */
+/* Begins again with the first message: each at its accepted rate, refused ones at the wanted rate. */
 void message_rates_repeat(message_rates_t *rates);
 
 /* Sends the next request, if it is due. */

@@ -1,4 +1,4 @@
-/* Whether somebody else has taken over while an order stands. SPDX-License-Identifier: MIT */
+/* Detects that a pilot or a failsafe has taken over during an order. SPDX-License-Identifier: MIT */
 #include "mode_watch.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
-/* Whether somebody else has taken over while an order stands. SPDX-License-Identifier: MIT
+/* Detects that a pilot or a failsafe has taken over during an order. SPDX-License-Identifier: MIT
  *
- * px4:        an order leads from the mode before to Hold. Any other mode is a choice of the pilot's, or of a failsafe; once Hold was
- *             seen, so is the mode before. In Hold another target than the order's is one.
- * arduplane:  the autopilot leads from the mode before to AVOID_ADSB and back, and reports by STATUSTEXT when it goes back by itself.
+ * px4:        an order leads from the previous mode to Hold. Any other mode is a choice of the pilot's, or of a failsafe; after Hold
+ *             was reached, so is the previous mode. In Hold another target than the order's is one.
+ * arduplane:  the autopilot goes from the previous mode to AVOID_ADSB and back, and reports by STATUSTEXT when it goes back by itself.
  *             Any other change is a choice. */
 #ifndef MODE_WATCH_H
 #define MODE_WATCH_H
@@ -20,7 +20,7 @@ typedef struct {
     uint32_t mode_before; /* in which the order was given */
     unsigned judged_at;   /* count of heartbeats by which the mode was looked at last */
     unsigned answered_at; /* ... when the command was acknowledged */
-    bool led;             /* the mode of the order was seen */
+    bool led;             /* the mode of the order was reached */
     int64_t avoided_us;   /* arduplane: own time of the latest heartbeat in AVOID_ADSB ... */
     unsigned left_beats;  /* ... and heartbeats in another mode since */
     unsigned targets_at;  /* px4: count of targets that were looked at ... */

@@ -12,11 +12,11 @@
 #define NUMBER_MAX 9.0e15 /* what a double holds to the unit */
 
 /* Columns that a restarted companion reads. */
-enum { UNIX_US, BOOT_US, STANDS, ACTION, MODE_BEFORE, COURSE_N, COURSE_E, OBSTACLE_N, OBSTACLE_E, RADIUS, NUMBERS };
+enum { UNIX_US, BOOT_US, ACTIVE, ACTION, MODE_BEFORE, COURSE_N, COURSE_E, OBSTACLE_N, OBSTACLE_E, RADIUS, NUMBERS };
 
 static const char header[] =
     "unix_us,boot_us,stands,action,mode_before,course_n,course_e,obstacle_n_m,obstacle_e_m,radius_m,event,action_name,"
-    "mode,slot,id,time_s,miss_m,target_lat_e7,target_lon_e7,target_alt_m,why\n";
+    "mode,slot,id,tcpa_s,dcpa_m,target_lat_e7,target_lon_e7,target_alt_m,why\n";
 
 bool order_log_open(order_log_t *log, const char *folder) {
     char path[(2 * CONFIG_TEXT_MAX + 16)];
@@ -34,12 +34,12 @@ void order_log_put(order_log_t *log, const order_row_t *row) {
         return;
     }
     (void)fprintf(log->stream, "%" PRId64 ",%" PRId64 ",%d,%u,%" PRIu32 ",%.6g,%.6g,%.9g,%.9g,%.4g", left->unix_us,
-                  left->boot_us, left->stands ? 1 : 0, left->action, left->mode_before, (double)left->course_ne[0],
+                  left->boot_us, left->active ? 1 : 0, left->action, left->mode_before, (double)left->course_ne[0],
                   (double)left->course_ne[1], (double)left->obstacle_ne_m[0], (double)left->obstacle_ne_m[1],
                   (double)left->radius_m);
     (void)fprintf(log->stream, ",%s,%s,%" PRIu32 ",%d,%u,%.2f,%.1f,%" PRId32 ",%" PRId32 ",%.1f,%s\n", row->event,
                   goe_flight_action_text((goe_flight_action_t)left->action), row->mode, row->slot, row->obstacle_id,
-                  (double)row->time_s, (double)row->miss_m, row->target_lat_e7, row->target_lon_e7,
+                  (double)row->tcpa_s, (double)row->dcpa_m, row->target_lat_e7, row->target_lon_e7,
                   (double)row->target_alt_m, row->why);
     (void)fflush(log->stream);
 }
@@ -75,7 +75,7 @@ static bool parse(const char *line, order_left_t *left) {
     }
     left->unix_us = (int64_t)number[UNIX_US];
     left->boot_us = (int64_t)number[BOOT_US];
-    left->stands = number[STANDS] > 0.5;
+    left->active = number[ACTIVE] > 0.5;
     left->action = (unsigned)number[ACTION];
     left->mode_before = (uint32_t)number[MODE_BEFORE];
     left->course_ne[0] = (float)number[COURSE_N];
@@ -99,5 +99,5 @@ bool order_log_read(const char *folder, order_left_t *left) {
         *left = parse(line, &row) ? row : *left;
     }
     (void)fclose(file);
-    return left->stands;
+    return left->active;
 }

@@ -15,9 +15,9 @@ typedef struct {
     FILE *stream; /* null: there is no log */
 } order_log_t;
 
-/* What is left of an order that still stands: enough to go back from it. */
+/* The rest of an active order: enough to return from it. */
 typedef struct {
-    bool stands;
+    bool active;
     unsigned action; /* goe_flight_action_t */
     uint32_t mode_before;
     int64_t unix_us, boot_us; /* when this was written, by both clocks */
@@ -31,7 +31,7 @@ typedef struct {
     uint32_t mode; /* of the autopilot now */
     unsigned obstacle_id;
     int slot;
-    float time_s, miss_m; /* of the hazard */
+    float tcpa_s, dcpa_m; /* of the hazard */
     int32_t target_lat_e7, target_lon_e7;
     float target_alt_m;
     const char *why; /* or an empty text */

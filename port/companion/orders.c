@@ -10,7 +10,7 @@
 #define REPEAT_US 500000        /* without an acknowledgement */
 #define TARGET_EVERY_US 1000000 /* a target that moves is sent at most that often ... */
 #define TARGET_MOVED_M 5.0f     /* ... and only when it has moved by so much */
-#define RESUMES_MAX 5           /* the mode before is asked for as often, until it is acknowledged */
+#define RESUMES_MAX 5           /* requests for the previous mode, until acknowledged */
 #define BEATS_TO_RESUME 2u      /* heartbeats that may still show the mode of the order before */
 #define SURE_SIGMA 2.0f         /* of a top */
 #define LEFT_OFF_US 2000000     /* by which both clocks may disagree on the time since an order that was left */
@@ -38,12 +38,12 @@ static void put_log(orders_t *orders, const char *what, const char *why) {
     (void)goe_flight_obstacle(orders->flight, orders->slot, &obstacle);
     order_row_t row = {
         .event = what,
-        .left = orders->stands,
+        .left = orders->active,
         .mode = orders->autopilot->custom_mode,
         .obstacle_id = obstacle.id,
         .slot = orders->slot,
-        .time_s = a->hazard.time_s,
-        .miss_m = a->hazard.miss_m,
+        .tcpa_s = a->hazard.tcpa_s,
+        .dcpa_m = a->hazard.dcpa_m,
         .target_lat_e7 = a->target_lat_e7,
         .target_lon_e7 = a->target_lon_e7,
         .target_alt_m = orders->autopilot->origin_alt_m - a->target_ned_m[2],
@@ -53,7 +53,7 @@ static void put_log(orders_t *orders, const char *what, const char *why) {
     row.left.boot_us = orders->boot_us;
     row.left.action = (unsigned)orders->action;
     row.left.mode_before = orders->watch.mode_before;
-    row.left.stands = orders->stands.stands && !orders->overruled;
+    row.left.active = orders->active.active && !orders->overruled;
     order_log_put(orders->log, &row);
 }
 
@@ -85,7 +85,7 @@ static bool suits_kind(const orders_t *orders) {
     return orders->config->reaction_mode == REACTION_PX4 ? is_px4 : is_ardupilot;
 }
 
-/* A go-around is for a landing: there it is asked for in every mode. */
+/* A go-around is for a landing: there it is requested in every mode. */
 static bool is_mode_allowed(const orders_t *orders, uint32_t mode, goe_flight_action_t action) {
     if (orders->config->reaction_mode != REACTION_PX4 || action == GOE_FLIGHT_GO_AROUND) {
         return true;
@@ -189,7 +189,7 @@ static bool is_obstacle_known(const orders_t *orders) {
            (obstacle.valid & GOE_HAS_POSITION) != 0u;
 }
 
-/* Back into the mode before, once the obstacle lies behind. What is only lost from sight may lie ahead there. */
+/* Back into the previous mode, once the obstacle is behind. An obstacle that is only out of view may be ahead there. */
 static void resume(orders_t *orders, goe_flight_action_t ended, int64_t now_us) {
     const bool is_past = is_obstacle_known(orders) &&
                          (ended == GOE_FLIGHT_LEFT || ended == GOE_FLIGHT_RIGHT || ended == GOE_FLIGHT_CLIMB);
@@ -294,7 +294,7 @@ static void watch_hindrance(orders_t *orders, goe_flight_action_t action, bool i
     }
 }
 
-/* Returns whether what was silent is no more: the order is sent at once. */
+/* Returns whether a silence has ended: the order is sent at once. */
 static bool watch(orders_t *orders, goe_flight_action_t action, bool is_new) {
     const bool was_silenced = orders->silenced;
     watch_pilot(orders);
@@ -335,25 +335,25 @@ static void report_left(orders_t *orders) {
         return;
     }
     orders->left_reported = true;
-    orders->stands = orders->left;
+    orders->active = orders->left;
     orders->watch.mode_before = orders->left.mode_before;
     put_log(orders, "taken over", "");
-    event("an order of before the restart stands in the log: %s",
+    event("the log has an active order from before the restart: %s",
           goe_flight_action_text((goe_flight_action_t)orders->left.action));
     screen_show(orders->screen, SCREEN_SILENCE, MAV_SEVERITY_NOTICE, "GOE restarted in an order: Hold until passed");
 }
 
 static void end_left(orders_t *orders, const char *how) {
-    orders->left.stands = orders->stands.stands = false;
+    orders->left.active = orders->active.active = false;
     if (orders->left_reported) {
         put_log(orders, how, "after a restart");
     }
 }
 
-/* While no order of its own stands: back, once the obstacle of the log lies behind. */
+/* Without an active order of its own: back, once the obstacle of the log is behind. */
 static void follow_left(orders_t *orders, int64_t now_us) {
     const order_left_t *left = &orders->left;
-    if (!left->stands) {
+    if (!left->active) {
         return;
     }
     if (orders->config->reaction_mode != REACTION_PX4 || orders->config->reaction_resume == 0 ||
@@ -378,7 +378,7 @@ static uint32_t find_mode_before(orders_t *orders) {
     const autopilot_t *autopilot = orders->autopilot;
     const bool may_be_old = orders->resumed_at != 0 && autopilot->heartbeats - orders->resumed_at < BEATS_TO_RESUME;
     const bool is_left =
-        orders->left.stands && autopilot->custom_mode == PX4_AUTO_LOITER && is_of_this_flight(orders, &orders->left);
+        orders->left.active && autopilot->custom_mode == PX4_AUTO_LOITER && is_of_this_flight(orders, &orders->left);
     if (is_left) {
         return orders->left.mode_before;
     }
@@ -390,24 +390,24 @@ static void keep(orders_t *orders) {
     const mavlink_local_position_ned_t *own = &orders->autopilot->position;
     const float speed_m_s = hypotf(own->vx, own->vy);
     goe_flight_obstacle_t obstacle;
-    orders->stands.stands = true;
+    orders->active.active = true;
     if (speed_m_s > 0.0f) {
-        orders->stands.course_ne[0] = own->vx / speed_m_s;
-        orders->stands.course_ne[1] = own->vy / speed_m_s;
+        orders->active.course_ne[0] = own->vx / speed_m_s;
+        orders->active.course_ne[1] = own->vy / speed_m_s;
     }
     if (goe_flight_obstacle(orders->flight, orders->slot, &obstacle) == GOE_FLIGHT_OK) {
-        orders->stands.obstacle_ne_m[0] = obstacle.center_ned_m[0];
-        orders->stands.obstacle_ne_m[1] = obstacle.center_ned_m[1];
-        orders->stands.radius_m = obstacle.radius_m;
+        orders->active.obstacle_ne_m[0] = obstacle.center_ned_m[0];
+        orders->active.obstacle_ne_m[1] = obstacle.center_ned_m[1];
+        orders->active.radius_m = obstacle.radius_m;
     }
 }
 
 static void begin_first(orders_t *orders) {
     mode_watch_begin(&orders->watch, orders->autopilot, find_mode_before(orders));
     orders->broke_off = false;
-    orders->sent = orders->left.stands && orders->watch.mode_before == orders->left.mode_before &&
+    orders->sent = orders->left.active && orders->watch.mode_before == orders->left.mode_before &&
                    orders->autopilot->custom_mode == PX4_AUTO_LOITER;
-    orders->left.stands = false;
+    orders->left.active = false;
     orders->overruled = false;
 }
 
@@ -418,7 +418,7 @@ static void show_order(orders_t *orders, const goe_flight_assessment_t *assessme
     screen_show(orders->screen, SCREEN_ORDER, assessment->late ? MAV_SEVERITY_CRITICAL : MAV_SEVERITY_WARNING,
                 "GOE order, %s: obstacle in %.0f s%s",
                 is_traffic ? "as traffic" : goe_flight_action_text(assessment->action),
-                (double)assessment->hazard.time_s, assessment->late ? ", late" : "");
+                (double)assessment->hazard.tcpa_s, assessment->late ? ", late" : "");
 }
 
 static void begin(orders_t *orders, const goe_flight_assessment_t *assessment) {
@@ -428,8 +428,8 @@ static void begin(orders_t *orders, const goe_flight_assessment_t *assessment) {
     orders->denied = false; /* a side that is denied says nothing of a go-around */
     orders->resumes_left = 0;
     orders->orders++;
-    event("order: %s; on this course %.0f m beside it in %.1f s%s", goe_flight_action_text(assessment->action),
-          (double)assessment->hazard.miss_m, (double)assessment->hazard.time_s, assessment->late ? ", late" : "");
+    event("order: %s; on this course %.0f m past it in %.1f s%s", goe_flight_action_text(assessment->action),
+          (double)assessment->hazard.dcpa_m, (double)assessment->hazard.tcpa_s, assessment->late ? ", late" : "");
     show_order(orders, assessment);
     orders->action = assessment->action;
     keep(orders);
@@ -444,22 +444,22 @@ static void end(orders_t *orders, int64_t now_us) {
     if (orders->config->reaction_mode == REACTION_PX4) {
         resume(orders, ended, now_us);
     }
-    orders->stands.stands = false;
+    orders->active.active = false;
     orders->action = GOE_FLIGHT_NONE;
     put_log(orders, "end", orders->resumes_left > 0 ? "back into the mode before" : "");
     orders->slot = -1;
     orders->hindrance = NULL;
 }
 
-/* An autopilot that has started anew knows of no order. */
+/* An autopilot that has restarted knows of no order. */
 static void forget_after_restart(orders_t *orders) {
-    if (orders->restarts_seen != orders->autopilot->restarts) {
-        orders->restarts_seen = orders->autopilot->restarts;
+    if (orders->restarts_counted != orders->autopilot->restarts) {
+        orders->restarts_counted = orders->autopilot->restarts;
         orders->action = GOE_FLIGHT_NONE;
         orders->command = 0;
         orders->resumes_left = 0;
         orders->slot = -1;
-        orders->left.stands = orders->stands.stands = orders->sent = false;
+        orders->left.active = orders->active.active = orders->sent = false;
     }
 }
 

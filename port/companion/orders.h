@@ -1,11 +1,11 @@
 /* The flight layer's decision as commands that a stock autopilot follows. SPDX-License-Identifier: MIT
  *
  * px4, an order:  given in a mode that reaction.modes names > DO_REPOSITION until it is acknowledged, again as its target moves >
- *                 the obstacle is passed: back into the mode before; not known to be passed: it stays where it loiters
- * arduplane:      ADSB_VEHICLE of all obstacles for as long as the order stands; what comes of it is the autopilot's affair
+ *                 the obstacle is passed: back into the previous mode; not known to be passed: it stays where it loiters
+ * arduplane:      ADSB_VEHICLE of all obstacles while the order is active; the autopilot decides on the reaction
  *
- * What hinders an order (not armed, mode, origin) is looked at for as long as it stands. A mode that the pilot chose (mode_watch.h)
- * ends what is sent until all orders have ended. */
+ * The conditions for an order (armed, mode, origin) are checked while it is active. A mode that the pilot chose (mode_watch.h)
+ * stops all commands until all orders have ended. */
 #ifndef ORDERS_H
 #define ORDERS_H
 
@@ -24,8 +24,8 @@ typedef struct {
     const autopilot_t *autopilot;
     const goe_flight_t *flight;
 
-    goe_flight_action_t action;           /* that stands */
-    int slot;                             /* what it is about, as last known; -1: none */
+    goe_flight_action_t action;           /* the active one */
+    int slot;                             /* of its obstacle, as last known; -1: none */
     bool overruled;                       /* a pilot chose another mode: nothing is sent until all orders have ended */
     bool denied;                          /* the autopilot did, for this action */
     const char *hindrance;                /* why nothing can be sent now; null: nothing hinders */
@@ -35,19 +35,19 @@ typedef struct {
     float target_alt_m;
     int64_t sent_us;    /* a command ... */
     int64_t traffic_us; /* ... and traffic */
-    bool broke_off;     /* arduplane: the landing that is under way was asked to be broken off */
+    bool broke_off;     /* arduplane: an abort of the present landing was requested */
     uint16_t command;   /* whose acknowledgement is awaited; 0: none */
     mode_watch_t watch;
     screen_t *screen;    /* null: none */
     order_log_t *log;    /* null: none */
-    order_left_t stands; /* what of the order that stands the log keeps ... */
+    order_left_t active; /* the active order as in the log ... */
     bool left_reported;
     order_left_t left;                  /* ... and what of one a companion before this one left */
     goe_flight_assessment_t assessment; /* the latest */
     int64_t unix_us, boot_us;           /* ... and when it was, by both clocks */
-    int resumes_left;                   /* times that it may still be asked for */
-    unsigned resumed_at;                /* count of heartbeats when it was asked for last */
-    unsigned long restarts_seen;
+    int resumes_left;                   /* requests left */
+    unsigned resumed_at;                /* count of heartbeats at the latest request */
+    unsigned long restarts_counted;
     unsigned long orders, refused; /* counted */
 } orders_t;
 

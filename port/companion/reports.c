@@ -1,4 +1,4 @@
-/* What the companion tells over MAVLink. SPDX-License-Identifier: MIT */
+/* The companion's reports over MAVLink. SPDX-License-Identifier: MIT */
 #include "reports.h"
 
 #include <math.h>
@@ -52,7 +52,8 @@ static void send_standard(const report_t *r) {
                           goe_mavlink_pack_obstacle_distance_3d(&nearest, payload));
     }
     if ((wanted & REPORT_COLLISION) != 0 &&
-        goe_mavlink_to_collision(r->obstacle, r->slot, r->assessment, r->config->flight.violation_max, &collision)) {
+        goe_mavlink_to_collision(r->obstacle, r->slot, r->assessment, r->config->flight.conflict_probability_max,
+                                 &collision)) {
         wire_send_payload(r->wire, GOE_MAVLINK_COLLISION, payload, goe_mavlink_pack_collision(&collision, payload));
     }
     if ((wanted & REPORT_TARGET_ABSOLUTE) != 0 &&

@@ -1,4 +1,4 @@
-/* What the companion tells over MAVLink. SPDX-License-Identifier: MIT */
+/* The companion's reports over MAVLink. SPDX-License-Identifier: MIT */
 #ifndef REPORTS_H
 #define REPORTS_H
 

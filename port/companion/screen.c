@@ -36,7 +36,7 @@ void screen_go_on(screen_t *screen, wire_t *wire, int64_t now_us) {
     mavlink_message_t message;
     char text[SCREEN_TEXT_MAX + 1] = "";
     screen_line_t *line = now_us - screen->shown_us >= EVERY_US ? find_due(screen, now_us) : NULL;
-    if (line == NULL || wire->heard == 0) {
+    if (line == NULL || wire->autopilot_system == 0) {
         return;
     }
     line->waits = false;

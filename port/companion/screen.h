@@ -34,7 +34,7 @@ typedef struct {
 void screen_show(screen_t *screen, screen_kind_t kind, uint8_t severity, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
-/* Sends what is due: two texts a second at most, and of a kind one in two seconds. */
+/* Sends due texts: two a second at most, and of a kind one in two seconds. */
 void screen_go_on(screen_t *screen, wire_t *wire, int64_t now_us);
 
 #endif

@@ -52,7 +52,7 @@ static void keep_time(signing_t *signing) {
         return;
     }
     if (!signing->failed) {
-        event("%s cannot be written: after a restart the autopilot may refuse what is sent", signing->path);
+        event("%s cannot be written: after a restart the autopilot may refuse messages", signing->path);
     }
     signing->failed = true;
 }
@@ -76,14 +76,14 @@ void signing_begin(signing_t *signing, wire_t *wire, const char *key_path, const
 }
 
 static void report_refused(signing_t *signing, const wire_t *wire) {
-    if (wire->counts.without_signature > signing->unsigned_seen) {
+    if (wire->counts.without_signature > signing->unsigned_reported) {
         event("messages without a signature are refused: %lu so far", wire->counts.without_signature);
     }
-    if (wire->counts.forged > signing->forged_seen) {
+    if (wire->counts.forged > signing->forged_reported) {
         event("messages with another's signature, or an old one, are refused: %lu so far", wire->counts.forged);
     }
-    signing->unsigned_seen = wire->counts.without_signature;
-    signing->forged_seen = wire->counts.forged;
+    signing->unsigned_reported = wire->counts.without_signature;
+    signing->forged_reported = wire->counts.forged;
 }
 
 void signing_go_on(signing_t *signing, const wire_t *wire, int64_t unix_us) {

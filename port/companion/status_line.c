@@ -69,7 +69,7 @@ static void add_obstacle(text_line_t *line, const companion_t *c) {
     const double variance = n * n * (double)o.covariance_ne_m2[0] + 2.0 * n * e * (double)o.covariance_ne_m2[1] +
                             e * e * (double)o.covariance_ne_m2[2];
     add(line, "  id %u: %.0f +- %.0f m, %.1f s, %.0f %%%s", (unsigned)o.id, range_m, sqrt(fmax(variance, 0.0)),
-        (double)o.hazard.time_s, 100.0 * (double)o.hazard.violation, o.suspect ? ", suspect" : "");
+        (double)o.hazard.tcpa_s, 100.0 * (double)o.hazard.conflict_probability, o.suspect ? ", suspect" : "");
     if (a->action != GOE_FLIGHT_NONE) {
         add(line, ", %s%s", goe_flight_action_text(a->action), is_sent(c) ? "" : " (not sent)");
     }

@@ -8,9 +8,10 @@
 
 #define LATE_MIN 128 /* a running number that far ahead is one that lies behind */
 
-/* Frames of the autopilot that never came: what its running number left out, less what comes late. */
+/* Frames of the autopilot that never came: gaps in its sequence numbers, less late arrivals. */
 static void count_lost(wire_t *wire, const mavlink_message_t *message) {
-    if (wire->heard == 0 || message->sysid != wire->heard || message->compid != MAV_COMP_ID_AUTOPILOT1) {
+    if (wire->autopilot_system == 0 || message->sysid != wire->autopilot_system ||
+        message->compid != MAV_COMP_ID_AUTOPILOT1) {
         return;
     }
     const uint8_t step = wire->has_sequence ? (uint8_t)(message->seq - wire->sequence) : 1u;
@@ -89,7 +90,7 @@ bool wire_receive(wire_t *wire, message_taker_t take, void *user) {
 
 static void send_bytes(wire_t *wire, const uint8_t *bytes, size_t size) {
     const bool sent = size > 0 && link_write(wire->link, bytes, size);
-    if (!sent && wire->heard != 0) { /* before, there may be nobody to send to */
+    if (!sent && wire->autopilot_system != 0) { /* before, there may be nobody to send to */
         wire->counts.unsent++;
     }
 }
@@ -103,7 +104,7 @@ static void send_numbered(wire_t *wire, mavlink_message_t *message, uint8_t leng
     send_bytes(wire, bytes, mavlink_msg_to_send_buffer(bytes, message));
 }
 
-/* mavgen's functions number what they pack by a status of each source file's own: it is numbered anew here. */
+/* mavgen's functions number packed frames by a status of each source file's own: here they are numbered again. */
 void wire_send(wire_t *wire, mavlink_message_t *message) {
     const mavlink_msg_entry_t *entry = mavlink_get_msg_entry(message->msgid);
     if (entry != NULL) {

@@ -25,10 +25,10 @@ typedef struct {
 typedef struct {
     link_t *link;
     uint8_t system, component; /* the companion's */
-    uint8_t heard;             /* the autopilot's system, whose losses count; 0: not known yet */
+    uint8_t autopilot_system;  /* the autopilot's system, whose losses count; 0: not known yet */
     mavlink_message_t buffer;
     mavlink_status_t parser;
-    mavlink_status_t sender; /* keeps the running number of what goes out */
+    mavlink_status_t sender; /* keeps the sequence number of sent frames */
     uint8_t sequence;        /* latest of the autopilot's */
     bool missing[256];       /* by running number: counted as lost */
     bool has_sequence;
@@ -37,7 +37,7 @@ typedef struct {
 
 typedef void (*message_taker_t)(void *user, const mavlink_message_t *message);
 
-/* Reads what is there, and hands every message on. Returns whether anything was there. */
+/* Reads the available bytes, and passes every message on. Returns whether there were any. */
 bool wire_receive(wire_t *wire, message_taker_t take, void *user);
 
 /* Sends a message that mavgen's functions have packed, with the wire's running number. */

@@ -1,5 +1,5 @@
-# The Debian package libgoe-dev: what is installed, and what Debian's policy asks beside it. Included last, by the project. Nothing is
-# written here: documents.cmake makes the documents when they are packed.
+# The Debian package libgoe-dev: the installed files, and the documents that Debian's policy requires. Included last, by the project.
+# Nothing is written here: documents.cmake makes the documents when they are packed.
 set(GOE_DEBIAN_MAINTAINER "" CACHE STRING "Who answers for the Debian package, which is not made without: Name <address>")
 
 set(CPACK_GENERATOR DEB)
@@ -30,7 +30,7 @@ set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
 install(CODE "
     set(goe_maintainer [==[${GOE_DEBIAN_MAINTAINER}]==])
     set(goe_version ${PROJECT_VERSION})
-    set(goe_licence [==[${PROJECT_SOURCE_DIR}/LICENSE]==])
+    set(goe_license [==[${PROJECT_SOURCE_DIR}/LICENSE]==])
     set(goe_documents [==[${PROJECT_BINARY_DIR}/debian]==])
     include([==[${CMAKE_CURRENT_LIST_DIR}/documents.cmake]==])" COMPONENT debian EXCLUDE_FROM_ALL)
 set(CPACK_COMPONENTS_ALL Unspecified debian)

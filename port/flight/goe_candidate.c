@@ -33,7 +33,7 @@ static goe_flight_candidate_t *find(goe_flight_candidate_t *table, const goe_fli
     return NULL;
 }
 
-static goe_flight_candidate_t *make_room(goe_flight_candidate_t *table, uint32_t time_us) {
+static goe_flight_candidate_t *take_place(goe_flight_candidate_t *table, uint32_t time_us) {
     goe_flight_candidate_t *oldest = &table[0];
     for (int i = 0; i < GOE_FLIGHT_CANDIDATES; i++) {
         goe_flight_candidate_t *other = &table[i];
@@ -47,12 +47,12 @@ static goe_flight_candidate_t *make_room(goe_flight_candidate_t *table, uint32_t
     return oldest;
 }
 
-bool goe_flight_candidate_seen(goe_flight_candidate_t table[GOE_FLIGHT_CANDIDATES], const goe_flight_candidate_t *seen,
-                               int images) {
+bool goe_flight_candidate_confirm(goe_flight_candidate_t table[GOE_FLIGHT_CANDIDATES],
+                                  const goe_flight_candidate_t *seen, int images) {
     goe_flight_candidate_t *candidate = find(table, seen);
     uint8_t before = 0;
     if (!candidate) {
-        candidate = make_room(table, seen->time_us);
+        candidate = take_place(table, seen->time_us);
     } else if (goe_flight_between_us(seen->time_us, candidate->time_us) <= 0) {
         return false; /* twice in one image */
     } else {

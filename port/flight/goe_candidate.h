@@ -7,9 +7,9 @@
 /* Share of the union of two boxes (left, top, right, bottom) that both cover, 0 to 1. */
 float goe_flight_candidate_overlap(const int16_t a[4], const int16_t b[4]);
 
-/* One more image of this detection, by its id or, without one, its box. Returns true once it was seen in `images` of them: it is
- * no candidate any more. The table is fixed: when it is full the one that was not seen for the longest is forgotten. */
-bool goe_flight_candidate_seen(goe_flight_candidate_t table[GOE_FLIGHT_CANDIDATES], const goe_flight_candidate_t *seen,
-                               int images);
+/* One more image of this detection, by its id or, without one, its box. Returns true once it was detected in `images` of them: it is
+ * no candidate any more. The table is fixed: when it is full, the candidate undetected for the longest is forgotten. */
+bool goe_flight_candidate_confirm(goe_flight_candidate_t table[GOE_FLIGHT_CANDIDATES],
+                                  const goe_flight_candidate_t *seen, int images);
 
 #endif

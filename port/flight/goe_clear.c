@@ -1,14 +1,14 @@
 /* Clearance. SPDX-License-Identifier: MIT
  *
- * Nobody knows exactly how an autopilot obeys: half a second late or two, straight to the target or first beside the line. What is
- * tested is therefore a region and not one path:
+ * The exact response of an autopilot is unknown: half a second late or two, straight to the target or first parallel to the line. The
+ * test therefore covers a region and not one path:
  *
  *   late     straight on for late_m, an arc of the turn's radius, straight to the target
- *   fan      the triangle from where the turn may begin at the soonest to both sides of the circle about the target; or, where
- *            the aircraft flies through, to the target and to where a line beside the course begins
+ *   fan      the triangle from the earliest beginning of the turn to both sides of the circle about the target; or, where
+ *            the aircraft flies through, to the target and to the beginning of a line parallel to the course
  *   end      the disc about the target, or the line flown on behind it
  *
- * On the way past an obstacle its sigma across the line of sight counts: what is not known of its range becomes known as it comes
+ * On the way past an obstacle its sigma across the line of sight counts: the uncertainty of its range shrinks as it comes
  * nearer, and the target moves with it. Before an obstacle, where an aircraft turns away, its sigma along the nearest distance counts.
  */
 #include "goe_clear.h"
@@ -25,7 +25,7 @@
 #define LENGTH_MIN_M2 1.0e-6f
 #define NOBODY (-1)
 
-/* Straight: from, to. Arc: about a centre, from one point to the other, to the right or to the left. */
+/* Straight: from, to. Arc: about a center, from one point to the other, to the right or to the left. */
 typedef struct {
     float from_m[2], to_m[2], center_m[2];
     float radius_m;           /* 0: straight */
@@ -240,7 +240,7 @@ static void add_turn(region_t *region, float begin_m, float turn_m, const float 
     add_straight(region, leaves, place_m);
 }
 
-/* Both ends of the circle about the target, as seen from the turn's beginning; inner_m: nearer to the course. */
+/* Both ends of the circle about the target, viewed from the turn's beginning; inner_m: nearer to the course. */
 static bool ends_of_circle(const float begin_m[2], const goe_flight_clear_way_t *way, float inner_m[2],
                            float outer_m[2]) {
     float to[2];
@@ -257,15 +257,15 @@ static bool ends_of_circle(const float begin_m[2], const goe_flight_clear_way_t 
     return true;
 }
 
-/* Where an autopilot that leaves its line by 45 degrees at once begins to fly beside it. */
-static void shift_aside(const float begin_m[2], const goe_flight_clear_way_t *way, float beside_m[2]) {
+/* Where an autopilot that leaves its line by 45 degrees at once begins to fly parallel to it. */
+static void shift_aside(const float begin_m[2], const goe_flight_clear_way_t *way, float sideways_m[2]) {
     const float *line = way->line_m;
     float to[2];
     minus(way->target_m, begin_m, to);
     const float aside_m = cross(line, to);
     const float ahead_m = goe_flight_clamped(dot(line, to), 0.0f, goe_flight_absolute(aside_m));
-    beside_m[0] = begin_m[0] + ahead_m * line[0] - aside_m * line[1];
-    beside_m[1] = begin_m[1] + ahead_m * line[1] + aside_m * line[0];
+    sideways_m[0] = begin_m[0] + ahead_m * line[0] - aside_m * line[1];
+    sideways_m[1] = begin_m[1] + ahead_m * line[1] + aside_m * line[0];
 }
 
 static void add_fan(region_t *region, const float a_m[2], const float b_m[2], const float c_m[2]) {
@@ -316,7 +316,7 @@ float goe_flight_clear_share(const goe_flight_clear_own_t *own, const goe_flight
     for (int i = 0; i < GOE_FLIGHT_SLOTS && least >= enough; i++) {
         if (slots[i].counts) {
             const float share = spare_m(&region, way, &slots[i]) / slots[i].margin_m;
-            if (!(share >= least)) { /* also what is no number */
+            if (!(share >= least)) { /* also NaN */
                 least = share;
                 *nearest = i;
             }

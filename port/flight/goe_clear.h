@@ -19,7 +19,7 @@ typedef struct {
     float circle_m;  /* about the target; 0: the aircraft flies through, then along line_m */
     float line_m[2]; /* unit vector */
     float sigmas;    /* of every place, that are taken off its distance */
-    bool shifts;     /* an autopilot may also leave the line at once and fly beside it to the target */
+    bool shifts;     /* an autopilot may also leave the line at once and fly parallel to it to the target */
     bool turns_away; /* the target lies abeam or behind: the turn is the same from early_m and from late_m */
 } goe_flight_clear_way_t;
 
@@ -41,9 +41,9 @@ void goe_flight_clear_direct(const goe_flight_clear_own_t *own, const float dire
 void goe_flight_clear_slots(const goe_flight_t *flight, const goe_flight_clear_own_t *own,
                             goe_flight_clear_slot_t slots[GOE_FLIGHT_SLOTS]);
 
-/* The least distance that the way keeps from any obstacle's circle, way->sigmas of its place taken off, as a share of the margin wanted
- * there; at most GOE_FLIGHT_CLEAR_MAX. Negative: through one. *nearest: of which slot, -1 if there is none. What is found to be
- * below `enough` is not looked at further. */
+/* The least distance of the way from any obstacle's circle, minus way->sigmas of its position, as a share of the wanted margin
+ * there; at most GOE_FLIGHT_CLEAR_MAX. Negative: through one. *nearest: of which slot, -1 if there is none. A way found to be
+ * below `enough` is not examined further. */
 #define GOE_FLIGHT_CLEAR_MAX 2.0f
 float goe_flight_clear_share(const goe_flight_clear_own_t *own, const goe_flight_clear_slot_t slots[GOE_FLIGHT_SLOTS],
                              const goe_flight_clear_way_t *way, float enough, int *nearest);

@@ -1,7 +1,7 @@
 /* Capture time. SPDX-License-Identifier: MIT
  *
  * One-way: a message cannot arrive before it was sent, so the least of (arrival - sending) is the offset of the clocks plus the
- * least delay of the link, which nothing but settings.delay_s tells. The least is that of two buckets of 10 s: a clock that
+ * least delay of the link, which only settings.delay_s gives. The least is that of two buckets of 10 s: a clock that
  * drifts by 50 ppm is off by 1 ms at most. */
 #include "goe_clock.h"
 
@@ -93,8 +93,8 @@ uint32_t goe_flight_clock_capture(goe_flight_clock_t *clock, const goe_flight_fr
         capture_us = frame->arrival_us - microseconds(settings->delay_s) - frame->capture_us;
         clock_sd_us = (float)delay_sd_us;
     }
-    const bool told = frame->time_sd_us > 0u;
-    const float own_sd_us = (float)(told || clock_sd_us > 0.0f ? frame->time_sd_us : delay_sd_us);
+    const bool stated = frame->time_sd_us > 0u;
+    const float own_sd_us = (float)(stated || clock_sd_us > 0.0f ? frame->time_sd_us : delay_sd_us);
     *sd_us = rounded_sd(sqrtf(own_sd_us * own_sd_us + clock_sd_us * clock_sd_us));
     return capture_us;
 }

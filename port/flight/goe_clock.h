@@ -4,7 +4,7 @@
 
 #include "goe_flight.h"
 
-/* The exposure's time and its one sigma, and what the clock has learnt by this message. */
+/* The exposure's time and its one sigma, and the clock updated by this message. */
 uint32_t goe_flight_clock_capture(goe_flight_clock_t *clock, const goe_flight_frame_t *frame,
                                   const goe_flight_settings_t *settings, uint32_t *sd_us);
 

@@ -142,7 +142,7 @@ goe_flight_status_t goe_flight_init(goe_flight_t *flight, size_t flight_size, co
         }
         return GOE_FLIGHT_BAD_SETTINGS;
     }
-    flight->attitude_white_deg = estimator->navigation.attitude_white_deg;
+    flight->attitude_white_sd_deg = estimator->navigation.attitude_white_sd_deg;
     forget(flight);
     goe_flight_seal(flight);
     flight->tag = TAG;
@@ -153,10 +153,10 @@ static goe_flight_status_t check_ready(const goe_flight_t *flight) {
     if (!flight) {
         return GOE_FLIGHT_BAD_ARGUMENT;
     }
-    return flight->tag == TAG ? GOE_FLIGHT_OK : GOE_FLIGHT_NOT_INITIALISED;
+    return flight->tag == TAG ? GOE_FLIGHT_OK : GOE_FLIGHT_NOT_INITIALIZED;
 }
 
-/* Where what is decided hangs on the settings. */
+/* Fields of the decision that depend on the settings. */
 static goe_flight_status_t check_sealed(const goe_flight_t *flight) {
     const goe_flight_status_t ready = check_ready(flight);
     return ready == GOE_FLIGHT_OK && !goe_flight_is_sealed(flight) ? GOE_FLIGHT_CORRUPTED : ready;
@@ -293,8 +293,8 @@ static bool has_bad_delta(const goe_flight_t *flight, const goe_flight_position_
            !goe_flight_all_within(p->reset_delta_ned_m, 3, POSITION_MAX_M);
 }
 
-/* How far the position lies from where the velocity would have led it: an unknown jump, as near as that can be known. What is kept of
- * the obstacles moves along. */
+/* Distance of the position from its prediction by the velocity: an unknown jump, as well as it can be known. The kept
+ * obstacles move along. */
 static void guess_jump(const goe_flight_t *flight, const goe_flight_position_t *sample, float jump_ned_m[3]) {
     const goe_flight_history_position_t *newest = goe_flight_history_newest_position(&flight->history);
     for (int i = 0; newest && i < 3; i++) {
@@ -371,7 +371,7 @@ goe_flight_status_t goe_flight_position(goe_flight_t *flight, const goe_flight_p
 
 static float attitude_sd_deg(const goe_flight_t *flight, const goe_flight_history_pose_t *pose, uint32_t time_sd_us) {
     const float late_deg = pose->rate_deg_s * (float)time_sd_us * GOE_FLIGHT_S_PER_US;
-    const float square = goe_flight_square(flight->attitude_white_deg) + goe_flight_square(pose->spread_deg) +
+    const float square = goe_flight_square(flight->attitude_white_sd_deg) + goe_flight_square(pose->spread_deg) +
                          goe_flight_square(late_deg);
     return goe_flight_smaller(sqrtf(square), ATTITUDE_SD_MAX_DEG);
 }
@@ -484,7 +484,7 @@ goe_flight_status_t goe_flight_frame(goe_flight_t *flight, const goe_flight_fram
     if (status != GOE_FLIGHT_OK) {
         return refuse(flight, status);
     }
-    goe_flight_clock_t clock = flight->clock; /* what it learns is kept only with the frame, which may be asked again */
+    goe_flight_clock_t clock = flight->clock; /* its update is kept only with the frame, which may come again */
     status = find_view(flight, frame, &clock, &view);
     if (status != GOE_FLIGHT_OK) {
         goe_flight_count(status == GOE_FLIGHT_TOO_NEW ? &flight->counters.early : &flight->counters.late);
@@ -531,7 +531,7 @@ static bool pose_alive(const goe_flight_t *flight, uint32_t now_us) {
 
 static bool camera_alive(const goe_flight_t *flight, int number, uint32_t now_us) {
     return ((flight->had_frame >> number) & 1u) != 0u &&
-           goe_flight_between_s(now_us, flight->frame_us[number]) <= flight->settings.alive_s;
+           goe_flight_between_s(now_us, flight->frame_us[number]) <= flight->settings.detector_timeout_s;
 }
 
 static bool detector_alive(const goe_flight_t *flight, uint32_t now_us) {
@@ -542,7 +542,7 @@ static bool detector_alive(const goe_flight_t *flight, uint32_t now_us) {
     return alive;
 }
 
-/* What was dead once stays so until it gives a sign again: times of half an hour ago would look like times to come. */
+/* An input that was dead stays dead until it gives a sign again: times of half an hour ago would look like future times. */
 static void bury(goe_flight_t *flight, uint32_t now_us) {
     for (int i = 0; i < GOE_CAMERAS_MAX; i++) {
         if (!camera_alive(flight, i, now_us)) {
@@ -587,8 +587,8 @@ static void report(const goe_flight_t *flight, int worst, uint32_t now_us, goe_f
 }
 
 static bool is_finite_hazard(const goe_hazard_t *hazard) {
-    const float number[] = {hazard->time_s,    hazard->miss_m,         hazard->clearance_m, hazard->time_sd_s,
-                            hazard->miss_sd_m, hazard->clearance_sd_m, hazard->violation};
+    const float number[] = {hazard->tcpa_s,    hazard->dcpa_m,         hazard->clearance_m,         hazard->tcpa_sd_s,
+                            hazard->dcpa_sd_m, hazard->clearance_sd_m, hazard->conflict_probability};
     return goe_flight_all_finite(number, (int)(sizeof number / sizeof number[0]));
 }
 
@@ -708,7 +708,7 @@ goe_flight_status_t goe_flight_obstacle(const goe_flight_t *flight, int slot, go
     obstacle->in_view = one->in_view;
     obstacle->has_hazard = one->assessed;
     copy_hazard(one, &obstacle->hazard);
-    obstacle->passed = one->assessed && !(one->hazard.time_s > 0.0f);
+    obstacle->receding = one->assessed && !(one->hazard.tcpa_s > 0.0f);
     if (one->valid & GOE_HAS_POSITION) {
         obstacle->age_s = goe_flight_lookout_age_s(one, flight->assessed_us);
         report_place(flight, one, obstacle);
@@ -722,7 +722,7 @@ goe_flight_status_t goe_flight_obstacle(const goe_flight_t *flight, int slot, go
 
 static bool is_passed_over(const goe_flight_t *flight, const goe_flight_slot_t *slot) {
     const goe_hazard_t *hazard = &slot->hazard;
-    return slot->assessed && goe_flight_is_set(&hazard->has_clearance) && hazard->time_s > 0.0f &&
+    return slot->assessed && goe_flight_is_set(&hazard->has_clearance) && hazard->tcpa_s > 0.0f &&
            hazard->clearance_m - 2.0f * hazard->clearance_sd_m >
                goe_flight_lookout_doubt(flight, slot) * flight->settings.clearance_m;
 }

@@ -21,11 +21,11 @@
  * Threads     Every function touches only what its arguments point at; one goe_flight_t needs the caller's lock.
  * Arithmetic  float only; of the C library sqrtf, memcpy and memset. Compiled with -ffp-contract=off the results have the same
  *             bits on every IEEE 754 target.
- * Safety      Every output is finite. What is not finite is refused by its exponent bits, also under -ffast-math.
+ * Safety      Every output is finite. Values that are not finite are refused by their exponent bits, also under -ffast-math.
  * Bit flips   A flipped bit in goe_flight_t leads to no write out of bounds. Settings, cameras among them, are sealed: a frame and an
- *             assessment say GOE_FLIGHT_CORRUPTED. An estimator that says GOE_CORRUPTED begins anew, with the settings of another slot
- *             if its own are lost; until it knows a position again the slot keeps place and hazard, suspect, so that no warning is
- *             silenced. What else is kept here (poses, clocks, places, the order that stands) is not sealed.
+ *             assessment return GOE_FLIGHT_CORRUPTED. An estimator that returns GOE_CORRUPTED begins again, with the settings
+ *             of another slot if its own are lost; until it knows a position again the slot keeps position and hazard, suspect, and
+ *             its warning. The rest (poses, clocks, positions, the active order) is not sealed.
  * Cost        On a Cortex-M4F (gcc), in instructions: a sample at most 1,250, a frame 44,700 for each obstacle in it, an assessment
  *             28,700 with one obstacle, 23,200 for each further one with a position and, while a hazard is answered, the ways that
  *             are looked at: at most 3 times 4 + 4 GOE_FLIGHT_SLOTS of them, each against every obstacle; goe_flight_obstacle() 980,
@@ -54,7 +54,7 @@
 #define GOE_FLIGHT_SAMPLES 32    /* of each ring of the pose's history: 0.6 s or more */
 #define GOE_FLIGHT_CANDIDATES 6  /* detections that wait for their confirmation */
 #define GOE_FLIGHT_DETECTIONS 32 /* most that goe_flight_frame() takes at once */
-#define GOE_FLIGHT_SECTORS 72    /* of goe_flight_sectors(), 5 degrees each, the first centred on north */
+#define GOE_FLIGHT_SECTORS 72    /* of goe_flight_sectors(), 5 degrees each, the first centered on north */
 
 #ifdef __cplusplus
 extern "C" {
@@ -75,14 +75,14 @@ typedef enum {
     GOE_FLIGHT_NOTHING = -7,      /* no such obstacle */
     GOE_FLIGHT_BAD_SETTINGS = -32,
     GOE_FLIGHT_BAD_ARGUMENT = -33, /* a null pointer, or a goe_flight_t of another size */
-    GOE_FLIGHT_NOT_INITIALISED = -34,
+    GOE_FLIGHT_NOT_INITIALIZED = -34,
     GOE_FLIGHT_CORRUPTED = -35 /* settings, here or of all estimators, are not what goe_flight_init() left: call it again. Until then
                                   nothing is known, which is not "clear" */
 } goe_flight_status_t;
 
 /* -------------------------------------------------------------------------------------------------------- settings -- */
 
-/* How the autopilot tells the resets of its filter. */
+/* How the autopilot reports the resets of its filter. */
 enum {
     GOE_FLIGHT_RESETS_COUNT = 0, /* marks are 8 bit counters: one up is a reset with the delta given, more an unknown one. PX4 */
     GOE_FLIGHT_RESETS_TIME = 1   /* marks are times of the latest reset: any change is one reset. ArduPilot */
@@ -95,13 +95,13 @@ enum { GOE_FLIGHT_RANGE_FINDER, GOE_FLIGHT_TERRAIN, GOE_FLIGHT_HOME, GOE_FLIGHT_
 typedef struct {
     /* detector */
     float score_min;      /* a detection of less is not looked at; 0 to 1; 0.3 */
-    float confirm_images; /* images, at most 1 s apart, that a new obstacle must be seen in before it gets a slot; 1 to 20; 3 */
-    float alive_s;        /* without a frame for this long the detector counts as dead; 0.05 to 60; 1 */
-    float forget_s;       /* an obstacle that was not seen for this long is given up, unless it stands ahead on the course or an order
+    float confirm_images; /* images, at most 1 s apart, with a detection of a new obstacle before it gets a slot; 1 to 20; 3 */
+    float detector_timeout_s; /* without a frame for this long the detector counts as dead; 0.05 to 60; 1 */
+    float track_timeout_s; /* an obstacle undetected for this long is given up, unless it is ahead on the course or an order
                              is about it; 1 to 600; 10 */
     /* time */
     float delay_s;     /* least time from sending to arrival, which no one-way clock can see; 0 to 0.5; 0.005 */
-    float delay_sd_s;  /* its one-sigma, and that of any capture time whose sender tells none; 0 to 0.5; 0.005 */
+    float delay_sd_s;  /* its one-sigma, and that of any capture time whose sender gives none; 0 to 0.5; 0.005 */
     float delay_max_s; /* a frame that comes later after its exposure is refused; 0.02 to 0.5; 0.4 */
     float resets;      /* GOE_FLIGHT_RESETS_...; 0 or 1; 0 */
     /* height: one sigma, and the highest that the range finder is believed at */
@@ -109,12 +109,12 @@ typedef struct {
     float range_finder_max_m; /* 0 to 1000; 40 */
     float terrain_sd_m;       /* 0.001 to 1000; 3 */
     float home_sd_m;          /* 0.001 to 1000; 5 */
-    /* what is wanted */
+    /* wanted distances */
     float margin_m;      /* to the outline, horizontally; 0 to 1000; 15 */
     float clearance_m;   /* over the top; 0 to 1000; 10 */
-    float violation_max; /* probability of violating both from which on there is a reaction; 0.001 to 1; 0.1 */
-    float doubt;         /* factor on margin and clearance while the estimate is suspect; 1 to 10; 1.5 */
-    float drift_m_s;     /* by which both grow while the estimate is not renewed; 0 to 100; 1 */
+    float conflict_probability_max; /* probability of violating both from which on there is a reaction; 0.001 to 1; 0.1 */
+    float suspect_factor; /* factor on margin and clearance while the estimate is suspect; 1 to 10; 1.5 */
+    float stale_growth_m_s; /* by which both grow while the estimate is not renewed; 0 to 100; 1 */
     /* what the aircraft can do */
     float bank_deg;    /* of an avoiding turn; 5 to 70; 30 */
     float roll_in_s;   /* from the order to that turn, link and mode change included; 0 to 20; 1.5 */
@@ -151,7 +151,7 @@ typedef struct {
     bool origin_known;                  /* the origin of NED, for latitude and longitude */
     int32_t origin_lat_e7, origin_lon_e7; /* degrees times 1e7; +-89e7, +-180e7 */
     uint32_t reset_horizontal, reset_vertical; /* marks of resets, see goe_flight_settings_t.resets */
-    bool reset_delta_known;             /* else any reset is an unknown one: ends all tracks, empties the history. What is kept of the
+    bool reset_delta_known;             /* else any reset is an unknown one: ends all tracks, empties the history. The kept
                                            obstacles moves along as far as the velocity shows the jump */
     float reset_delta_ned_m[3];         /* new minus old of the latest reset of each; read when a mark changed. Down: the
                                            ground of every track moves along, whether height_m jumped or not, so that no height
@@ -171,9 +171,9 @@ typedef struct {
     uint32_t id;   /* of the detector's tracker, of each camera's own; 0: it has none, and the place in the image decides */
     float score;   /* 0 to 1 */
     float pixel_px; /* one sigma of box and points; 0: as in the settings; 0 to 100 */
-    goe_box_t box; /* raw pixels; give all four sides, also at the border of the image: the estimator knows what is cut */
-    goe_pixel_t left, right, top, base_left, base_near, base_right; /* left, right, top within the image's border count as not
-                                                                       seen, and with a side the top */
+    goe_box_t box; /* raw pixels; give all four sides, also at the border of the image: the estimator detects truncation */
+    goe_pixel_t left, right, top, base_left, base_near, base_right; /* left, right, top within the image's border count as
+                                                                       invisible, and with a side the top */
 } goe_flight_detection_t;
 
 typedef struct {
@@ -184,7 +184,7 @@ typedef struct {
     uint32_t time_sd_us; /* one sigma of capture_us as the sender knows it; 0: settings.delay_sd_s */
     uint8_t time_base;
     uint8_t camera; /* number of the camera that took it; one that is set, below GOE_CAMERAS_MAX */
-    uint8_t number; /* of detections in the image. 0: nothing in view, which tells that the detector is alive */
+    uint8_t number; /* of detections in the image. 0: nothing in view, which shows that the detector is alive */
     uint8_t count;  /* of those here, 0 to GOE_FLIGHT_DETECTIONS. Less than number: the others come in further calls with the
                        same capture time */
     const goe_flight_detection_t *detection;
@@ -194,7 +194,7 @@ typedef struct {
 
 typedef enum {
     GOE_FLIGHT_NONE = 0,
-    GOE_FLIGHT_LEFT = 1,      /* fly to target_ned_m, which lies left of the obstacle as seen on the course */
+    GOE_FLIGHT_LEFT = 1,      /* fly to target_ned_m, to the left of the obstacle, looking along the course */
     GOE_FLIGHT_RIGHT = 2,     /* ... right of it */
     GOE_FLIGHT_CLIMB = 3,     /* straight on, up to target_ned_m: the top is surely below that by then */
     GOE_FLIGHT_GO_AROUND = 4, /* break off the approach */
@@ -217,16 +217,16 @@ typedef enum {
 enum {
     GOE_FLIGHT_FLYING = 0,
     GOE_FLIGHT_APPROACH = 1, /* it is landing: to go around comes first */
-    GOE_FLIGHT_FLARE = 2,    /* no order is given, and one that stands ends */
-    GOE_FLIGHT_LANDED = 3    /* it has touched down: the same. What stands behind the runway is not on its course */
+    GOE_FLIGHT_FLARE = 2,    /* no order is given, and an active one ends */
+    GOE_FLIGHT_LANDED = 3    /* it has touched down: the same. Obstacles behind the runway are not on its course */
 };
 
-/* What goe_flight_assess() finds. The worst obstacle is that of the largest violation / (1 + 0.1 time_s). */
+/* What goe_flight_assess() finds. The worst obstacle is that of the largest conflict_probability / (1 + 0.1 tcpa_s). */
 typedef struct {
     goe_flight_action_t action;
     bool late;             /* the action needs longer than there is: it may not suffice */
     bool suspect;          /* the worst obstacle's estimate is: margins were widened */
-    bool detector_alive;   /* within alive_s, of every camera, a frame came that can be read: without detections, or with one of good
+    bool detector_alive;   /* within detector_timeout_s, of every camera, a frame came that can be read: without detections, or with one of good
                               numbers. Once false, false until the next such frame */
     bool pose_alive;       /* samples of attitude and position came within 0.5 s */
     int8_t worst;          /* slot, for goe_flight_obstacle(); -1: no hazard is known, which is "clear" only if both are alive */
@@ -234,7 +234,7 @@ typedef struct {
     uint8_t obstacles;     /* with a position */
     float needed_s;        /* time that the action needs, or the best one would, if there is a worst obstacle */
     float target_ned_m[3]; /* 0 if GOE_FLIGHT_NONE. The height of CLIMB and GO_AROUND clears the highest top that is known on the
-                              course by clearance_m at two sigma; it rises with the estimate and never sinks while the order stands */
+                              course by clearance_m at two sigma; it rises with the estimate and never sinks while the order is active */
     goe_flight_reason_t reason;
     float clear_m;         /* of LEFT, RIGHT and HOLD: the least distance that the ways in which the order may be flown keep from any
                               known outline, two sigmas of its place taken off; at most 1000. Else 0 */
@@ -242,24 +242,24 @@ typedef struct {
     goe_hazard_t hazard;   /* of the worst obstacle, from now; all zero if there is none */
 } goe_flight_assessment_t;
 
-/* One obstacle. What is not known is 0 and not in valid. */
+/* One obstacle. An unknown value is 0 and not in valid. */
 typedef struct {
     uint32_t id;
     unsigned valid;          /* GOE_HAS_POSITION, _HEIGHT, _WIDTH, _LENGTH, _ORIENTATION */
     goe_model_t model;
-    bool suspect, passed;    /* passed: on the present course its distance grows */
-    bool in_view;            /* seen in the latest image of the camera that saw it last */
+    bool suspect, receding;  /* receding: on the present course its distance grows */
+    bool in_view;            /* detected in the latest image of the camera that detected it last */
     bool has_hazard;         /* hazard is known: assessed with a position */
     float age_s;             /* since it was last measured, from the latest assessment */
-    float center_ned_m[3];   /* middle of the base as far as it is seen; down: of its ground */
-    float covariance_ne_m2[3]; /* of the centre: north north, north east, east east */
-    float radius_m;          /* of the circle about the centre that holds the outline */
+    float center_ned_m[3];   /* middle of the visible base; down: of its ground */
+    float covariance_ne_m2[3]; /* of the center: north north, north east, east east */
+    float radius_m;          /* of the circle about the center that contains the outline */
     float height_m, height_sd_m; /* of the top above the ground */
     float width_m, length_m;
     float length_heading_deg; /* of the length axis, clockwise from north, 0 to 180 */
-    float nearest_ned_m[3];  /* of the circle from the aircraft, at the aircraft's height or the top, what is lower */
+    float nearest_ned_m[3];  /* of the circle from the aircraft, at the aircraft's height or the top, whichever is lower */
     float nearest_body_m[3]; /* the same relative to the aircraft, body axes */
-    int32_t lat_e7, lon_e7;  /* centre; 0 if the origin is not known */
+    int32_t lat_e7, lon_e7;  /* center; 0 if the origin is not known */
     goe_hazard_t hazard;     /* from the latest goe_flight_assess() on */
 } goe_flight_obstacle_t;
 
@@ -281,7 +281,7 @@ typedef struct {
 
 /* ----------------------------------------------------------------------------------------------------------- state -- */
 
-/* Transparent so that it can be placed and counted; private but for counters and capture_us. At each type the file that keeps it. */
+/* Transparent, for the caller to place and count; private but for counters and capture_us. Each type names the file that maintains it. */
 
 typedef struct { /* goe_history.c */
     uint32_t time_us;
@@ -300,9 +300,9 @@ typedef struct { /* goe_history.c */
     uint8_t stale; /* samples in a row that were not newer */
 } goe_flight_history_t;
 
-typedef struct { /* goe_marks.c: what the autopilot tells of its resets */
+typedef struct { /* goe_marks.c: the autopilot's reset counters */
     uint32_t attitude, horizontal, vertical;
-    goe_flag_t attitude_known, position_known; /* a first mark was seen */
+    goe_flag_t attitude_known, position_known; /* a first mark has come */
     float jumps_ned_m[3];                /* sum of all known ones, modulo nothing: bounded to 1e6 */
 } goe_flight_marks_t;
 
@@ -327,7 +327,7 @@ typedef struct { /* goe_slot.c */
     goe_estimator_t estimator;
     goe_hazard_t hazard; /* from the latest assessment; goe_lookout.c */
     uint32_t id;
-    uint32_t taken_us, seen_us; /* exposure of the latest image taken, and of that with a detection */
+    uint32_t taken_us, detected_us; /* exposure of the latest image taken, and of that with a detection */
     float jumps_ned_m[3];       /* the history's sum at the latest image taken */
     float ground_down_m, height_sd_m; /* of the track, fixed at its first image */
     float center_ne_m[2], covariance_ne_m2[3];
@@ -340,7 +340,7 @@ typedef struct { /* goe_slot.c */
     goe_flag_t remembered; /* place and hazard are from before the estimator was lost */
 } goe_flight_slot_t;
 
-typedef struct { /* goe_reaction.c: the order that stands */
+typedef struct { /* goe_reaction.c: the active order */
     float from_ne_m[2], course_ne[2]; /* where it was given, and the course then: the line to go back to */
     uint32_t rising_us, falling_us;   /* since when there is a hazard, and an end of it */
     float target_ned_m[3];
@@ -348,7 +348,7 @@ typedef struct { /* goe_reaction.c: the order that stands */
     float clear_m;      /* as reported */
     uint32_t ordered_us;
     uint8_t action;
-    int8_t slot; /* what it is about; -1: none, or given up */
+    int8_t slot; /* its obstacle; -1: none, or given up */
     int8_t edge; /* the slot past whose outline the target lies; -1: the target does not follow one */
     int8_t side; /* -1: left, 1: right, also of HOLD; 0: none */
     uint8_t changes; /* of the side */
@@ -368,7 +368,7 @@ typedef struct {
     goe_seal_t seal; /* of the next three */
     goe_flight_settings_t settings;
     goe_flight_camera_t camera[GOE_CAMERAS_MAX];
-    float attitude_white_deg; /* setting of the estimator */
+    float attitude_white_sd_deg; /* setting of the estimator */
     goe_flight_history_t history;
     goe_flight_marks_t marks;
     goe_flight_clock_t clock;
@@ -394,9 +394,9 @@ typedef struct {
 void goe_flight_settings_default(goe_flight_settings_t *settings);
 
 /* Checks both settings, copies them, starts with nothing known.
- *   flight_size  sizeof(goe_flight_t) as the caller's compiler sees it
+ *   flight_size  sizeof(goe_flight_t) in the caller's compilation
  *   estimator    as for goe_init; width_px and height_px of every camera must be set too. With boxes the sigma of the height's source, a
- *                setting of the layer, stands for navigation.height_bias_m. height_white_m is best left 0: a track's heights
+ *                setting of the layer, replaces navigation.height_bias_sd_m. Leave height_white_sd_m at 0: a track's heights
  *                are one reading and the changes of down
  *   settings     null: the defaults
  *   bad_field    where to put the name of the first bad setting; null if not wanted
@@ -404,62 +404,63 @@ void goe_flight_settings_default(goe_flight_settings_t *settings);
 GOE_NODISCARD goe_flight_status_t goe_flight_init(goe_flight_t *flight, size_t flight_size, const goe_settings_t *estimator,
                                                   const goe_flight_settings_t *settings, const char **bad_field);
 
-/* Changes the layer's settings in flight: poses, clocks, obstacles and a standing order stay, and the next assessment judges by the new
- * settings. What the estimators were initialised with stays too.
+/* Changes the layer's settings in flight: poses, clocks, obstacles and an active order stay, and the next assessment judges by the new
+ * settings. The settings of the estimators at initialization stay too.
  *   settings   null: the defaults
  *   bad_field  as for goe_flight_init
- * Returns GOE_FLIGHT_OK, _BAD_ARGUMENT, _BAD_SETTINGS, _NOT_INITIALISED, or _CORRUPTED: then call goe_flight_init(). On failure the
+ * Returns GOE_FLIGHT_OK, _BAD_ARGUMENT, _BAD_SETTINGS, _NOT_INITIALIZED, or _CORRUPTED: then call goe_flight_init(). On failure the
  * settings stay as they were. */
 GOE_NODISCARD goe_flight_status_t goe_flight_change_settings(goe_flight_t *flight, const goe_flight_settings_t *settings,
                                                              const char **bad_field);
 
 /* Take a sample of the pose. Samples closer than 20 ms are thinned.
- * Return GOE_FLIGHT_OK, _BAD_TIME, _NOT_FINITE, _OUT_OF_RANGE, _BAD_ATTITUDE, _BAD_ARGUMENT, _NOT_INITIALISED. */
+ * Return GOE_FLIGHT_OK, _BAD_TIME, _NOT_FINITE, _OUT_OF_RANGE, _BAD_ATTITUDE, _BAD_ARGUMENT, _NOT_INITIALIZED. */
 goe_flight_status_t goe_flight_attitude(goe_flight_t *flight, const goe_flight_attitude_t *sample);
 goe_flight_status_t goe_flight_position(goe_flight_t *flight, const goe_flight_position_t *sample);
 
-/* The pose at a time, height_m that of camera 0: position linear between the two samples about it, attitude by the cubic through them and their neighbours,
- * as far as these are there; the height by the best source that is known now. pose->time_us does not wrap and is in the same clock.
- *   attitude_sd_deg  what the attitude is uncertain by for a time whose one sigma is time_sd_us; null if not wanted
- * Returns GOE_FLIGHT_OK, _TOO_NEW, _TOO_OLD, _NO_POSE, _BAD_ARGUMENT, _NOT_INITIALISED; all zero unless _OK. */
+/* The pose at a time, height_m that of camera 0: position linear between the two samples about it, attitude by the cubic
+ * through them and their neighbors, as far as these exist; the height by the best source known now. pose->time_us does not wrap and is in
+ * the same clock.
+ *   attitude_sd_deg  uncertainty of the attitude for a time whose one sigma is time_sd_us; null if not wanted
+ * Returns GOE_FLIGHT_OK, _TOO_NEW, _TOO_OLD, _NO_POSE, _BAD_ARGUMENT, _NOT_INITIALIZED; all zero unless _OK. */
 goe_flight_status_t goe_flight_pose(const goe_flight_t *flight, uint32_t time_us, uint32_t time_sd_us, goe_pose_t *pose,
                                     float *attitude_sd_deg);
 
 /* The sender's clock from a two-way exchange: autopilot's minus sender's (modulo 2^32), and its one sigma. From then on it
  * replaces the one-way estimate, until sd_us is 0xFFFFFFFF: not known any more.
- * Returns GOE_FLIGHT_OK, _BAD_ARGUMENT, _NOT_INITIALISED. */
+ * Returns GOE_FLIGHT_OK, _BAD_ARGUMENT, _NOT_INITIALIZED. */
 goe_flight_status_t goe_flight_timesync(goe_flight_t *flight, uint32_t offset_us, uint32_t sd_us);
 
 /* Takes an image's detections. A detection that is not finite or out of range is left out and counted; a known id goes to its
- * slot; a new one takes over the track that is not in this image and whose predicted place its box holds; any other waits until
- * it is confirmed. With the last detection of an image the other tracks of its camera are told that they were not seen. What is
- * seen by two cameras at once may have two slots until both know its place.
- * Returns GOE_FLIGHT_OK, _TOO_NEW, _TOO_OLD, _NO_POSE, _OUT_OF_RANGE (time base, camera, count), _BAD_ARGUMENT, _NOT_INITIALISED,
+ * slot; a new one takes over the track that is not in this image and whose predicted position is inside its box; any other waits until
+ * it is confirmed. With the last detection of an image the other tracks of its camera are updated as undetected. An obstacle
+ * visible to two cameras at once may have two slots until both know its position.
+ * Returns GOE_FLIGHT_OK, _TOO_NEW, _TOO_OLD, _NO_POSE, _OUT_OF_RANGE (time base, camera, count), _BAD_ARGUMENT, _NOT_INITIALIZED,
  * _CORRUPTED. */
 goe_flight_status_t goe_flight_frame(goe_flight_t *flight, const goe_flight_frame_t *frame);
 
-/* What is ahead from now on, at the velocity of the newest sample, and what to do about it: README.md has the rule as a table.
+/* The hazards ahead from now on, at the velocity of the newest sample, and the reaction: README.md has the rule as a table.
  *   now_us    autopilot's clock; older than the newest sample: counts as that
  *   phase     GOE_FLIGHT_FLYING, _APPROACH, _FLARE or _LANDED
  *   result    written by every call unless null; all zero (worst, avoided -1) on failure: that is not "clear" then
- * Returns GOE_FLIGHT_OK, _NO_POSE, _BAD_ARGUMENT, _NOT_INITIALISED, _CORRUPTED. */
+ * Returns GOE_FLIGHT_OK, _NO_POSE, _BAD_ARGUMENT, _NOT_INITIALIZED, _CORRUPTED. */
 goe_flight_status_t goe_flight_assess(goe_flight_t *flight, uint32_t now_us, uint8_t phase,
                                       goe_flight_assessment_t *result);
 
 /* One obstacle, slot 0 to GOE_FLIGHT_SLOTS - 1, as of the latest image, with the hazard of the latest assessment.
- * Returns GOE_FLIGHT_OK, _NOTHING, _NO_POSE, _BAD_ARGUMENT, _NOT_INITIALISED, _CORRUPTED (a flipped bit made a number of it infinite);
+ * Returns GOE_FLIGHT_OK, _NOTHING, _NO_POSE, _BAD_ARGUMENT, _NOT_INITIALIZED, _CORRUPTED (a flipped bit made a number of it infinite);
  * all zero unless _OK. */
 goe_flight_status_t goe_flight_obstacle(const goe_flight_t *flight, int slot, goe_flight_obstacle_t *obstacle);
 
-/* Nearest obstacle by bearing: sector i is centred on 5 i degrees from north; cm, at most max_cm; max_cm + 1: nothing there as
- * far as the camera sees; GOE_FLIGHT_SECTOR_UNKNOWN elsewhere. Obstacles that the latest assessment passes over by more than the
+/* Nearest obstacle by bearing: sector i is centered on 5 i degrees from north; cm, at most max_cm; max_cm + 1: nothing there as
+ * far as the camera's view; GOE_FLIGHT_SECTOR_UNKNOWN elsewhere. Obstacles that the latest assessment clears in height by more than the
  * clearance, at two sigma, are left out. For PX4's obstacle_distance: increment 5, GLOBAL frame.
  *   max_cm  1 to 65000
- * Returns GOE_FLIGHT_OK, _NO_POSE (all unknown), _OUT_OF_RANGE, _BAD_ARGUMENT, _NOT_INITIALISED. */
+ * Returns GOE_FLIGHT_OK, _NO_POSE (all unknown), _OUT_OF_RANGE, _BAD_ARGUMENT, _NOT_INITIALIZED. */
 goe_flight_status_t goe_flight_sectors(const goe_flight_t *flight, uint32_t max_cm, uint16_t sector_cm[GOE_FLIGHT_SECTORS]);
 
 /* Forgets poses, clocks, obstacles and the reaction; keeps settings and counters. After a restart of the autopilot.
- * Returns GOE_FLIGHT_OK, _BAD_ARGUMENT or _NOT_INITIALISED. */
+ * Returns GOE_FLIGHT_OK, _BAD_ARGUMENT or _NOT_INITIALIZED. */
 goe_flight_status_t goe_flight_restart(goe_flight_t *flight);
 
 /* A short lower-case name for an action ("none", "left", ...), never null; "unknown" for any other number. */

@@ -7,12 +7,12 @@
 
 /* All floats, and nothing between them. */
 #define FROM offsetof(goe_flight_t, settings)
-#define TO (offsetof(goe_flight_t, attitude_white_deg) + sizeof(float))
+#define TO (offsetof(goe_flight_t, attitude_white_sd_deg) + sizeof(float))
 #define NUMBERS ((TO - FROM) / sizeof(float))
 
 GOE_STATIC_ASSERT(TO - FROM ==
                       sizeof(goe_flight_settings_t) + GOE_CAMERAS_MAX * sizeof(goe_flight_camera_t) + sizeof(float),
-                  what_the_layer_seals_is_whole);
+                  sealed_memory_is_whole);
 
 /* As the estimator's seal: every change of one number, and of two bits but the same bit of two numbers 32 apart. */
 static goe_seal_t seal_of(const goe_flight_t *flight) {

@@ -1,9 +1,9 @@
-/* GOE_FLIGHT_SETTING(field, least, most, default): every field of goe_flight_settings_t, in its order; goe_flight.h tells what
- * each means. SPDX-License-Identifier: MIT */
+/* GOE_FLIGHT_SETTING(field, least, most, default): every field of goe_flight_settings_t, in its order; goe_flight.h gives
+ * the meaning of each. SPDX-License-Identifier: MIT */
 GOE_FLIGHT_SETTING(score_min, 0.0f, 1.0f, 0.3f)
 GOE_FLIGHT_SETTING(confirm_images, 1.0f, 20.0f, 3.0f)
-GOE_FLIGHT_SETTING(alive_s, 0.05f, 60.0f, 1.0f)
-GOE_FLIGHT_SETTING(forget_s, 1.0f, 600.0f, 10.0f)
+GOE_FLIGHT_SETTING(detector_timeout_s, 0.05f, 60.0f, 1.0f)
+GOE_FLIGHT_SETTING(track_timeout_s, 1.0f, 600.0f, 10.0f)
 GOE_FLIGHT_SETTING(delay_s, 0.0f, 0.5f, 0.005f)
 GOE_FLIGHT_SETTING(delay_sd_s, 0.0f, 0.5f, 0.005f)
 GOE_FLIGHT_SETTING(delay_max_s, 0.02f, 0.5f, 0.4f)
@@ -14,9 +14,9 @@ GOE_FLIGHT_SETTING(terrain_sd_m, 0.001f, 1000.0f, 3.0f)
 GOE_FLIGHT_SETTING(home_sd_m, 0.001f, 1000.0f, 5.0f)
 GOE_FLIGHT_SETTING(margin_m, 0.0f, 1000.0f, 15.0f)
 GOE_FLIGHT_SETTING(clearance_m, 0.0f, 1000.0f, 10.0f)
-GOE_FLIGHT_SETTING(violation_max, 0.001f, 1.0f, 0.1f)
-GOE_FLIGHT_SETTING(doubt, 1.0f, 10.0f, 1.5f)
-GOE_FLIGHT_SETTING(drift_m_s, 0.0f, 100.0f, 1.0f)
+GOE_FLIGHT_SETTING(conflict_probability_max, 0.001f, 1.0f, 0.1f)
+GOE_FLIGHT_SETTING(suspect_factor, 1.0f, 10.0f, 1.5f)
+GOE_FLIGHT_SETTING(stale_growth_m_s, 0.0f, 100.0f, 1.0f)
 GOE_FLIGHT_SETTING(bank_deg, 5.0f, 70.0f, 30.0f)
 GOE_FLIGHT_SETTING(roll_in_s, 0.0f, 20.0f, 1.5f)
 GOE_FLIGHT_SETTING(climb_m_s, 0.1f, 50.0f, 2.5f)

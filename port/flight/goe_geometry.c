@@ -17,7 +17,7 @@
 
 /* ------------------------------------------------------------------------------------------------------------ camera -- */
 
-/* As goe_camera_t tells: camera x, y, z are body y, z, x of the un-mounted camera, then yaw, pitch, roll. */
+/* As defined at goe_camera_t: camera x, y, z are body y, z, x of the un-mounted camera, then yaw, pitch, roll. */
 static void mount(const goe_camera_t *settings, float r[9]) {
     float sy;
     float cy;
@@ -53,7 +53,7 @@ void goe_flight_geometry_camera(goe_flight_camera_t *camera, const goe_camera_t 
     camera->center_px[1] = settings->cy_px;
     camera->size_px[0] = settings->width_px;
     camera->size_px[1] = settings->height_px;
-    camera->border_px = settings->border_share * settings->width_px;
+    camera->border_px = settings->border_rel * settings->width_px;
 }
 
 bool goe_flight_geometry_project(const goe_flight_camera_t *camera, const goe_flight_history_pose_t *pose,

@@ -17,7 +17,7 @@ bool goe_flight_geometry_project(const goe_flight_camera_t *camera, const goe_fl
 void goe_flight_geometry_lat_lon(int32_t origin_lat_e7, int32_t origin_lon_e7, const float ne_m[2], int32_t *lat_e7,
                                  int32_t *lon_e7);
 
-/* The bearings, degrees from north, between which the camera sees; false: it looks up or down too steeply to tell. */
+/* The bearings, degrees from north, of the limits of the camera's view; false: it looks up or down too steeply. */
 bool goe_flight_geometry_view(const goe_flight_camera_t *camera, const float q[4], float *from_deg, float *width_deg);
 
 /* The sectors wholly within [from, from + width] are clear. */

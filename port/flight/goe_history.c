@@ -122,7 +122,7 @@ static float dot(const float a[4], const float b[4]) { return a[0] * b[0] + a[1]
 
 /* ----------------------------------------------------------------------------------------- attitude between samples -- */
 
-/* A sample by its time from the older one of the bracket, with the sign that makes it its neighbour: q and -q are the same. */
+/* A sample by its time from the older one of the bracket, with the sign that makes it its neighbor: q and -q are the same. */
 typedef struct {
     float at_s, q[4];
     bool known;
@@ -151,7 +151,7 @@ static float bend(const knot_t *outer, const knot_t *middle, const knot_t *to, i
     return (before - behind) * (to->at_s - middle->at_s) / (to->at_s - outer->at_s);
 }
 
-/* Between two samples the cubic whose slopes the samples beside them tell; where one of these is lacking the parabola, without
+/* Between two samples the cubic with slopes from the adjacent samples; if one of these is missing the parabola, without
  * both the straight line. Linear alone is off by half a degree in a flight that pitches by 24 degrees a second, rms, with
  * samples 200 ms apart; this by 0.1, and by 0.26 as a parabola. */
 static void blend_attitude(const goe_flight_history_t *h, const bracket_t *bracket, goe_flight_history_pose_t *pose) {
@@ -174,7 +174,7 @@ static void blend_attitude(const goe_flight_history_t *h, const bracket_t *brack
         bent += off * off;
     }
     const float norm =
-        sqrtf(dot(pose->q, pose->q)); /* neighbours lie within half a turn: at least 0.7 but for the bend */
+        sqrtf(dot(pose->q, pose->q)); /* neighbors are within half a turn: at least 0.7 but for the bend */
     const bool usable = norm > NORM_MIN;
     for (int i = 0; i < 4; i++) {
         pose->q[i] = usable ? pose->q[i] / norm : older.q[i];

@@ -18,7 +18,7 @@ void goe_flight_history_clear(goe_flight_history_t *history);
 bool goe_flight_history_add_attitude(goe_flight_history_t *history, uint32_t time_us, const float q[4]);
 bool goe_flight_history_add_position(goe_flight_history_t *history, uint32_t time_us, const float ned_m[3]);
 
-/* A known jump of the autopilot's filter: what was before it is told as if it had been after it. */
+/* A known jump of the autopilot's filter: older samples are moved as if they had come after it. */
 void goe_flight_history_shift(goe_flight_history_t *history, const float jump_ned_m[3]);
 
 /* The newest samples; null if there is none. */

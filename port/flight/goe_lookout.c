@@ -1,7 +1,7 @@
 /* Hazards from now. SPDX-License-Identifier: MIT
  *
- * The latest image is some tenths of a second old. What a turn has bent of the path since, in half a second at the longest
- * (goe_flight_table_follow), is less than a metre. */
+ * The latest image is some tenths of a second old. A turn has bent the path since then, in half a second at the longest
+ * (goe_flight_table_follow), by less than a meter. */
 #include "goe_lookout.h"
 
 #include <math.h>
@@ -18,10 +18,10 @@
 #define SD_MIN_M2 0.25f
 #define SHORT_M2 1.0e-6f
 #define SLOW_M2_S2 0.01f
-#define SOON_S 0.01f /* left before what lies ahead is reached */
+#define SOON_S 0.01f /* left before the obstacle ahead is reached */
 
 float goe_flight_lookout_doubt(const goe_flight_t *flight, const goe_flight_slot_t *slot) {
-    return slot->suspect ? flight->settings.doubt : 1.0f;
+    return slot->suspect ? flight->settings.suspect_factor : 1.0f;
 }
 
 float goe_flight_lookout_age_s(const goe_flight_slot_t *slot, uint32_t now_us) {
@@ -29,7 +29,7 @@ float goe_flight_lookout_age_s(const goe_flight_slot_t *slot, uint32_t now_us) {
 }
 
 float goe_flight_lookout_drift_m(const goe_flight_t *flight, const goe_flight_slot_t *slot, uint32_t now_us) {
-    return flight->settings.drift_m_s * goe_flight_lookout_age_s(slot, now_us);
+    return flight->settings.stale_growth_m_s * goe_flight_lookout_age_s(slot, now_us);
 }
 
 /* One sigma of the kept place along a vector. */
@@ -55,7 +55,7 @@ static void pass_over(const goe_flight_t *flight, const goe_flight_slot_t *slot,
     hazard->has_clearance = true;
     hazard->clearance_m = slot->ground_down_m - slot->top_m - own_down_m;
     hazard->clearance_sd_m = sqrtf(goe_flight_larger(goe_flight_square(slot->top_sd_m), SD_MIN_M2));
-    hazard->violation *= below(limit_m, hazard->clearance_m, hazard->clearance_sd_m);
+    hazard->conflict_probability *= below(limit_m, hazard->clearance_m, hazard->clearance_sd_m);
 }
 
 /* The hazard of a place that is kept while the estimator knows none: from now on, at the velocity of the newest sample. */
@@ -74,11 +74,11 @@ static void foresee_kept(const goe_flight_t *flight, const goe_flight_slot_t *sl
                           goe_flight_lookout_drift_m(flight, slot, now_us);
     const float speed_m_s = sqrtf(speed2);
     memset(hazard, 0, sizeof *hazard);
-    hazard->time_s = goe_flight_larger(closest_s - radius_m / speed_m_s, closest_s > 0.0f ? SOON_S : 0.0f);
-    hazard->time_sd_s = closest_s > 0.0f ? sd_along_m(slot, v[0], v[1]) / speed_m_s : 0.0f;
-    hazard->miss_m = goe_flight_larger(off_m, 0.0f);
-    hazard->miss_sd_m = closest_s > 0.0f ? sd_along_m(slot, -v[1], v[0]) : sd_along_m(slot, off_n_m, off_e_m);
-    hazard->violation = below(limit_m, off_m, hazard->miss_sd_m);
+    hazard->tcpa_s = goe_flight_larger(closest_s - radius_m / speed_m_s, closest_s > 0.0f ? SOON_S : 0.0f);
+    hazard->tcpa_sd_s = closest_s > 0.0f ? sd_along_m(slot, v[0], v[1]) / speed_m_s : 0.0f;
+    hazard->dcpa_m = goe_flight_larger(off_m, 0.0f);
+    hazard->dcpa_sd_m = closest_s > 0.0f ? sd_along_m(slot, -v[1], v[0]) : sd_along_m(slot, off_n_m, off_e_m);
+    hazard->conflict_probability = below(limit_m, off_m, hazard->dcpa_sd_m);
     if ((slot->valid & GOE_HAS_HEIGHT) != 0u) {
         pass_over(flight, slot, own_ned_m[2] + closest_s * v[2], hazard);
     }
@@ -87,16 +87,18 @@ static void foresee_kept(const goe_flight_t *flight, const goe_flight_slot_t *sl
 static goe_decision_t decide(const goe_flight_t *flight, const goe_flight_slot_t *slot, uint32_t now_us,
                              goe_hazard_t *hazard) {
     const goe_flight_settings_t *settings = &flight->settings;
-    const goe_rule_t rule = {settings->violation_max, ANY_TIME_S, settings->doubt, settings->drift_m_s};
-    goe_plan_t plan;
-    memset(&plan, 0, sizeof plan);
-    plan.margin_m = settings->margin_m;
-    plan.clearance_m = settings->clearance_m;
-    plan.since_image_s = goe_flight_clamped(goe_flight_between_s(now_us, slot->taken_us), 0.0f, SINCE_MAX_S);
+    const goe_rule_t rule = {settings->conflict_probability_max, ANY_TIME_S, settings->suspect_factor,
+                             settings->stale_growth_m_s};
+    goe_intent_t intent;
+    memset(&intent, 0, sizeof intent);
+    intent.margin_m = settings->margin_m;
+    intent.clearance_m = settings->clearance_m;
+    intent.since_image_s = goe_flight_clamped(goe_flight_between_s(now_us, slot->taken_us), 0.0f, SINCE_MAX_S);
     for (int i = 0; i < 3; i++) {
-        plan.velocity_ned_m_s[i] = goe_flight_clamped(flight->velocity_ned_m_s[i], -VELOCITY_MAX_M_S, VELOCITY_MAX_M_S);
+        intent.velocity_ned_m_s[i] =
+            goe_flight_clamped(flight->velocity_ned_m_s[i], -VELOCITY_MAX_M_S, VELOCITY_MAX_M_S);
     }
-    return goe_decide(&slot->estimator, &plan, &rule, hazard);
+    return goe_decide(&slot->estimator, &intent, &rule, hazard);
 }
 
 /* The time that an action takes is for the reaction to know; here the rule's distances and probability count. */
@@ -124,7 +126,7 @@ int goe_flight_lookout_assess(goe_flight_t *flight, const float own_ned_m[3], ui
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         goe_flight_slot_t *slot = &flight->slot[i];
         assess(flight, slot, own_ned_m, now_us);
-        const float urgency = slot->hazard.violation / (1.0f + URGENCY_PER_S * slot->hazard.time_s);
+        const float urgency = slot->hazard.conflict_probability / (1.0f + URGENCY_PER_S * slot->hazard.tcpa_s);
         if (slot->assessed && urgency > most) {
             most = urgency;
             worst = i;

@@ -4,7 +4,7 @@
 
 #include "goe_flight.h"
 
-/* Factor on the margins that a slot's doubt asks for, and what its age adds. */
+/* Factor on the margins for a slot's doubt, and the addition for its age. */
 float goe_flight_lookout_doubt(const goe_flight_t *flight, const goe_flight_slot_t *slot);
 float goe_flight_lookout_age_s(const goe_flight_slot_t *slot, uint32_t now_us);
 float goe_flight_lookout_drift_m(const goe_flight_t *flight, const goe_flight_slot_t *slot, uint32_t now_us);

@@ -12,7 +12,7 @@ goe_flight_marks_change_t goe_flight_marks_attitude(goe_flight_marks_t *marks, u
     return changed ? GOE_FLIGHT_MARKS_UNKNOWN : GOE_FLIGHT_MARKS_SAME;
 }
 
-/* A counter that rose by more than 1 hides a jump that nobody told. */
+/* A counter that rose by more than 1 hides an unreported jump. */
 static goe_flight_marks_change_t compare(uint32_t before, uint32_t now, bool counters) {
     if (before == now) {
         return GOE_FLIGHT_MARKS_SAME;

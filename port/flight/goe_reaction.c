@@ -3,8 +3,8 @@
  * A turn of radius R leaves the course by d after sqrt(d (2 R - d)) of it; by no more than R before it is crossed. So an
  * obstacle that needs d < R aside can be passed, and before one that needs more the only way is to turn away.
  *
- * A side is a target beside the course: past the outline of the obstacle at hand, or farther out past that of another one, or in
- * the middle of the gap between the two. goe_clear.c says how clear of everything known each of them can be reached. */
+ * A side is a target next to the course: past the outline of the obstacle at hand, or farther out past that of another one, or in
+ * the middle of the gap between the two. goe_clear.c computes how clear of all known obstacles each of them can be reached. */
 #include "goe_reaction.h"
 
 #include <math.h>
@@ -45,14 +45,14 @@
 
 /* Everything about one obstacle on a course: right is positive aside. */
 typedef struct {
-    float ahead_m, aside_m;   /* of the centre from the aircraft */
-    float keep_m;             /* distance that the centre is to have, aside */
+    float ahead_m, aside_m;   /* of the center from the aircraft */
+    float keep_m;             /* required lateral distance of the center */
     float rise_m, top_down_m; /* to the height that clears the top, and where that is; has_top */
-    float soonest_s;
+    float earliest_tcpa_s;
     bool has_top;
 } encounter_t;
 
-/* What is looked at: the aircraft on its course and every obstacle in the frame of it. */
+/* Scene of the decision: the aircraft on its course and every obstacle in the frame of it. */
 typedef struct {
     const goe_flight_t *flight;
     const goe_flight_reaction_own_t *own;
@@ -60,7 +60,7 @@ typedef struct {
     goe_flight_clear_slot_t slot[GOE_FLIGHT_SLOTS];
     float speed_m_s;
     float circle_m;  /* that is flown about a target; 0: it is flown through */
-    float line_m[2]; /* the line of the order that stands, or the course */
+    float line_m[2]; /* the line of the active order, or the course */
 } look_t;
 
 typedef struct {
@@ -157,7 +157,7 @@ static void meet(const look_t *look, int i, encounter_t *e) {
     e->has_top = (slot->valid & GOE_HAS_HEIGHT) != 0u;
     e->top_down_m = slot->ground_down_m - slot->top_m - SURE_SIGMA * slot->top_sd_m - doubt * settings->clearance_m;
     e->rise_m = goe_flight_larger(look->own->ned_m[2] - e->top_down_m, 0.0f);
-    e->soonest_s = goe_soonest_s(&slot->hazard);
+    e->earliest_tcpa_s = goe_earliest_tcpa_s(&slot->hazard);
 }
 
 /* ----------------------------------------------------------------------------------------------------------- options -- */
@@ -202,7 +202,7 @@ static void try_climb(const look_t *look, int about, const encounter_t *e, optio
     option_t option;
     const bool approach = look->own->approach;
     float rise_m = rise_of(look, e);
-    bool possible = (e->has_top || approach) && climb_time_s(look, rise_m) <= e->soonest_s;
+    bool possible = (e->has_top || approach) && climb_time_s(look, rise_m) <= e->earliest_tcpa_s;
     for (int i = 0; i < GOE_FLIGHT_SLOTS && possible; i++) {
         encounter_t other;
         if (i == about || !look->slot[i].counts) {
@@ -346,8 +346,8 @@ static option_t choose(const look_t *look, int about, const encounter_t *e, int 
     if (side == 0 || side == -away) {
         try_hold(look, -away, &hold);
     }
-    const bool holds = best.action == GOE_FLIGHT_NONE || hold.share >= HOLD_FREE || hold.share > best.share + GAIN;
-    return holds ? hold : best;
+    const bool keep = best.action == GOE_FLIGHT_NONE || hold.share >= HOLD_FREE || hold.share > best.share + GAIN;
+    return keep ? hold : best;
 }
 
 /* ------------------------------------------------------------------------------------------------------------- order -- */
@@ -372,7 +372,7 @@ static void order(goe_flight_t *flight, int slot, const look_t *look, const enco
     memcpy(r->along_ne, course, sizeof r->along_ne);
     r->ordered_us = r->action == (uint8_t)option->action ? r->ordered_us : look->own->time_us;
     r->action = (uint8_t)option->action;
-    r->late = option->needed_s > e->soonest_s;
+    r->late = option->needed_s > e->earliest_tcpa_s;
     r->slot = (int8_t)slot;
     r->edge = option->edge;
     r->gap = option->gap;
@@ -387,13 +387,13 @@ static void order(goe_flight_t *flight, int slot, const look_t *look, const enco
 /* Whether the hazard has stood for long enough; one that leaves no time needs none. */
 static bool is_due(goe_flight_reaction_t *r, const goe_flight_settings_t *settings, const encounter_t *e,
                    float needed_s, bool is_hazard, uint32_t now_us) {
-    if (!is_hazard || e->soonest_s > needed_s + settings->reserve_s) {
+    if (!is_hazard || e->earliest_tcpa_s > needed_s + settings->reserve_s) {
         r->rising = false;
         return false;
     }
     r->rising_us = r->rising ? r->rising_us : now_us;
     r->rising = true;
-    return e->soonest_s <= needed_s || goe_flight_between_s(now_us, r->rising_us) >= settings->confirm_s;
+    return e->earliest_tcpa_s <= needed_s || goe_flight_between_s(now_us, r->rising_us) >= settings->confirm_s;
 }
 
 /* How far to the right of the line the target is to lie, by one obstacle: past its outline on the side of the order; in a gap, at the
@@ -436,8 +436,7 @@ static float share_of_order(const look_t *look, const goe_flight_reaction_t *r, 
     way.circle_m = look->circle_m;
     way.sigmas = LIKELY_SIGMA;
     way.turns_away = r->action == GOE_FLIGHT_HOLD || !(way.target_m[0] > 0.0f);
-    if (!(way.circle_m > 0.0f) &&
-        is_aside(r->action)) { /* it is flown through: what counts beside it is the line behind it */
+    if (!(way.circle_m > 0.0f) && is_aside(r->action)) { /* it is flown through: also the line behind it counts */
         const float on_m = goe_flight_larger(2.0f * look->at.turn_m - way.target_m[0], 0.0f);
         way.target_m[0] += on_m * way.line_m[0];
         way.target_m[1] += on_m * way.line_m[1];
@@ -514,7 +513,7 @@ static void review(goe_flight_t *flight, look_t *look) {
 
 /* --------------------------------------------------------------------------------------------------------------- end -- */
 
-/* Of one obstacle: whether it stands on the line of the order or between that and the aircraft, and is not passed. */
+/* Of one obstacle: whether it is on the line of the order or between that and the aircraft, and is not passed. */
 static bool is_in_the_way(const look_t *look, int i, float own_aside_m) {
     const goe_flight_slot_t *slot = &look->flight->slot[i];
     const goe_flight_reaction_t *r = &look->flight->reaction;
@@ -534,7 +533,7 @@ static bool is_in_the_way(const look_t *look, int i, float own_aside_m) {
            aside_m < goe_flight_larger(own_aside_m, 0.0f) + sure_m;
 }
 
-/* Whether the aircraft may turn back to the line from here, whatever stands behind. */
+/* Whether the aircraft may turn back to the line from here, whatever is behind. */
 static bool is_way_back_clear(const look_t *look, float own_ahead_m, float own_aside_m) {
     const goe_flight_reaction_t *r = &look->flight->reaction;
     const float on_m = own_ahead_m + goe_flight_absolute(own_aside_m) + 2.0f * look->at.turn_m;
@@ -640,7 +639,7 @@ static void end_if_over(goe_flight_t *flight, const look_t *look) {
     }
 }
 
-/* The side of an order that has ended is forgotten later: what comes soon after is the same encounter. */
+/* The side of an order that has ended is forgotten later: an order soon after belongs to the same encounter. */
 static void forget_side(goe_flight_reaction_t *r, uint32_t now_us) {
     if (r->action == GOE_FLIGHT_NONE && r->side != 0 &&
         goe_flight_between_s(now_us, r->falling_us) > SIDE_REMEMBERED_S) {
@@ -664,8 +663,8 @@ static void rise(goe_flight_t *flight, const look_t *look) {
     }
 }
 
-/* Of an approach that was left to a side, as no climb seemed to come in time: once one does, it is broken off. Whoever lands beside an
- * obstacle lands beside the runway. */
+/* Of an approach that was left to a side, as no climb seemed to be in time: once one is, it is aborted. An aircraft that lands next to
+ * an obstacle lands next to the runway. */
 static void break_off(goe_flight_t *flight, const look_t *look) {
     const goe_flight_reaction_t *r = &flight->reaction;
     encounter_t e;
@@ -683,7 +682,7 @@ static void break_off(goe_flight_t *flight, const look_t *look) {
     }
 }
 
-/* An order that there is not, or about no slot that there is, is none: the hazard that stands brings another. */
+/* An order of unknown kind, or about a slot that does not exist, is none: the active hazard fault_counts another. */
 static void mend(goe_flight_reaction_t *r) {
     const bool finite = goe_flight_all_finite(r->target_ned_m, 3) && goe_flight_all_finite(r->from_ne_m, 2) &&
                         goe_flight_all_finite(r->course_ne, 2) && goe_flight_all_finite(r->along_ne, 2) &&
@@ -712,7 +711,7 @@ static goe_flight_reason_t withheld(const goe_flight_t *flight, const goe_flight
     return speed_m_s < settings->order_speed_m_s ? GOE_FLIGHT_REASON_SLOW : GOE_FLIGHT_REASON_NONE;
 }
 
-/* What the simplest turn past an obstacle takes, whatever else stands there. */
+/* Time of the simplest turn past an obstacle, regardless of other obstacles. */
 static float simplest_s(const look_t *look, const encounter_t *e) {
     const float right_s = turn_time_s(look, e->keep_m + e->aside_m);
     const float left_s = turn_time_s(look, e->keep_m - e->aside_m);
@@ -720,7 +719,7 @@ static float simplest_s(const look_t *look, const encounter_t *e) {
 }
 
 /* Time that is left beyond what the simplest action against this obstacle takes. */
-static float slack_s(const look_t *look, const encounter_t *e) { return e->soonest_s - simplest_s(look, e); }
+static float slack_s(const look_t *look, const encounter_t *e) { return e->earliest_tcpa_s - simplest_s(look, e); }
 
 /* The worst obstacle; but another one, where that leaves less time. */
 static int most_pressing(const look_t *look, int worst) {
@@ -731,7 +730,7 @@ static int most_pressing(const look_t *look, int worst) {
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         const goe_flight_slot_t *slot = &look->flight->slot[i];
         if (i == worst || !slot->used || !slot->assessed ||
-            !(slot->hazard.violation >= look->flight->settings.violation_max)) {
+            !(slot->hazard.conflict_probability >= look->flight->settings.conflict_probability_max)) {
             continue;
         }
         meet(look, i, &e);
@@ -754,7 +753,7 @@ static option_t choose_steadily(const look_t *look, int about, const encounter_t
     return same.share > 0.0f && option.share < 2.0f * same.share ? same : option;
 }
 
-/* The order before has just ended, the autopilot is about to fly back to its line, and that is clear: what lies on the course of this
+/* The previous order has just ended, the autopilot is about to fly back to its line, and that is clear: an obstacle on the course of this
  * moment is no reason for another order. */
 static bool is_flying_back(look_t *look) {
     const goe_flight_reaction_t *r = &look->flight->reaction;
@@ -771,14 +770,14 @@ static bool is_flying_back(look_t *look) {
     return clear;
 }
 
-/* Whether a climb that stands does not reach the height over this obstacle before it. */
+/* Whether an active climb does not reach the height over this obstacle before it. */
 static bool is_too_low(const look_t *look, const encounter_t *e) {
     const goe_flight_settings_t *settings = &look->flight->settings;
     const float since_s = goe_flight_between_s(look->own->time_us, look->flight->reaction.ordered_us);
     const float begins_s = goe_flight_larger(settings->climb_in_s - since_s, 0.0f);
-    const float keeps_m = CLIMB_SLACK * settings->clearance_m; /* what is left of the clearance is enough to go on */
+    const float keeps_m = CLIMB_SLACK * settings->clearance_m; /* the rest of the clearance is enough to continue */
     const float rise_m = goe_flight_larger(rise_of(look, e) - keeps_m, 0.0f);
-    return begins_s + rise_m / settings->climb_m_s > e->soonest_s;
+    return begins_s + rise_m / settings->climb_m_s > e->earliest_tcpa_s;
 }
 
 /* What to do about one obstacle; an order, once it is due. */
@@ -786,22 +785,23 @@ static float answer(goe_flight_t *flight, look_t *look, int about) {
     goe_flight_reaction_t *r = &flight->reaction;
     const goe_flight_settings_t *settings = &flight->settings;
     encounter_t e;
-    const float violation = flight->slot[about].hazard.violation;
+    const float violation = flight->slot[about].hazard.conflict_probability;
     const bool reviewed = r->side != 0 && !is_up(r->action) && r->action != GOE_FLIGHT_NONE;
     meet(look, about, &e);
     if (reviewed) {
         const float needed_s = simplest_s(look, &e);
         const bool into = r->clear_m < 0.0f && violation >= LATE_VIOLATION && e.ahead_m > 0.0f;
-        r->late = r->late || (into && needed_s > e.soonest_s);
+        r->late = r->late || (into && needed_s > e.earliest_tcpa_s);
         return needed_s;
     }
-    if (!(violation >= settings->violation_max) || !(e.ahead_m > 0.0f)) {
+    if (!(violation >= settings->conflict_probability_max) || !(e.ahead_m > 0.0f)) {
         r->rising = false;
         return simplest_s(look, &e);
     }
     const option_t option = choose_steadily(look, about, &e);
-    const float most = option.needed_s > e.soonest_s ? goe_flight_larger(LATE_VIOLATION, settings->violation_max)
-                                                     : settings->violation_max;
+    const float most = option.needed_s > e.earliest_tcpa_s
+                           ? goe_flight_larger(LATE_VIOLATION, settings->conflict_probability_max)
+                           : settings->conflict_probability_max;
     const bool is_hazard = violation >= most && !is_flying_back(look);
     const bool is_new =
         r->action == GOE_FLIGHT_NONE || (is_up(r->action) && (r->slot != about || is_too_low(look, &e)));
@@ -825,15 +825,15 @@ float goe_flight_reaction_decide(goe_flight_t *flight, int worst, const goe_flig
     if (own->grounded && r->action != GOE_FLIGHT_NONE) {
         goe_flight_reaction_clear(r);
     }
-    const bool stands = r->action != GOE_FLIGHT_NONE;
-    if (!stands) {
+    const bool active = r->action != GOE_FLIGHT_NONE;
+    if (!active) {
         r->reason = GOE_FLIGHT_REASON_NONE;
     }
     if (!look_around(flight, own, &look)) {
         r->rising = false;
         return 0.0f;
     }
-    if (stands) {
+    if (active) {
         end_if_over(flight, &look);
         break_off(flight, &look);
         review(flight, &look);

@@ -20,7 +20,7 @@ void goe_flight_slot_begin(goe_flight_slot_t *slot, uint32_t id, uint32_t time_u
     const size_t after = offsetof(goe_flight_slot_t, hazard);
     memset((unsigned char *)slot + after, 0, sizeof *slot - after);
     slot->id = id;
-    slot->taken_us = slot->seen_us = time_us;
+    slot->taken_us = slot->detected_us = time_us;
     slot->used = slot->fresh_track = true;
 }
 
@@ -62,14 +62,14 @@ static void keep_inside(goe_image_t *image, const goe_flight_camera_t *camera) {
     for (int i = 0; i < 3; i++) {
         const float pixel[2] = {side[i]->u_px, side[i]->v_px};
         bool inside = true;
-        for (int axis = 0; axis < 2 && goe_flight_is_set(&side[i]->seen); axis++) {
+        for (int axis = 0; axis < 2 && goe_flight_is_set(&side[i]->visible); axis++) {
             const float half = 0.5f * camera->size_px[axis];
             inside = inside && goe_flight_within(pixel[axis] - half, goe_flight_larger(half - camera->border_px, 0.0f));
         }
-        side[i]->seen = goe_flight_is_set(&side[i]->seen) && inside;
+        side[i]->visible = goe_flight_is_set(&side[i]->visible) && inside;
         all = all && inside;
     }
-    image->top.seen = goe_flight_is_set(&image->top.seen) && all;
+    image->top.visible = goe_flight_is_set(&image->top.visible) && all;
 }
 
 static void set_features(goe_image_t *image, const goe_flight_camera_t *camera, const goe_flight_detection_t *seen) {
@@ -80,7 +80,7 @@ static void set_features(goe_image_t *image, const goe_flight_camera_t *camera, 
     image->base_left = seen->base_left;
     image->base_near = seen->base_near;
     image->base_right = seen->base_right;
-    image->noise.pixel_px = seen->pixel_px;
+    image->noise.pixel_sd_px = seen->pixel_px;
     keep_inside(image, camera);
 }
 
@@ -94,7 +94,7 @@ static void note_center(goe_flight_slot_t *slot, const goe_estimate_t *estimate)
     slot->covariance_ne_m2[2] = goe_flight_square(estimate->sigma.center_east_m);
 }
 
-/* A box or line whose length is not known has no centre: the middle of its front edge and the spread of that stand for it. */
+/* A box or line whose length is not known has no center: the middle of its front edge and the spread of that replace it. */
 static void note_front(goe_flight_slot_t *slot, const float camera_ned_m[3], const goe_estimate_t *estimate) {
     float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
     float s;
@@ -175,21 +175,21 @@ void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t cam
     memset(&image, 0, sizeof image);
     set_pose(slot, view, jumps_ned_m, camera_ned_m[2], &image.pose);
     image.camera = number;
-    image.noise.attitude_deg = view->attitude_sd_deg;
-    image.noise.height_m = slot->height_sd_m; /* counts once, in an image of the estimator's choice */
+    image.noise.attitude_sd_deg = view->attitude_sd_deg;
+    image.noise.height_sd_m = slot->height_sd_m; /* counts once, in an image of the estimator's choice */
     if (seen) {
         set_features(&image, camera, seen);
     }
     const goe_status_t status = goe_update(&slot->estimator, &image, &estimate);
     slot->in_view = seen != NULL;
-    if (status == GOE_CORRUPTED || status == GOE_NOT_INITIALISED) {
+    if (status == GOE_CORRUPTED || status == GOE_NOT_INITIALIZED) {
         goe_flight_slot_lose(slot);
     }
     const bool taken = GOE_IMAGE_TAKEN(status) != 0;
     if (taken) {
         const float since_s = goe_flight_between_s(view->time_us, slot->taken_us);
         slot->taken_us = view->time_us;
-        slot->seen_us = seen ? view->time_us : slot->seen_us;
+        slot->detected_us = seen ? view->time_us : slot->detected_us;
         slot->reset_count = image.pose.reset_count;
         slot->camera = number;
         memcpy(slot->jumps_ned_m, jumps_ned_m, sizeof slot->jumps_ned_m);
@@ -217,12 +217,12 @@ bool goe_flight_slot_box_of(const goe_flight_detection_t *detection, int16_t box
     const goe_box_t *box = &detection->box;
     float extent[4] = {0.0f, 0.0f, 0.0f, 0.0f};
     bool any = false;
-    if (box->seen == GOE_SEES_BOX) {
+    if (box->sides == GOE_SIDES_ALL) {
         widen(extent, box->left_px, box->top_px, &any);
         widen(extent, box->right_px, box->bottom_px, &any);
     } else {
         for (int i = 0; i < 6; i++) {
-            if (goe_flight_is_set(&points[i]->seen)) {
+            if (goe_flight_is_set(&points[i]->visible)) {
                 widen(extent, points[i]->u_px, points[i]->v_px, &any);
             }
         }
@@ -246,14 +246,14 @@ static bool predict(const goe_flight_slot_t *slot, const goe_flight_camera_t *ca
     return goe_flight_geometry_project(camera, pose, point, pixel);
 }
 
-static bool is_alike(const int16_t a[4], const int16_t b[4]) {
-    bool alike = true;
+static bool matches(const int16_t a[4], const int16_t b[4]) {
+    bool similar = true;
     for (int axis = 0; axis < 2; axis++) {
         const float one = (float)(a[axis + 2] - a[axis]);
         const float other = (float)(b[axis + 2] - b[axis]);
-        alike = alike && one <= ALIKE * other && other <= ALIKE * one;
+        similar = similar && one <= ALIKE * other && other <= ALIKE * one;
     }
-    return alike;
+    return similar;
 }
 
 float goe_flight_slot_claims(const goe_flight_slot_t *slot, const goe_flight_camera_t cameras[GOE_CAMERAS_MAX],
@@ -264,7 +264,7 @@ float goe_flight_slot_claims(const goe_flight_slot_t *slot, const goe_flight_cam
         const float overlap = goe_flight_candidate_overlap(slot->box_px, box_px);
         return comparable && overlap >= OVERLAP_MIN ? overlap : 0.0f;
     }
-    if ((comparable && !is_alike(slot->box_px, box_px)) || !predict(slot, &cameras[view->camera], &view->pose, pixel)) {
+    if ((comparable && !matches(slot->box_px, box_px)) || !predict(slot, &cameras[view->camera], &view->pose, pixel)) {
         return 0.0f;
     }
     float claim = 1.0f;

@@ -1,4 +1,4 @@
-/* One obstacle that is followed: its estimator, and what is known of its place. SPDX-License-Identifier: MIT */
+/* One tracked obstacle: its estimator, and its position. SPDX-License-Identifier: MIT */
 #ifndef GOE_FLIGHT_SLOT_H
 #define GOE_FLIGHT_SLOT_H
 
@@ -22,14 +22,14 @@ void goe_flight_slot_begin(goe_flight_slot_t *slot, uint32_t id, uint32_t time_u
  * estimator knows a position again the slot keeps place and hazard, suspect. */
 void goe_flight_slot_lose(goe_flight_slot_t *slot);
 
-/* Of the circle about the centre that holds the outline, as far as it is known. */
+/* The circle about the center that contains the outline, as far as it is known. */
 float goe_flight_slot_radius_m(const goe_flight_slot_t *slot);
 
 /* A known one. */
 void goe_flight_slot_shift(goe_flight_slot_t *slot, const float jump_ned_m[3]);
 
-/* Gives an image to the estimator, which has been reset if the slot's track begins with it: with what is seen, or nothing (null), then as if by the camera that saw it last. An image that is
- * not newer than the slot's latest is left out. */
+/* Gives an image to the estimator, which has been reset if the slot's track begins with it: with its detection, or none (null), then as by
+ * the camera that detected it last. An image that is not newer than the slot's latest is left out. */
 void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t cameras[GOE_CAMERAS_MAX],
                           const goe_flight_slot_view_t *view, const float jumps_ned_m[3],
                           const goe_flight_detection_t *seen);
@@ -37,7 +37,7 @@ void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t cam
 /* Points of a detection's border as a box, whole pixels; false: it has none. */
 bool goe_flight_slot_box_of(const goe_flight_detection_t *detection, int16_t box_px[4]);
 
-/* Whether this box, seen in this view, is likely to be of the slot's obstacle: how near, 0 to 1; 0: not. */
+/* Whether this box, in this view, is likely to be of the slot's obstacle: how near, 0 to 1; 0: not. */
 float goe_flight_slot_claims(const goe_flight_slot_t *slot, const goe_flight_camera_t cameras[GOE_CAMERAS_MAX],
                              const goe_flight_slot_view_t *view, const int16_t box_px[4]);
 

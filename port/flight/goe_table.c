@@ -7,29 +7,29 @@
 
 #define COORDINATE_MAX_PX 1.0e5f
 #define PIXEL_SD_MAX_PX 100.0f
-#define UNSEEN_S 2.0f   /* after which what has no position, or is passed, may be given up */
-#define WORTH_KEPT 0.5f /* a slot of more worth is never given up for a new obstacle */
-#define ORDERED_S 30.0f /* while an order stands every obstacle is kept so long: the way back leads past it */
+#define UNDETECTED_S 2.0f /* after which a track without a position, or a passed one, may be given up */
+#define WORTH_KEPT 0.5f   /* a slot of more worth is never given up for a new obstacle */
+#define ORDERED_S 30.0f   /* while an order is active every obstacle is kept so long: the way back leads past it */
 #define NOBODY (-1)
 
 /* ------------------------------------------------------------------------------------------------------- detections -- */
 
 static bool is_good_pixel(const goe_pixel_t *p) {
-    return !goe_flight_is_set(&p->seen) ||
+    return !goe_flight_is_set(&p->visible) ||
            (goe_flight_within(p->u_px, COORDINATE_MAX_PX) && goe_flight_within(p->v_px, COORDINATE_MAX_PX));
 }
 
 static bool is_good_box(const goe_box_t *b) {
     const float side[4] = {b->left_px, b->top_px, b->right_px, b->bottom_px};
-    const uint8_t mask[4] = {GOE_SEES_LEFT, GOE_SEES_TOP, GOE_SEES_RIGHT, GOE_SEES_BOTTOM};
+    const uint8_t mask[4] = {GOE_SIDE_LEFT, GOE_SIDE_TOP, GOE_SIDE_RIGHT, GOE_SIDE_BOTTOM};
     for (int i = 0; i < 4; i++) {
-        if ((b->seen & mask[i]) != 0u && !goe_flight_within(side[i], COORDINATE_MAX_PX)) {
+        if ((b->sides & mask[i]) != 0u && !goe_flight_within(side[i], COORDINATE_MAX_PX)) {
             return false;
         }
     }
-    const bool across = (b->seen & GOE_SEES_LEFT) != 0u && (b->seen & GOE_SEES_RIGHT) != 0u;
-    const bool down = (b->seen & GOE_SEES_TOP) != 0u && (b->seen & GOE_SEES_BOTTOM) != 0u;
-    return b->seen <= GOE_SEES_BOX && (!across || b->left_px < b->right_px) && (!down || b->top_px < b->bottom_px);
+    const bool across = (b->sides & GOE_SIDE_LEFT) != 0u && (b->sides & GOE_SIDE_RIGHT) != 0u;
+    const bool down = (b->sides & GOE_SIDE_TOP) != 0u && (b->sides & GOE_SIDE_BOTTOM) != 0u;
+    return b->sides <= GOE_SIDES_ALL && (!across || b->left_px < b->right_px) && (!down || b->top_px < b->bottom_px);
 }
 
 static bool is_good(const goe_flight_detection_t *d) {
@@ -39,7 +39,7 @@ static bool is_good(const goe_flight_detection_t *d) {
            is_good_pixel(&d->base_right);
 }
 
-/* What is to be looked at, as bits; the others are counted. *readable: there is a detection that can be read, or the image has none. */
+/* Detections to be used, as bits; the others are counted. *readable: there is a readable detection, or the image has none. */
 static uint32_t usable(goe_flight_t *flight, const goe_flight_frame_t *frame, bool *readable) {
     uint32_t bits = 0u;
     *readable = frame->number == 0u && frame->count == 0u;
@@ -89,7 +89,7 @@ static int claimant(const goe_flight_t *flight, const goe_flight_slot_view_t *vi
 /* The less, the sooner it is given up. */
 static float worth(const goe_flight_t *flight, int i, uint32_t now_us) {
     const goe_flight_slot_t *slot = &flight->slot[i];
-    const bool unseen = goe_flight_between_s(now_us, slot->seen_us) > UNSEEN_S;
+    const bool undetected = goe_flight_between_s(now_us, slot->detected_us) > UNDETECTED_S;
     const bool has_position = (slot->valid & GOE_HAS_POSITION) != 0u;
     if (!slot->used) {
         return -3.0f;
@@ -97,16 +97,16 @@ static float worth(const goe_flight_t *flight, int i, uint32_t now_us) {
     if (i == flight->reaction.slot) {
         return 2.0f;
     }
-    if (unseen && !has_position) {
+    if (undetected && !has_position) {
         return -2.0f;
     }
-    if (unseen && slot->assessed && !(slot->hazard.time_s > 0.0f)) {
+    if (undetected && slot->assessed && !(slot->hazard.tcpa_s > 0.0f)) {
         return -1.0f;
     }
-    return slot->assessed ? slot->hazard.violation + 1.0f / (1.0f + slot->hazard.time_s) : WORTH_KEPT;
+    return slot->assessed ? slot->hazard.conflict_probability + 1.0f / (1.0f + slot->hazard.tcpa_s) : WORTH_KEPT;
 }
 
-static int room(goe_flight_t *flight, uint32_t now_us) {
+static int free_place(goe_flight_t *flight, uint32_t now_us) {
     int least = NOBODY;
     float least_worth = WORTH_KEPT;
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
@@ -134,7 +134,7 @@ static void mend(goe_flight_t *flight, int i) {
             memcpy(lost, &flight->slot[k].estimator, sizeof *lost);
         }
         if (k != i && goe_reset(lost) == GOE_OK) {
-            memset(lost->causes, 0, sizeof lost->causes);
+            memset(lost->fault_counts, 0, sizeof lost->fault_counts);
             return;
         }
     }
@@ -190,10 +190,10 @@ static void give_new(goe_flight_t *flight, const goe_flight_slot_view_t *view, c
         goe_flight_candidate_t candidate = {detection->id, view->time_us, {0, 0, 0, 0}, view->camera, 0};
         if (((waiting >> k) & 1u) == 0u ||
             (!goe_flight_slot_box_of(detection, candidate.box_px) && detection->id == 0u) ||
-            !goe_flight_candidate_seen(flight->candidate, &candidate, (int)flight->settings.confirm_images)) {
+            !goe_flight_candidate_confirm(flight->candidate, &candidate, (int)flight->settings.confirm_images)) {
             continue;
         }
-        const int i = room(flight, view->time_us);
+        const int i = free_place(flight, view->time_us);
         if (i != NOBODY) {
             goe_flight_slot_begin(&flight->slot[i], detection->id, view->time_us);
             give(flight, i, view, detection, taken);
@@ -224,19 +224,20 @@ bool goe_flight_table_take(goe_flight_t *flight, const goe_flight_slot_view_t *v
     return readable;
 }
 
-/* An obstacle that stands ahead on the course is not given up, however long it was not seen. */
+/* An obstacle ahead on the course is not given up, however long it was undetected. */
 static bool is_ahead(const goe_flight_t *flight, const goe_flight_slot_t *slot) {
-    return slot->assessed && slot->hazard.time_s > 0.0f && slot->hazard.violation >= flight->settings.violation_max;
+    return slot->assessed && slot->hazard.tcpa_s > 0.0f &&
+           slot->hazard.conflict_probability >= flight->settings.conflict_probability_max;
 }
 
 void goe_flight_table_age(goe_flight_t *flight, uint32_t now_us) {
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         goe_flight_slot_t *slot = &flight->slot[i];
-        const float unseen_s = goe_flight_between_s(now_us, slot->seen_us);
+        const float undetected_s = goe_flight_between_s(now_us, slot->detected_us);
         const bool ordered = i == flight->reaction.slot || flight->reaction.action != GOE_FLIGHT_NONE;
         const float most_s =
-            ordered ? goe_flight_larger(ORDERED_S, flight->settings.forget_s) : flight->settings.forget_s;
-        slot->used = slot->used && (unseen_s <= most_s || is_ahead(flight, slot));
+            ordered ? goe_flight_larger(ORDERED_S, flight->settings.track_timeout_s) : flight->settings.track_timeout_s;
+        slot->used = slot->used && (undetected_s <= most_s || is_ahead(flight, slot));
         if (!slot->used && i == flight->reaction.slot) {
             flight->reaction.slot = NOBODY; /* whoever gets the slot next is not what the order is about */
         }

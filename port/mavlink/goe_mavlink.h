@@ -10,11 +10,11 @@
  *   structure > goe_mavlink_pack_...() > payload > goe_mavlink_frame() > bytes of a MAVLink 2 frame
  *   payload of a received frame > goe_mavlink_read_...() > structure
  *
- * Structures   hold a message's fields in the order of the wire. NaN, or what the field says, stands for "not known".
+ * Structures   hold a message's fields in the order of the wire. NaN, or the value given at the field, means "not known".
  * Payload      little-endian, trailing zeros cut off, at least one byte: MAVLink 2. A read takes any length up to the message's
- *              own and beyond: what was cut is zero, what a newer dialect added is passed over.
+ *              own and beyond: cut bytes are zero, fields that a newer dialect added are ignored.
  * Safety       No heap, no statics that change, no recursion; only memcpy and memset. Nothing is read or written outside what
- *              the lengths allow. What is read is not judged: goe_flight refuses what is not finite.
+ *              the lengths allow. Values are not checked: goe_flight refuses those that are not finite.
  */
 #ifndef GOE_MAVLINK_H
 #define GOE_MAVLINK_H
@@ -58,12 +58,12 @@ typedef struct {
 
 /* ------------------------------------------------------------------------------------------------- goe's own dialect -- */
 
-#define GOE_MAVLINK_SEES_BOX_LEFT 0x001u
-#define GOE_MAVLINK_SEES_BOX_TOP 0x002u
-#define GOE_MAVLINK_SEES_BOX_RIGHT 0x004u
-#define GOE_MAVLINK_SEES_BOX_BOTTOM 0x008u
-#define GOE_MAVLINK_SEES_BOX 0x00Fu
-#define GOE_MAVLINK_SEES_POINT 0x010u /* of point i: 0x10 << i */
+#define GOE_MAVLINK_FEATURE_BOX_LEFT 0x001u
+#define GOE_MAVLINK_FEATURE_BOX_TOP 0x002u
+#define GOE_MAVLINK_FEATURE_BOX_RIGHT 0x004u
+#define GOE_MAVLINK_FEATURE_BOX_BOTTOM 0x008u
+#define GOE_MAVLINK_FEATURE_BOX 0x00Fu
+#define GOE_MAVLINK_FEATURE_POINT 0x010u /* of point i: 0x10 << i */
 
 enum { GOE_MAVLINK_LEFT, GOE_MAVLINK_TOP, GOE_MAVLINK_RIGHT, GOE_MAVLINK_BOTTOM, GOE_MAVLINK_SIDES };
 
@@ -74,22 +74,22 @@ enum { GOE_MAVLINK_LEFT, GOE_MAVLINK_TOP, GOE_MAVLINK_RIGHT, GOE_MAVLINK_BOTTOM,
  * 6,553 pixels. */
 typedef struct {
     uint64_t time_usec;   /* middle of the exposure, by the clock of time_base; AGE: not read */
-    uint32_t age_usec;    /* from there until this message was sent; 0: not known, which AGE takes as it stands */
+    uint32_t age_usec;    /* from there until this message was sent; 0: not known, which AGE takes unchanged */
     uint32_t obstacle_id; /* of the detector's tracker; 0: it has none */
     int16_t box[GOE_MAVLINK_SIDES]; /* upright bounding box, 0.1 px: left, top, right, bottom; all four, also at the border */
     uint16_t time_sd;     /* one sigma of time_usec or age_usec, us; 0: not known */
     uint16_t image_width, image_height; /* px */
-    uint16_t seen;        /* GOE_MAVLINK_SEES_... */
+    uint16_t visible;     /* GOE_MAVLINK_FEATURE_... */
     uint8_t camera_id;    /* from 0 */
     uint8_t time_base;    /* 0 autopilot's clock, 1 sender's, 2 age: as GOE_FLIGHT_AUTOPILOT_CLOCK, ... */
-    uint8_t number;       /* of messages like this of the image; 0: nothing in view, which tells that the detector is alive */
+    uint8_t number;       /* of messages like this of the image; 0: nothing in view, which shows that the detector is alive */
     uint8_t pixel_sd;     /* one sigma of box and points, 0.1 px; 0: not known */
     uint8_t score;        /* per cent; 255: not known, taken as 100 */
     int16_t u[GOE_MAVLINK_POINTS], v[GOE_MAVLINK_POINTS]; /* extension: points, 0.1 px */
 } goe_mavlink_features_t;
 
 #define GOE_MAVLINK_SUSPECT 0x01u /* the estimate contradicts the images: wider margins */
-#define GOE_MAVLINK_PASSED 0x02u  /* its distance grows */
+#define GOE_MAVLINK_RECEDING 0x02u /* its distance grows */
 #define GOE_MAVLINK_IN_VIEW 0x04u
 #define GOE_MAVLINK_WORST 0x08u   /* of all obstacles */
 #define GOE_MAVLINK_LATE 0x10u    /* the action needs longer than there is */
@@ -116,10 +116,10 @@ typedef struct {
     uint32_t id;        /* the detector's, of the obstacle */
     int32_t target_lat, target_lon; /* where the action leads, degrees times 1e7; INT32_MAX: not known, or no action */
     float target[3];    /* the same in the local frame, NED, m; NaN: no action */
-    float time_to, time_sd;           /* until the closest approach, s */
-    float miss, miss_sd;              /* horizontal distance then, m */
+    float tcpa, tcpa_sd;              /* until the closest approach, s */
+    float dcpa, dcpa_sd;              /* horizontal distance then, m */
     float clearance, clearance_sd;    /* height over its top then, m; NaN: the top is not known */
-    float violation;    /* probability of violating margin and clearance, 0 to 1 */
+    float conflict_probability; /* probability of violating margin and clearance, 0 to 1 */
     float needed;       /* time that the action needs, s; NaN: no action */
     uint8_t slot;
     uint8_t action;     /* goe_flight_action_t; 0 unless GOE_MAVLINK_ORDER */

@@ -19,7 +19,7 @@
 #define TRACKING_POINT 1u
 #define TRACKING_RECTANGLE 2u
 
-GOE_STATIC_ASSERT((unsigned)GOE_MAVLINK_SEES_BOX_LEFT == GOE_SEES_LEFT, sides_have_the_same_bits);
+GOE_STATIC_ASSERT((unsigned)GOE_MAVLINK_FEATURE_BOX_LEFT == GOE_SIDE_LEFT, sides_have_the_same_bits);
 
 static void begin(goe_mavlink_sighting_t *sighting, uint8_t camera, uint32_t arrival_us) {
     memset(sighting, 0, sizeof *sighting);
@@ -56,7 +56,7 @@ static void read_box(const goe_mavlink_features_t *message, goe_box_t *box) {
     box->top_px = pixel(message->image_height, message->box[GOE_MAVLINK_TOP]);
     box->right_px = pixel(message->image_width, message->box[GOE_MAVLINK_RIGHT]);
     box->bottom_px = pixel(message->image_height, message->box[GOE_MAVLINK_BOTTOM]);
-    box->seen = (uint8_t)(message->seen & GOE_MAVLINK_SEES_BOX);
+    box->sides = (uint8_t)(message->visible & GOE_MAVLINK_FEATURE_BOX);
 }
 
 static void read_points(const goe_mavlink_features_t *message, goe_flight_detection_t *detection) {
@@ -66,7 +66,7 @@ static void read_points(const goe_mavlink_features_t *message, goe_flight_detect
     for (unsigned i = 0; i < GOE_MAVLINK_POINTS; i++) {
         point[i]->u_px = pixel(message->image_width, message->u[i]);
         point[i]->v_px = pixel(message->image_height, message->v[i]);
-        point[i]->seen = (message->seen & GOE_MAVLINK_SEES_POINT << i) != 0u;
+        point[i]->visible = (message->visible & GOE_MAVLINK_FEATURE_POINT << i) != 0u;
     }
 }
 
@@ -76,14 +76,14 @@ static float read_score(uint8_t score) {
 
 bool goe_mavlink_from_features(const goe_mavlink_features_t *message, uint32_t arrival_us,
                                goe_mavlink_sighting_t *sighting) {
-    const unsigned anything = GOE_MAVLINK_SEES_BOX | 0x3Fu * GOE_MAVLINK_SEES_POINT;
+    const unsigned anything = GOE_MAVLINK_FEATURE_BOX | 0x3Fu * GOE_MAVLINK_FEATURE_POINT;
     begin(sighting, message->camera_id, arrival_us);
     if (message->time_base > GOE_FLIGHT_AGE || message->camera_id >= GOE_CAMERAS_MAX) {
         return not_understood(sighting);
     }
     read_time(message, &sighting->frame);
     sighting->frame.number = message->number;
-    if (message->number == 0u || (message->seen & anything) == 0u) {
+    if (message->number == 0u || (message->visible & anything) == 0u) {
         return false;
     }
     if (message->image_width == 0u || message->image_height == 0u) {
@@ -123,7 +123,7 @@ static bool give_box(const float side_px[4], uint32_t id, goe_mavlink_sighting_t
     box->top_px = side_px[1];
     box->right_px = side_px[2];
     box->bottom_px = side_px[3];
-    box->seen = GOE_SEES_BOX;
+    box->sides = GOE_SIDES_ALL;
     sighting->detection.id = id;
     sighting->detection.score = 1.0f;
     sighting->frame.number = sighting->frame.count = 1;

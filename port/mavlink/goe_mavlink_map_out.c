@@ -59,7 +59,7 @@ static bool is_ordered(const goe_flight_assessment_t *assessment, int slot) {
 /* ---------------------------------------------------------------------------------------------------- goe's messages -- */
 
 static uint8_t state_of(const goe_flight_obstacle_t *obstacle) {
-    return (uint8_t)((obstacle->suspect ? GOE_MAVLINK_SUSPECT : 0u) | (obstacle->passed ? GOE_MAVLINK_PASSED : 0u));
+    return (uint8_t)((obstacle->suspect ? GOE_MAVLINK_SUSPECT : 0u) | (obstacle->receding ? GOE_MAVLINK_RECEDING : 0u));
 }
 
 static void fill_size(const goe_flight_obstacle_t *obstacle, goe_mavlink_obstacle_t *message) {
@@ -108,13 +108,13 @@ bool goe_mavlink_to_hazard(const goe_flight_obstacle_t *obstacle, int slot, cons
     memset(message, 0, sizeof *message);
     message->time_usec = own->time_usec;
     message->id = obstacle->id;
-    message->time_to = hazard->time_s;
-    message->time_sd = hazard->time_sd_s;
-    message->miss = hazard->miss_m;
-    message->miss_sd = hazard->miss_sd_m;
+    message->tcpa = hazard->tcpa_s;
+    message->tcpa_sd = hazard->tcpa_sd_s;
+    message->dcpa = hazard->dcpa_m;
+    message->dcpa_sd = hazard->dcpa_sd_m;
     message->clearance = if_known(hazard->has_clearance, hazard->clearance_m);
     message->clearance_sd = if_known(hazard->has_clearance, hazard->clearance_sd_m);
-    message->violation = hazard->violation;
+    message->conflict_probability = hazard->conflict_probability;
     fill_order(assessment, ordered, own, message);
     message->slot = (uint8_t)slot;
     message->flags = (uint8_t)(state_of(obstacle) | (assessment->worst == slot ? GOE_MAVLINK_WORST : 0u) |
@@ -219,19 +219,19 @@ static uint8_t collision_action(goe_flight_action_t action) {
 }
 
 bool goe_mavlink_to_collision(const goe_flight_obstacle_t *obstacle, int slot,
-                              const goe_flight_assessment_t *assessment, float violation_max,
+                              const goe_flight_assessment_t *assessment, float conflict_probability_max,
                               goe_mavlink_collision_t *message) {
     const goe_hazard_t *hazard = &obstacle->hazard;
     const bool ordered = is_ordered(assessment, slot);
-    const bool high = hazard->violation >= VIOLATION_HIGH || (ordered && assessment->late);
+    const bool high = hazard->conflict_probability >= VIOLATION_HIGH || (ordered && assessment->late);
     memset(message, 0, sizeof *message);
     message->id = obstacle->id;
-    message->time_to_minimum_delta = hazard->time_s;
+    message->time_to_minimum_delta = hazard->tcpa_s;
     message->altitude_minimum_delta = hazard->has_clearance ? goe_flight_larger(hazard->clearance_m, 0.0f) : 0.0f;
-    message->horizontal_minimum_delta = hazard->miss_m;
+    message->horizontal_minimum_delta = hazard->dcpa_m;
     message->src = COLLISION_SOURCE;
     message->action = collision_action(ordered ? assessment->action : GOE_FLIGHT_NONE);
-    message->threat_level = (uint8_t)(high ? 2 : hazard->violation >= violation_max ? 1 : 0);
+    message->threat_level = (uint8_t)(high ? 2 : hazard->conflict_probability >= conflict_probability_max ? 1 : 0);
     return obstacle->has_hazard;
 }
 
@@ -266,8 +266,8 @@ static void fill_callsign(int slot, char callsign[9]) {
     }
 }
 
-/* Down of what is told as its altitude. */
-static float told_down_m(const goe_flight_obstacle_t *obstacle, const goe_mavlink_own_t *own) {
+/* Down of the reported altitude. */
+static float reported_down_m(const goe_flight_obstacle_t *obstacle, const goe_mavlink_own_t *own) {
     const float below_m = own->position_ned_m[2] + BELOW_OWN_M;
     const float top_m = obstacle->center_ned_m[2] - obstacle->height_m;
     return has(obstacle, GOE_HAS_HEIGHT) ? goe_flight_larger(top_m, below_m) : below_m;
@@ -275,7 +275,7 @@ static float told_down_m(const goe_flight_obstacle_t *obstacle, const goe_mavlin
 
 bool goe_mavlink_to_adsb_vehicle(const goe_flight_obstacle_t *obstacle, int slot, uint32_t icao_base,
                                  const goe_mavlink_own_t *own, goe_mavlink_adsb_vehicle_t *message) {
-    const float altitude_m = own->origin_alt_m - told_down_m(obstacle, own);
+    const float altitude_m = own->origin_alt_m - reported_down_m(obstacle, own);
     memset(message, 0, sizeof *message);
     if (!has(obstacle, GOE_HAS_POSITION) || !own->origin_known || !goe_flight_within(altitude_m, ALTITUDE_MAX_M)) {
         return false;

@@ -1,9 +1,9 @@
 /* GOE_MAVLINK_INFO(message, name, id, crc_extra, length_min, length): every message of goe_mavlink_message_t, in its order. What
  * mavgen makes of goe.xml and of the standard definitions must be the same: tests/python/test_mavlink.py.
  * SPDX-License-Identifier: MIT */
-GOE_MAVLINK_INFO(FEATURES, "GOE_FEATURES", 42700, 188, 37, 61)
+GOE_MAVLINK_INFO(FEATURES, "GOE_FEATURES", 42700, 27, 37, 61)
 GOE_MAVLINK_INFO(OBSTACLE, "GOE_OBSTACLE", 42701, 189, 87, 87)
-GOE_MAVLINK_INFO(HAZARD, "GOE_HAZARD", 42702, 114, 67, 67)
+GOE_MAVLINK_INFO(HAZARD, "GOE_HAZARD", 42702, 62, 67, 67)
 GOE_MAVLINK_INFO(STATUS, "GOE_STATUS", 42703, 89, 32, 32)
 GOE_MAVLINK_INFO(LANDING_TARGET, "LANDING_TARGET", 149, 200, 30, 60)
 GOE_MAVLINK_INFO(TRACKING, "CAMERA_TRACKING_IMAGE_STATUS", 275, 126, 31, 32)

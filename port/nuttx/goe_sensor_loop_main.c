@@ -1,10 +1,10 @@
-/* A sensor loop: poses at 50 Hz, images at 10 Hz and a timer come through a queue; the main thread estimates, assesses and tells.
+/* A sensor loop: poses at 50 Hz, images at 10 Hz and a timer come through a queue; the main thread estimates, assesses and prints.
  * SPDX-License-Identifier: MIT
  *
  *   goe_sensor_loop [-f]   -f: as fast as it can, not at 50 Hz
  *
- * In an application of yours sensor_thread() is what there is already: drivers, a link to the autopilot, a detector. It may be
- * several tasks. The main thread alone touches `estimator`, so nothing needs a lock. */
+ * In your application existing code replaces sensor_thread(): drivers, a link to the autopilot, a detector. It may be
+ * several tasks. The main thread alone uses `estimator`, so nothing needs a lock. */
 #include <nuttx/config.h>
 
 #include <pthread.h>

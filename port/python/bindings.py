@@ -5,7 +5,7 @@
 Types, constants and functions are taken from goe.h, goe_flight.h and the glue's headers as they are, and the C compiler
 holds cffi's idea of every size and offset against its own. CMakeLists.txt runs this whenever the package is built.
 
-``fingerprint`` tells which sources a module was built from: a checkout can ask whether the installed one is its own.
+``fingerprint`` identifies the sources of a module: a checkout can check whether the installed one is its own.
 Without ``--out`` it is printed.
 """
 
@@ -25,7 +25,7 @@ OWN_BUILD = "CMakeLists.txt"  # ... of the package itself
 TYPES = {
     "goe.h": (
         "goe_status_t", "goe_model_t", "goe_method_t", "goe_pose_t", "goe_pixel_t", "goe_box_t", "goe_image_noise_t",
-        "goe_image_t", "goe_sigma_t", "goe_reason_t", "goe_estimate_t", "goe_plan_t", "goe_hazard_t", "goe_rule_t",
+        "goe_image_t", "goe_sigma_t", "goe_reason_t", "goe_estimate_t", "goe_intent_t", "goe_hazard_t", "goe_rule_t",
         "goe_decision_t",
     ),
     "goe_python.h": ("goe_python_setting_t", "goe_python_rule_t"),
@@ -38,7 +38,8 @@ TYPES = {
 }  # fmt: skip
 FUNCTIONS = {
     "goe.h": (
-        "goe_update", "goe_covariance", "goe_hazard", "goe_rule_default", "goe_decide", "goe_soonest_s", "goe_reset",
+        "goe_update", "goe_covariance", "goe_hazard", "goe_rule_default", "goe_decide", "goe_earliest_tcpa_s",
+        "goe_reset",
         "goe_status_text", "goe_reason_text", "goe_self_check",
     ),
     "goe_python.h": (
@@ -53,7 +54,7 @@ FUNCTIONS = {
     "goe_python_flight.h": ("goe_python_flight_setting", "goe_python_flight_init", "goe_python_flight_change"),
 }  # fmt: skip
 OWN_MEMORY = {  # structs of which Python reads these fields only
-    "goe.h": "typedef struct { uint32_t causes[GOE_CAUSES]; ...; } goe_estimator_t;",
+    "goe.h": "typedef struct { uint32_t fault_counts[GOE_FAULT_COUNTS]; ...; } goe_estimator_t;",
     "goe_flight.h": "typedef struct { goe_flight_counters_t counters; uint32_t capture_us; ...; } goe_flight_t;",
 }
 LIMITS = ("GOE_WINDOW_MAX", "GOE_CAMERAS_MAX", "GOE_FLIGHT_SLOTS")  # as compiled
@@ -107,7 +108,7 @@ def declarations(headers: dict[str, str]) -> str:
 
 
 def sources(lib: Path, flight: Path, cmake: Path) -> Iterator[tuple[str, Path]]:
-    """All that a module is made of, named alike in a checkout and in a packed folder."""
+    """All sources of a module, with the same names in a checkout and in a packed folder."""
     folders = {
         "lib": lib.rglob("*"), "flight": flight.glob("*"), "cmake": cmake.glob("goe_compile.cmake"),
         "package": (path for folder in ("", "csrc", "src/goe") for path in (PACKAGE / folder).glob("*")),

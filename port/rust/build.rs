@@ -4,10 +4,10 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-const PARTS: [&str; 4] = ["window", "refined", "hazard", "movers"];
-const FLIGHT_OWN: usize = 1664; // bytes of the flight layer beside its obstacles
+const PARTS: [&str; 4] = ["window", "filter", "hazard", "target_motion"];
+const FLIGHT_OWN: usize = 1664; // bytes of the flight layer without its obstacles
 const SLOTS: usize = 4; // obstacles of the flight layer
-const SLOT: usize = 128; // bytes of an obstacle beside its estimator
+const SLOT: usize = 128; // bytes of an obstacle without its estimator
 
 // The same bits everywhere; sqrtf as an instruction; enumerations are int, as in ffi.rs.
 const FLAGS: [&str; 3] = ["-ffp-contract=off", "-fno-math-errno", "-fno-short-enums"];
@@ -42,7 +42,7 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
 
 const CHECKED: &str = "#include \"goe.h\"\n#ifdef GOE_RUST_FLIGHT\n#include \"goe_flight.h\"\n#endif\n";
 
-/// Where a list of `src/layout.rs` holds, as C's preprocessor asks.
+/// The condition of a list of `src/layout.rs`, for C's preprocessor.
 fn condition(line: &str) -> Option<&'static str> {
     match line {
         "layout! {" => Some("1"),
@@ -126,7 +126,7 @@ fn constant_assertions(ffi: &str) -> String {
 
 /// Bytes of the estimator with these parts. The C compiler says so if they are others.
 fn estimator_bytes() -> usize {
-    match (has("window"), has("refined"), has("movers")) {
+    match (has("window"), has("filter"), has("target_motion")) {
         (_, false, _) => 944,
         (true, true, false) => 2368,
         (false, true, false) => 2016,
@@ -137,8 +137,8 @@ fn estimator_bytes() -> usize {
 
 fn main() {
     assert!(
-        has("window") || has("refined"),
-        "goe: one of the features `window` and `refined` is needed"
+        has("window") || has("filter"),
+        "goe: one of the features `window` and `filter` is needed"
     );
     let (lib, flight) = folders();
     for path in [&lib, &flight, Path::new("src")] {

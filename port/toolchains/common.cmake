@@ -17,7 +17,7 @@ set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
 
 string(JOIN " " CMAKE_C_FLAGS_INIT ${GOE_TARGET_FLAGS} ${GOE_TARGET_COMPILER_FLAGS})
 set(CMAKE_C_FLAGS_RELEASE_INIT "")
-set(CMAKE_C_FLAGS_RELEASE "" CACHE STRING "Optimisation: -Os or -O2")
+set(CMAKE_C_FLAGS_RELEASE "" CACHE STRING "Optimization: -Os or -O2")
 
 # The command that runs an image: goe_qemu_<board>.
 foreach(board IN LISTS GOE_TARGET_BOARDS)
@@ -27,6 +27,6 @@ endforeach()
 list(GET GOE_TARGET_BOARDS 0 GOE_TARGET_BOARD)
 set(CMAKE_CROSSCOMPILING_EMULATOR ${goe_qemu_${GOE_TARGET_BOARD}})
 
-# Told to tools/ci/cost.
+# Read by tools/ci/cost.
 set(GOE_TARGET_BOARD ${GOE_TARGET_BOARD} CACHE INTERNAL "Board that the ledger is measured on")
 set(GOE_QEMU_COMMAND "${CMAKE_CROSSCOMPILING_EMULATOR}" CACHE INTERNAL "Command that runs an image on it")

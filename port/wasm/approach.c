@@ -7,8 +7,8 @@
 #define PI 3.14159265358979323846
 #define RIM_POINTS 48 /* of a mast's rim: 0.2 % of its radius is lost at most */
 #define POINTS_MAX (2 * RIM_POINTS)
-#define LEAST_BOX_PX 2.0       /* what is smaller no detector finds */
-#define KEPT_SHARE 0.904837418 /* exp(-1 / (APPROACH_RATE_HZ APPROACH_ALIKE_S)) */
+#define LEAST_BOX_PX 2.0       /* no detector finds a smaller box */
+#define KEPT_SHARE 0.904837418 /* exp(-1 / (APPROACH_RATE_HZ APPROACH_CORRELATION_S)) */
 #define NEW_SHARE 0.425755835  /* sqrt(1 - KEPT_SHARE^2) */
 
 typedef struct {
@@ -204,7 +204,7 @@ static void give_box(approach_t *a, const camera_t *camera, goe_image_t *image) 
     image->box.top_px = (float)side[1];
     image->box.right_px = (float)side[2];
     image->box.bottom_px = (float)side[3];
-    image->box.seen = side[2] - side[0] >= LEAST_BOX_PX && side[3] - side[1] >= LEAST_BOX_PX ? GOE_SEES_BOX : 0;
+    image->box.sides = side[2] - side[0] >= LEAST_BOX_PX && side[3] - side[1] >= LEAST_BOX_PX ? GOE_SIDES_ALL : 0;
 }
 
 /* ------------------------------------------------------------------------------------------------------------- corners -- */
@@ -213,9 +213,9 @@ static void give_point(approach_t *a, const camera_t *camera, point_t point, goe
     pixel_t p = project(camera, point);
     p.u += a->plan.pixel_px * random_normal(&a->random);
     p.v += a->plan.pixel_px * random_normal(&a->random);
-    to->seen = in_image(p);
-    to->u_px = to->seen ? (float)p.u : 0.0f;
-    to->v_px = to->seen ? (float)p.v : 0.0f;
+    to->visible = in_image(p);
+    to->u_px = to->visible ? (float)p.u : 0.0f;
+    to->v_px = to->visible ? (float)p.v : 0.0f;
 }
 
 /* Half way up, where vertical planes through the camera touch the mast; and the rim's point towards the camera. */
@@ -234,7 +234,7 @@ static void give_mast(approach_t *a, const camera_t *camera, goe_image_t *image)
     give_point(a, camera, place(o, r * (c * ux + s * uy), r * (c * uy - s * ux), half_m), &image->left);
     give_point(a, camera, place(o, r * (c * ux - s * uy), r * (c * uy + s * ux), half_m), &image->right);
     give_point(a, camera, place(o, r * ux, r * uy, o->height_m), &image->top);
-    if (image->left.u_px > image->right.u_px && image->left.seen && image->right.seen) {
+    if (image->left.u_px > image->right.u_px && image->left.visible && image->right.visible) {
         const goe_pixel_t left = image->left;
         image->left = image->right;
         image->right = left;

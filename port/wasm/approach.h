@@ -17,15 +17,15 @@
 #define APPROACH_DESCENT_M_S 1.0 /* about 3 degrees */
 #define APPROACH_FIRST_RANGE_M 400.0
 #define APPROACH_IMAGES 188    /* until 26 m before the obstacle's middle is abeam */
-#define APPROACH_HEIGHT_M 12.0 /* above ground where the obstacle stands */
+#define APPROACH_HEIGHT_M 12.0 /* above ground at the obstacle */
 
 #define APPROACH_IMAGE_WIDTH_PX 1280.0
 #define APPROACH_IMAGE_HEIGHT_PX 960.0
 #define APPROACH_FOCAL_PX 914.0 /* 70 degrees from side to side; the camera looks along the body's forward axis */
 
 /* Errors that every flight has; one sigma each. */
-#define APPROACH_BOX_SHARE 0.02 /* of a box's side, of its width or height, that stays alike ... */
-#define APPROACH_ALIKE_S 1.0    /* ... for so long */
+#define APPROACH_BOX_SHARE 0.02    /* of a box's side, of its width or height, slowly varying ... */
+#define APPROACH_CORRELATION_S 1.0 /* ... for so long */
 #define APPROACH_ATTITUDE_BIAS_DEG 0.3
 #define APPROACH_ATTITUDE_WHITE_DEG 0.1
 #define APPROACH_VELOCITY_M_S 0.05
@@ -47,7 +47,7 @@ typedef struct {
 
 #define APPROACH_ROLL_S 5.0
 
-/* Seen from above: a box about its middle, turned clockwise from north; the length is the edge that is turned so. Round: width is
+/* In the horizontal plane: a box about its middle, turned clockwise from north; the length is the edge that is turned so. Round: width is
  * the diameter. */
 typedef struct {
     double north_m, east_m;
@@ -68,7 +68,7 @@ typedef struct {
     int image;
 } approach_t;
 
-/* How wide the obstacle is across the line of sight of the first image, which is all that upright boxes tell of its width. */
+/* Width of the obstacle across the line of sight of the first image, the only width in upright boxes. */
 double approach_width_in_view_m(const approach_obstacle_t *obstacle);
 
 void approach_start(approach_t *approach, const approach_plan_t *plan);

@@ -33,7 +33,7 @@ export class Goe {
   }
 
   /** The calls of a module that calls the library. */
-  async beside(bytes) {
+  async attach(bytes) {
     const { instance } = await WebAssembly.instantiate(bytes, { env: this.calls });
     return instance.exports;
   }
@@ -48,16 +48,16 @@ export class Goe {
    * @param {BufferSource} bytes golden.wasm
    */
   async goldenHash(bytes) {
-    const { golden_hash } = await this.beside(bytes);
+    const { golden_hash } = await this.attach(bytes);
     return textAt(this.memory, golden_hash());
   }
 }
 
-/** The flight of live.h: flight.wasm beside a library. */
+/** The flight of live.h: flight.wasm next to a library. */
 export class LiveFlight {
   /** @param {BufferSource} bytes flight.wasm */
   static async load(goe, bytes) {
-    return new LiveFlight(goe.memory, await goe.beside(bytes));
+    return new LiveFlight(goe.memory, await goe.attach(bytes));
   }
 
   constructor(memory, calls) {

@@ -41,7 +41,7 @@ const char *live_reason(void) { return goe_reason_text(estimate.reason); }
 
 static float larger(float a, float b) { return a > b ? a : b; }
 
-/* The noise that every flight has is always told: see approach.h. */
+/* The noise of every flight is always configured: see approach.h. */
 static void choose_settings(goe_settings_t *settings) {
     goe_settings_default(settings);
     settings->camera.fx_px = settings->camera.fy_px = (float)APPROACH_FOCAL_PX;
@@ -50,13 +50,13 @@ static void choose_settings(goe_settings_t *settings) {
     settings->camera.width_px = (float)APPROACH_IMAGE_WIDTH_PX;
     settings->camera.height_px = (float)APPROACH_IMAGE_HEIGHT_PX;
     settings->heading_auto = false; /* north, the course */
-    settings->detector.box_share = (float)APPROACH_BOX_SHARE;
-    settings->detector.correlation_s = (float)APPROACH_ALIKE_S;
+    settings->detector.box_noise_rel = (float)APPROACH_BOX_SHARE;
+    settings->detector.box_correlation_time_s = (float)APPROACH_CORRELATION_S;
     if (controls[CONTROL_knows] > 0.5f) {
         const float offset_m = controls[CONTROL_height_offset_m];
-        settings->detector.box_px = larger(controls[CONTROL_pixel_px], 0.1f);
-        settings->detector.point_px = larger(controls[CONTROL_pixel_px], 0.1f);
-        settings->navigation.height_bias_m = larger(0.5f, offset_m < 0.0f ? -offset_m : offset_m);
+        settings->detector.box_noise_px = larger(controls[CONTROL_pixel_px], 0.1f);
+        settings->detector.point_noise_px = larger(controls[CONTROL_pixel_px], 0.1f);
+        settings->navigation.height_bias_sd_m = larger(0.5f, offset_m < 0.0f ? -offset_m : offset_m);
     }
 }
 
@@ -102,15 +102,15 @@ static void report_truth(const approach_truth_t *truth) {
 }
 
 static void include(goe_box_t *box, const goe_pixel_t *p) {
-    if (!p->seen) {
+    if (!p->visible) {
         return;
     }
-    const bool first = box->seen == 0;
+    const bool first = box->sides == 0;
     box->left_px = first || p->u_px < box->left_px ? p->u_px : box->left_px;
     box->top_px = first || p->v_px < box->top_px ? p->v_px : box->top_px;
     box->right_px = first || p->u_px > box->right_px ? p->u_px : box->right_px;
     box->bottom_px = first || p->v_px > box->bottom_px ? p->v_px : box->bottom_px;
-    box->seen = GOE_SEES_BOX;
+    box->sides = GOE_SIDES_ALL;
 }
 
 static void report_image(const goe_image_t *image) {
@@ -121,14 +121,14 @@ static void report_image(const goe_image_t *image) {
     include(&box, &image->base_left);
     include(&box, &image->base_near);
     include(&box, &image->base_right);
-    fields[FIELD_box_seen] = box.seen != 0 ? 1.0f : 0.0f;
+    fields[FIELD_box_seen] = box.sides != 0 ? 1.0f : 0.0f;
     fields[FIELD_box_left_px] = box.left_px;
     fields[FIELD_box_top_px] = box.top_px;
     fields[FIELD_box_right_px] = box.right_px;
     fields[FIELD_box_bottom_px] = box.bottom_px;
 }
 
-/* The centre where there is one; otherwise the reference point, which of a prism is its middle. */
+/* The center if valid; otherwise the reference point, which of a prism is its middle. */
 static void report_place(const goe_image_t *image) {
     if (estimate.valid & GOE_HAS_CENTER) {
         fields[FIELD_ahead_m] = estimate.center_north_m - image->pose.position_ned_m[0];
@@ -154,8 +154,8 @@ static void report_estimate(void) {
     fields[FIELD_suspect] = e->suspect ? 1.0f : 0.0f;
     fields[FIELD_fresh] = e->fresh ? 1.0f : 0.0f;
     fields[FIELD_age_s] = e->age_s;
-    fields[FIELD_misfit] = e->misfit;
-    fields[FIELD_points] = (float)e->points;
+    fields[FIELD_nis_ratio] = e->nis_ratio;
+    fields[FIELD_images_used] = (float)e->images_used;
     fields[FIELD_width_m] = e->width_m;
     fields[FIELD_width_sd_m] = e->sigma.width_m;
     fields[FIELD_length_m] = e->length_m;
@@ -179,24 +179,24 @@ static int order_of(goe_decision_t decision, const goe_rule_t *rule, const goe_h
         return ORDER_GO_AROUND;
     }
     if (decision == GOE_DECISION_CLEAR) {
-        return hazard->violation >= rule->violation_max ? ORDER_IN_DOUBT : ORDER_CLEAR;
+        return hazard->conflict_probability >= rule->conflict_probability_max ? ORDER_IN_DOUBT : ORDER_CLEAR;
     }
     const bool known = decision == GOE_DECISION_UNKNOWN && (estimate.valid & GOE_HAS_POSITION) != 0u;
     return known && before != ORDER_GO_AROUND ? ORDER_UNCERTAIN : before;
 }
 
 static void report_hazard(void) {
-    static const goe_plan_t plan = {
+    static const goe_intent_t intent = {
         {(float)APPROACH_SPEED_M_S, 0.0f, (float)APPROACH_DESCENT_M_S}, MARGIN_M, CLEARANCE_M, 0.0f, 0.0f};
     goe_rule_t rule;
     goe_hazard_t hazard;
     goe_rule_default(&rule);
-    fields[FIELD_order] = (float)order_of(goe_decide(&estimator, &plan, &rule, &hazard), &rule, &hazard);
-    fields[FIELD_violation] = hazard.violation;
-    fields[FIELD_hazard_s] = hazard.time_s;
-    fields[FIELD_hazard_sd_s] = hazard.time_sd_s;
-    fields[FIELD_miss_m] = hazard.miss_m;
-    fields[FIELD_miss_sd_m] = hazard.miss_sd_m;
+    fields[FIELD_order] = (float)order_of(goe_decide(&estimator, &intent, &rule, &hazard), &rule, &hazard);
+    fields[FIELD_conflict_probability] = hazard.conflict_probability;
+    fields[FIELD_tcpa_s] = hazard.tcpa_s;
+    fields[FIELD_tcpa_sd_s] = hazard.tcpa_sd_s;
+    fields[FIELD_dcpa_m] = hazard.dcpa_m;
+    fields[FIELD_dcpa_sd_m] = hazard.dcpa_sd_m;
     fields[FIELD_clearance_m] = hazard.clearance_m;
     fields[FIELD_clearance_sd_m] = hazard.clearance_sd_m;
     fields[FIELD_has_clearance] = hazard.has_clearance ? 1.0f : 0.0f;

@@ -12,7 +12,7 @@ find_program(GOE_WASM_OPT NAMES wasm-opt REQUIRED)
 set(CMAKE_C_COMPILER ${GOE_WASM_CLANG})
 set(CMAKE_C_COMPILER_TARGET wasm32-unknown-unknown)
 set(CMAKE_C_FLAGS_INIT "-ffreestanding -isystem ${CMAKE_CURRENT_LIST_DIR}/include -mbulk-memory -mnontrapping-fptoint -mmutable-globals -msign-ext")
-set(CMAKE_C_FLAGS_RELEASE "" CACHE STRING "Optimisation: -Oz, -Os or -O2")
+set(CMAKE_C_FLAGS_RELEASE "" CACHE STRING "Optimization: -Oz, -Os or -O2")
 
 # Not through clang, which would run wasm-opt by itself where that is found, with options of its own.
 set(CMAKE_C_LINK_EXECUTABLE "${GOE_WASM_LD} <LINK_FLAGS> <OBJECTS> -o <TARGET>")

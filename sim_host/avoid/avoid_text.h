@@ -24,7 +24,7 @@ bool avoid_run_is_false(const avoid_run_t *run);
 
 void avoid_text_header(FILE *stream);
 
-/* What was not flown or does not apply is an empty field. margin_m: of the flight layer's settings. */
+/* An empty field: not flown, or not applicable. margin_m: of the flight layer's settings. */
 void avoid_text_row(FILE *stream, const avoid_run_t *run, double margin_m);
 
 #endif

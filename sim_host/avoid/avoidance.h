@@ -5,7 +5,7 @@
  *   mast, building   level flight below the top; an order's side, climb or loitering is flown
  *   truck            a landing approach of 3 degrees that ends at the truck's middle; the order is to go around
  *
- * The aircraft meets the obstacle's middle, up to 2 m aside of it; or passes its outline at a distance that is asked for, on either
+ * The aircraft meets the obstacle's middle, up to 2 m aside of it; or passes its outline at a given distance, on either
  * side. Errors as flown.h has them. An order is carried out half a second after it was given.
  *
  * Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT

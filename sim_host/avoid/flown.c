@@ -11,8 +11,8 @@
 #define ROLL_HZ 0.4
 #define ROLL_DEG 10.0
 #define LOST_FRAMES 0.05
-#define BLIND_EVERY_S 5.0 /* of an aircraft whose detector drops out: sees for SIGHTED_S, then nothing */
-#define SIGHTED_S 3.0
+#define BLIND_EVERY_S 5.0 /* of an aircraft whose detector drops out: sees for VISIBLE_S, then nothing */
+#define VISIBLE_S 3.0
 #define WIND_MAX_MPS 4.0
 #define TURBULENCE_MAX_MPS 5.0 /* wind at 6 m */
 #define CLOCK_START_US 4000000000u
@@ -139,7 +139,7 @@ static void detect(flown_frame_t *late, int number, const image_box_t *box) {
     goe_flight_detection_t *detection = &late->detection[late->frame.count++];
     detection->id = (uint32_t)number + 1u;
     detection->score = 0.9f;
-    detection->box.seen = GOE_SEES_BOX;
+    detection->box.sides = GOE_SIDES_ALL;
     detection->box.left_px = (float)box->side_px[SIDE_LEFT];
     detection->box.top_px = (float)box->side_px[SIDE_TOP];
     detection->box.right_px = (float)box->side_px[SIDE_RIGHT];
@@ -150,7 +150,7 @@ static void expose(flown_t *flown) {
     const pose_t truth = true_pose(flown);
     const view_t view = camera_view(&flown->camera, &truth);
     const bool lost = sensors_frame_lost(&flown->sensors[0]);
-    const bool blind = flown->drops && fmod(flown->t_s, BLIND_EVERY_S) >= SIGHTED_S;
+    const bool blind = flown->drops && fmod(flown->t_s, BLIND_EVERY_S) >= VISIBLE_S;
     flown_frame_t late;
     memset(&late, 0, sizeof late);
     late.arrival_s = flown->t_s + flown->frame_s;

@@ -261,7 +261,7 @@ static void trace(const run_t *run, const goe_flight_assessment_t *now) {
            along_m - run->flown.reach_m, right_m, -at.z, goe_flight_action_text(now->action),
            goe_flight_reason_text(now->reason), now->late ? " late" : "",
            now->action ? target_along_m - run->flown.reach_m : 0.0, target_right_m, now->avoided, (double)now->clear_m,
-           now->worst, (double)now->hazard.violation, (double)now->hazard.time_s);
+           now->worst, (double)now->hazard.conflict_probability, (double)now->hazard.tcpa_s);
     for (int slot = 0; slot < GOE_FLIGHT_SLOTS; slot++) {
         goe_flight_obstacle_t found;
         if (goe_flight_obstacle(&run->flown.flight, slot, &found) == GOE_FLIGHT_OK &&

@@ -3,13 +3,13 @@
  *
  *   single   one on the course
  *   pair     one on the course and one at a lateral offset of -100 to 100 m, from 40 m before to 60 m behind it
- *   gate     two beside the course, 15 to 60 m of clear width between them, and in half of the flights one behind them on it
+ *   gate     two next to the course, 15 to 60 m of clear width between them, and in half of the flights one behind them on it
  *   wall     three to nine across the course, 20 to 60 m apart
  *   row      two to nine along the course, 40 to 150 m apart
  *   field    one to nine anywhere ahead
  *   between  two, one on each side at twice the margin: no order is due
  *
- * Errors as flown.h has them. An order is obeyed after a delay, by one of two autopilots: one flies beside its line, the other flies
+ * Errors as flown.h has them. An order is obeyed after a delay, by one of two autopilots: one flies parallel to its line, the other flies
  * to the target and circles it, and the layer is set to its radius.
  *
  * Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT
@@ -64,7 +64,7 @@ typedef struct {
 /* Null and the outcome, or why the case cannot be flown. */
 const char *several_fly(const several_case_t *setup, several_outcome_t *outcome);
 
-/* Whether the flight misses what it is held to: no collision, SEVERAL_CLEAR_M wherever possible. */
+/* Whether the flight misses its goals: no collision, SEVERAL_CLEAR_M wherever possible. */
 bool several_misses(const several_outcome_t *outcome);
 
 #endif

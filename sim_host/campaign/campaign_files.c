@@ -45,7 +45,7 @@ static const char *check_parent(const char *folder) {
     return access(length > 0 ? parent : ".", W_OK | X_OK) == 0 ? NULL : strerror(errno);
 }
 
-/* What stands where a file or the folder of the series is to go. */
+/* The existing file or folder in place of a file or the folder of the series. */
 static const char *check_places(const char *folder) {
     static const struct {
         const char *name;
@@ -118,7 +118,7 @@ static bool write_files(const char *folder, const campaign_file_t *files, size_t
     return done;
 }
 
-/* What is left of it. */
+/* The rest of it. */
 static void remove_staging(const char *folder, const campaign_file_t *files, size_t count) {
     const int cause = errno;
     char path[PATH_SIZE];
@@ -138,7 +138,7 @@ static void remove_staging(const char *folder, const campaign_file_t *files, siz
 
 /* <case>_<run>.csv */
 static bool is_series(const char *name) {
-    static const char *const endings[] = {"_auto.csv", "_disc.csv", "_refined.csv"};
+    static const char *const endings[] = {"_auto.csv", "_disc.csv", "_filter.csv"};
     const char *run = name;
     bool known = false;
     while (isdigit((unsigned char)*run)) {

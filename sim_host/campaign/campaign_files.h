@@ -23,7 +23,7 @@ typedef struct {
 /* Null if a campaign can be written to folder (which need not exist, its parent must), otherwise why not. */
 const char *campaign_files_check(const char *folder);
 
-/* files: those in series/ first have that in their name. Null if all stands, otherwise why not; then the folder's files are
+/* files: those in series/ first have that in their name. Null if all are written, otherwise the reason; then the folder's files are
  * as they were. */
 const char *campaign_files_write(const char *folder, const campaign_file_t *files, size_t count);
 

@@ -87,7 +87,7 @@ static double phase_of_seed(int seed) {
     return golden - floor(golden);
 }
 
-/* "attitude" and "position" are the parts of "field" by which the own pose is wrong, beside the paper's pixels. */
+/* "attitude" and "position" are the parts of "field" that disturb the own pose, in addition to the paper's pixels. */
 static bool parse_noise(const char *text, sensor_noise_t *noise) {
     sensor_noise_t field;
     if (!sensor_noise_parse("field", &field)) {
@@ -116,7 +116,7 @@ static void add_run(planned_flight_t *flight, goe_model_t model, int window) {
 
 /* After the window's runs. */
 static void add_refined_run(planned_flight_t *flight) {
-    const case_setting_t setting = {GOE_METHOD_REFINED, GOE_MODEL_AUTO, PLAN_WINDOW};
+    const case_setting_t setting = {GOE_METHOD_FILTER, GOE_MODEL_AUTO, PLAN_WINDOW};
     flight->run[flight->runs++] = setting;
 }
 
@@ -267,12 +267,12 @@ static bool boxes_are_flown(const variant_t *variant, const scenario_t *scenario
            scenario_find(scenario->obstacle, &first) && !(scenario->altitude_m > first.altitude_m);
 }
 
-/* The same flights, with the same errors of the sensors, at each roll. Every flight has random numbers of its own: how often
- * an error is within its sigmas is told by flights, not by images of one flight. */
+/* The same flights, with the same errors of the sensors, at each roll. Every flight has random numbers of its own: the share
+ * of errors within their sigmas is counted over flights, not over images of one flight. */
 static void add_boxes(campaign_plan_t *plan, int seed) {
     static const variant_t variant = {STUDY_BOXES, "straight", "constant", "none", "field"};
     static const case_setting_t settings[] = {{GOE_METHOD_WINDOW, GOE_MODEL_AUTO, PLAN_WINDOW},
-                                              {GOE_METHOD_REFINED, GOE_MODEL_AUTO, PLAN_WINDOW}};
+                                              {GOE_METHOD_FILTER, GOE_MODEL_AUTO, PLAN_WINDOW}};
     for (size_t i = 0; i < ROLLS_COUNT * (size_t)scenario_count(); i++) {
         const int number = (int)(i % (size_t)scenario_count());
         const scenario_t scenario = scenario_get(number);

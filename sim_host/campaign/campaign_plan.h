@@ -1,5 +1,5 @@
 /*
- * Every flight of the campaign and what is run over it.
+ * Every flight of the campaign and its runs.
  *
  *   paper         Table 2: pixels rounded, straight, 17 m/s, still air; boxes with the paper's switching (auto) and with the
  *                 disc forced all the time, the cylinder with the disc
@@ -11,10 +11,10 @@
  *                 one at a time: window, side distance, orientation, image rate
  *   boxes         Table 2 level, lowest and at those orientations, with upright boxes instead of points and all sensors of
  *                 the field, from an aircraft that rolls by 0, 5, 10 and 25 degrees
- * The above are runs of the window method. Over every flight goes the refined method too, once, with its own choice of the
+ * The above are runs of the window method. Over every flight goes the filter method too, once, with its own choice of the
  * model and the flight's noise as its settings.
  *
- * A seed names the random numbers. Where nothing is random it still tells runs apart: it sets how far into an interval
+ * A seed names the random numbers. Without random errors it still distinguishes runs: it sets how far into an interval
  * between two images the run starts, so that pixels are rounded differently. Seed 1 starts as Table 2 says.
  *
  * Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT

@@ -38,7 +38,7 @@ const char *campaign_text_model(goe_model_t model) {
     }
 }
 
-const char *campaign_text_method(goe_method_t method) { return method == GOE_METHOD_REFINED ? "refined" : "window"; }
+const char *campaign_text_method(goe_method_t method) { return method == GOE_METHOD_FILTER ? "filter" : "window"; }
 
 /* A field and the comma before it. */
 static void put(FILE *stream, double value) {
@@ -130,7 +130,7 @@ void campaign_text_cases_row(FILE *stream, const planned_flight_t *flight, case_
 
 static void put_series_header(FILE *stream) {
     (void)fputs("t_s,status,model,x0_m,z0_m,width_m,length_m,height_m,orientation_deg,orientation_raw_deg,"
-                "other_side_deg,x0_sd_m,z0_sd_m,width_sd_m,length_sd_m,height_sd_m,orientation_sd_deg",
+                "front_orientation_deg,x0_sd_m,z0_sd_m,width_sd_m,length_sd_m,height_sd_m,orientation_sd_deg",
                 stream);
     for (int q = 0; q < CASE_QUANTITIES; q++) {
         (void)fprintf(stream, ",%s_true_%s", QUANTITIES[q].name, QUANTITIES[q].unit);
@@ -157,7 +157,7 @@ static void put_series_row(FILE *stream, const flight_log_t *log, int64_t time_u
     put_estimate(stream, e, GOE_HAS_HEIGHT, e->height_m);
     put_estimate(stream, e, GOE_HAS_ORIENTATION, e->orientation_deg);
     put_estimate(stream, e, GOE_HAS_ORIENTATION, e->orientation_raw_deg);
-    put_estimate(stream, e, GOE_HAS_ORIENTATION, e->other_side_deg);
+    put_estimate(stream, e, GOE_HAS_ORIENTATION, e->front_orientation_deg);
     put_estimate(stream, e, GOE_HAS_POSITION, e->sigma.x0_m);
     put_estimate(stream, e, GOE_HAS_POSITION, e->sigma.z0_m);
     put_estimate(stream, e, GOE_HAS_WIDTH, e->sigma.width_m);

@@ -1,6 +1,6 @@
 /*
- * The campaign's tables as text: cases.csv and the time series. Metres, degrees, seconds; an empty field: there is no such
- * number. Numbers have 9 significant digits, so that the estimates' floats survive.
+ * The campaign's tables as text: cases.csv and the time series. Meters, degrees, seconds; an empty field: there is no such
+ * number. Numbers have 9 significant digits, which preserve the estimates' floats.
  *
  * Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT
  */
@@ -15,7 +15,7 @@
 /* "auto", "disc" or "line" as a setting; "none", "disc", "line", "box" or "prism" of an estimate. */
 const char *campaign_text_model(goe_model_t model);
 
-/* "window" or "refined". */
+/* "window" or "filter". */
 const char *campaign_text_method(goe_method_t method);
 
 void campaign_text_cases_header(FILE *stream);

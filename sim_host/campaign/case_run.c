@@ -87,7 +87,7 @@ static void log_frame(const flight_frame_t *frame, log_features_t logged, frame_
 
 /* ----------------------------------------------------------------------------------------------------------- noise -- */
 
-/* Rounding to whole pixels is 1/sqrt(12) = 0.29 px, but on a slowly growing image its errors stay alike for some images. */
+/* Rounding to whole pixels is 1/sqrt(12) = 0.29 px, but on a slowly growing image its errors are correlated over some images. */
 #define ROUNDING_PX 0.35
 
 /* Figures that the library takes for "none": a pose without errors still carries those of single precision. */
@@ -101,26 +101,27 @@ void case_noise(const sensor_noise_t *sensors, goe_settings_t *settings) {
     goe_detector_t *detector = &settings->detector;
     goe_navigation_t *navigation = &settings->navigation;
     const double rounding_px = sensors->rounding ? ROUNDING_PX : 0.0;
-    detector->point_px = at_least(hypot(hypot(sensors->pixel_px, sensors->detector_px), rounding_px), LEAST_PIXEL_PX);
-    detector->point_share = number_to_float(sensors->detector_width);
+    detector->point_noise_px =
+        at_least(hypot(hypot(sensors->pixel_px, sensors->detector_px), rounding_px), LEAST_PIXEL_PX);
+    detector->point_noise_rel = number_to_float(sensors->detector_width);
     detector->point_correlation = number_to_float(sensors->detector_correlation);
-    detector->shape_share = 0.0f;
-    navigation->attitude_bias_deg = at_least(sensors->attitude_bias_deg, LEAST_ANGLE_DEG);
-    navigation->attitude_white_deg = at_least(sensors->attitude_noise_deg, LEAST_ANGLE_DEG);
-    navigation->attitude_drift_deg = 0.0f;
-    navigation->height_bias_m = at_least(sensors->altimeter_m, LEAST_HEIGHT_M);
-    navigation->velocity_bias_m_s = number_to_float(sensors->velocity_bias_mps);
-    navigation->position_walk_m = number_to_float(sensors->position_walk_m);
+    detector->shape_error_rel = 0.0f;
+    navigation->attitude_bias_sd_deg = at_least(sensors->attitude_bias_deg, LEAST_ANGLE_DEG);
+    navigation->attitude_white_sd_deg = at_least(sensors->attitude_noise_deg, LEAST_ANGLE_DEG);
+    navigation->attitude_walk_sd_deg = 0.0f;
+    navigation->height_bias_sd_m = at_least(sensors->altimeter_m, LEAST_HEIGHT_M);
+    navigation->velocity_bias_sd_m_s = number_to_float(sensors->velocity_bias_mps);
+    navigation->position_walk_sd_m = number_to_float(sensors->position_walk_m);
 }
 
 /* ------------------------------------------------------------------------------------------------------------- run -- */
 
-/* The condition is asked of the very points that were solved; only the library's own window knows them. The refined
+/* The condition is that of exactly the solved points, which only the library's own window knows. The filter
  * method does not answer by (5). */
 static double condition_behind(const goe_estimator_t *estimator, const goe_estimate_t *estimate) {
     const goe_window_t *window = &estimator->window;
     const goe_fit_ring_t *ring = estimate->model == GOE_MODEL_LINE ? &window->line : &window->disc;
-    return estimate->fresh ? window_condition(ring->point, estimate->points) : (double)NAN;
+    return estimate->fresh ? window_condition(ring->point, estimate->images_used) : (double)NAN;
 }
 
 const char *case_run(const flight_case_t *setup, const flight_log_t *log, case_setting_t setting,

@@ -1,9 +1,9 @@
 /*
- * One estimator over one flight, in-process: bit by bit what goe_replay makes of the flight's log.
+ * One estimator over one flight, in-process: bit by bit the result of goe_replay for the flight's log.
  *
- * A log carries every number so that the same double comes back, and goe_replay shows the library the float next to it.
+ * A log carries every number with enough digits to restore the same double, and goe_replay gives the library the float next to it.
  * Here the doubles go the same way, through the same frame_to_image(), and only their passage through text is left out.
- * The refined method is told case_noise(), which goe_replay takes by --set.
+ * The filter method uses case_noise(), which goe_replay takes by --set.
  *
  * Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT
  */
@@ -27,8 +27,8 @@ typedef struct {
     double condition; /* window: of the matrix of (5) behind this frame's solution, see case_statistics.h; or NaN */
 } case_sample_t;
 
-/* What the refined method is told of the sensors: their true errors, as a user knows them from data sheets. Outliers are
- * left to its gate. Of boxes the defaults stand, which hold for real detectors and obstacles of any shape. */
+/* Settings of the filter method for the sensors: their true errors, as a user knows them from data sheets. Outliers are
+ * left to its gate. For boxes the defaults stay, which apply to real detectors and obstacles of any shape. */
 void case_noise(const sensor_noise_t *sensors, goe_settings_t *settings);
 
 /* Runs the library over log, which setup flew. samples: room for log->count of them.

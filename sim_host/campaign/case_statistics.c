@@ -80,7 +80,7 @@ static double median(double *numbers, size_t count) {
     return count % 2 == 1 ? numbers[count / 2] : 0.5 * (numbers[count / 2 - 1] + numbers[count / 2]);
 }
 
-/* Mean, then deviations from it: errors are large beside their spread. */
+/* Mean, then deviations from it: errors are large compared with their spread. */
 static error_statistics_t describe(const case_errors_t *errors, size_t count, case_quantity_t quantity) {
     error_statistics_t s = {errors[count - 1].truth[quantity], NONE, NONE, NONE};
     double sum = 0.0, squares = 0.0, deviations = 0.0;
@@ -182,10 +182,10 @@ static void describe_used(const flight_log_t *log, const case_sample_t *const *u
 
 bool case_statistics(const flight_log_t *log, const case_sample_t *samples, goe_model_t model, double fraction,
                      case_statistics_t *result) {
-    const size_t room = log->count + 1; /* never 0 */
-    const case_sample_t **solved = malloc(room * sizeof *solved);
-    case_errors_t *errors = malloc(room * sizeof *errors);
-    double *numbers = malloc(room * sizeof *numbers);
+    const size_t capacity = log->count + 1; /* never 0 */
+    const case_sample_t **solved = malloc(capacity * sizeof *solved);
+    case_errors_t *errors = malloc(capacity * sizeof *errors);
+    double *numbers = malloc(capacity * sizeof *numbers);
     const bool done = solved != NULL && errors != NULL && numbers != NULL;
     if (done) {
         result->frames = log->count;

@@ -2,7 +2,7 @@
  * How far the estimates of one run are off.
  *
  * The truth is what the estimate means, from the true motion, with the true camera of the first frame as the origin:
- *   disc model   reference point = the obstacle's centre
+ *   disc model   reference point = the obstacle's center
  *   line, box    reference point = middle of the front edge
  * Which side of a box is called the side edge is a convention; near 45 degrees noise decides it. An estimate that calls the
  * other one so (its orientation is more than 45 degrees off, modulo 180) is compared with the truth renamed accordingly:
@@ -31,7 +31,7 @@ typedef enum {
     CASE_QUANTITIES
 } case_quantity_t;
 
-/* Metres or degrees; NaN where there is none. */
+/* Meters or degrees; NaN where there is none. */
 typedef struct {
     double truth[CASE_QUANTITIES], error[CASE_QUANTITIES]; /* error: estimate minus truth */
     bool swapped;                                          /* the truth was renamed */
@@ -52,7 +52,7 @@ typedef struct {
     bool swapped;                /* in the last frame used */
     error_statistics_t quantity[CASE_QUANTITIES];
     double covered[CASE_QUANTITIES]; /* share of the answers within 2 of their own sigmas; NaN without answers */
-    double baseline_m, condition;    /* medians over the frames used; condition: NaN in a refined run */
+    double baseline_m, condition;    /* medians over the frames used; condition: NaN in a filter run */
 } case_statistics_t;
 
 /* Statistics over the last fraction (0 to 1) of the frames that were solved with a model, rounded up; GOE_MODEL_AUTO: with

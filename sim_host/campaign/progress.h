@@ -11,7 +11,7 @@
 #include <time.h>
 
 typedef struct {
-    const char *what; /* what is counted: "flights" */
+    const char *what; /* unit of the count: "flights" */
     size_t total;
     struct timespec start;
     bool shown;
@@ -20,7 +20,7 @@ typedef struct {
 /* The clock starts. Nothing is ever shown if quiet or if standard error is not a terminal. */
 void progress_start(progress_t *progress, const char *what, size_t total, bool quiet);
 
-/* Draws the bar anew. of_progress: a progress_t; done: of the total. */
+/* Draws the bar again. of_progress: a progress_t; done: of the total. */
 void progress_show(void *of_progress, size_t done);
 
 /* Wipes the bar. */

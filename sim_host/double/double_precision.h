@@ -19,7 +19,7 @@
 #define GOE_MAGNITUDE_BITS 0x7FFFFFFFu
 #define GOE_INFINITY_BITS 0x7F800000u
 
-/* Bits of x as a float: infinities and NaN stay what they are, and what no float can hold counts as infinite. */
+/* Bits of x as a float: infinities and NaN stay as they are, and a value beyond any float counts as infinite. */
 static inline uint32_t goe_bits(double x) {
     const float single = (float)x;
     uint32_t bits;

@@ -175,7 +175,7 @@ aircraft_state_t aircraft_advance(const aircraft_state_t *state, const controls_
     next = moved(&next, &k2, step_s / 3.0);
     next = moved(&next, &k3, step_s / 3.0);
     next = moved(&next, &k4, step_s / 6.0);
-    next.attitude = quat_normalised(next.attitude);
+    next.attitude = quat_normalized(next.attitude);
     return next;
 }
 
@@ -276,7 +276,7 @@ static double pitch_command(autopilot_t *autopilot, const guidance_t *guidance, 
                  pitch_limit);
 }
 
-/* Thrust of steady flight, to first order: the trimmed start is what it is compared with. */
+/* Thrust of steady flight, to first order: the reference is the trimmed start. */
 static double steady_thrust(double airspeed_mps, double climb_rad) {
     const double weight = MASS_KG * GRAVITY_MPS2;
     const double lift = lift_coefficient_of(airspeed_mps, weight * cos(climb_rad));

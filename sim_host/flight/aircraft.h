@@ -76,7 +76,7 @@ bool aircraft_trim(double airspeed_mps, double climb_rad, double *alpha_rad, con
 bool aircraft_start(aircraft_t *aircraft, vec3_t position_ned_m, double airspeed_mps, double climb_rad,
                     double course_rad, vec3_t wind_ned_mps);
 
-/* Sets aircraft->command from the state and what is to be held; once a step. */
+/* Sets aircraft->command from the state and the commanded values; once a step. */
 void aircraft_autopilot(aircraft_t *aircraft, const guidance_t *wanted, const air_t *air);
 
 /* Moves the state on under constant commands and air. step_s <= AIRCRAFT_STEP_S. */

@@ -1,6 +1,6 @@
 /*
  * Pinhole camera with Brown-Conrady lens on an aircraft, in OpenCV's conventions: camera axes x right, y down, z along
- * the optical axis; the centre of the top left pixel is (0, 0), so the image covers -0.5 <= u < width - 0.5.
+ * the optical axis; the center of the top left pixel is (0, 0), so the image covers -0.5 <= u < width - 0.5.
  *
  * Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT
  */
@@ -41,7 +41,7 @@ camera_t camera_default(void);
 /* To be called after any change of the lens. */
 void camera_prepare(camera_t *camera);
 
-/* Null if the camera can be used, otherwise the name of what is wrong. */
+/* Null if the camera can be used, otherwise the name of the invalid value. */
 const char *camera_fault(const camera_t *camera);
 
 view_t camera_view(const camera_t *camera, const pose_t *pose);

@@ -262,7 +262,7 @@ static int choose_camera(const flight_case_t *setup, const obstacle_t *obstacle,
     return best;
 }
 
-/* What the image holds of the obstacle, from frame->truth. */
+/* The image features of the obstacle, from frame->truth. */
 static void look(const flight_case_t *setup, const flight_log_t *log, sensors_t *sensors, double t_s,
                  flight_frame_t *frame) {
     frame->camera = choose_camera(setup, &log->obstacle, &frame->truth);
@@ -418,17 +418,17 @@ const char *flight_case_fly(const flight_case_t *given, flight_log_t *log) {
     return fault;
 }
 
-const char *neighbour_fault(const neighbour_t *neighbour) {
-    if (!within(neighbour->x0_m, -1e5, 1e5) || !within(neighbour->z0_m, -1e5, 1e5)) {
+const char *neighbor_fault(const neighbor_t *neighbor) {
+    if (!within(neighbor->x0_m, -1e5, 1e5) || !within(neighbor->z0_m, -1e5, 1e5)) {
         return "x0 and z0: must lie within +-100000 m";
     }
-    return within(neighbour->alpha_deg, -360.0, 360.0) ? NULL : "alpha: must be -360 to 360 deg";
+    return within(neighbor->alpha_deg, -360.0, 360.0) ? NULL : "alpha: must be -360 to 360 deg";
 }
 
-const char *flight_log_of_neighbour(const flight_case_t *setup, const flight_log_t *flown, const neighbour_t *neighbour,
-                                    uint64_t seed, flight_log_t *log) {
+const char *flight_log_of_neighbor(const flight_case_t *setup, const flight_log_t *flown, const neighbor_t *neighbor,
+                                   uint64_t seed, flight_log_t *log) {
     memset(log, 0, sizeof *log);
-    const char *fault = neighbour_fault(neighbour);
+    const char *fault = neighbor_fault(neighbor);
     if (fault != NULL) {
         return fault;
     }
@@ -442,10 +442,10 @@ const char *flight_log_of_neighbour(const flight_case_t *setup, const flight_log
     }
     log->origin_ned_m = flown->origin_ned_m;
     log->course_rad = flown->course_rad;
-    log->obstacle = neighbour->obstacle;
-    const vec3_t center = vec3_add(log->origin_ned_m, to_ned(log->course_rad, neighbour->z0_m, -neighbour->x0_m, 0.0));
+    log->obstacle = neighbor->obstacle;
+    const vec3_t center = vec3_add(log->origin_ned_m, to_ned(log->course_rad, neighbor->z0_m, -neighbor->x0_m, 0.0));
     obstacle_place(&log->obstacle, center.x, center.y, flown->obstacle.ground_d_m,
-                   log->course_rad + radians(neighbour->alpha_deg));
+                   log->course_rad + radians(neighbor->alpha_deg));
     sensors_t sensors = sensors_start(&setup->noise, seed);
     for (size_t k = 0; k < flown->count && log->ended == NULL; k++) {
         flight_frame_t frame = flown->frames[k];
@@ -458,7 +458,7 @@ const char *flight_log_of_neighbour(const flight_case_t *setup, const flight_log
             log->frames[log->count++] = frame;
         }
     }
-    settle_truth(&prepared, neighbour->alpha_deg, log);
+    settle_truth(&prepared, neighbor->alpha_deg, log);
     return NULL;
 }
 

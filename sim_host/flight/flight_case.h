@@ -1,24 +1,24 @@
 /*
  * One case: an aircraft flies past an obstacle, its camera and sensors turn that into frames.
  *
- *   seen from above; T's axes at the start of the run        Z = course
+ *   view from above; T's axes at the start of the run        Z = course
  *                                                             ^
- *                        obstacle's centre  o- - - - - - - - -|  Z0 = the way flown along the course by reach_s
+ *                        obstacle's center  o- - - - - - - - -|  Z0 = the way flown along the course by reach_s
  *                                           |<---- x0_m ----->|       (speed times reach_s for constant speed)
  *                                             (left: positive)|
  *                                                             o---> X   path start, north 0 east 0; ground at down 0
  *
- * x0_m is the paper's side distance: positive is to the LEFT of the course; in T's axes X0 = -x0_m. Both refer to the centre
- * of the obstacle's base. alpha_deg turns the length axis from the course, clockwise seen from above.
+ * x0_m is the paper's side distance: positive is to the LEFT of the course; in T's axes X0 = -x0_m. Both refer to the center
+ * of the obstacle's base. alpha_deg turns the length axis from the course, clockwise as viewed from above.
  * speed_mps is the speed over the ground in still air, also on a slope. The slope is fixed in space and passes the obstacle's
  * Z at altitude_m over the ground.
- * In wind or turbulence the aircraft flies in the same air for RUN_IN_S before the start, so that it begins as disturbed as it
+ * In wind or turbulence the aircraft flies in the same air for RUN_IN_S before the start, to begin as disturbed as it
  * goes on; then its position (not its motion) is put on the path's start.
  * A rolling aircraft: from the start of the run a sine is added to the flown roll angle. It turns the camera and leaves the
- * path as it is: the sway of a whole roll period at usual rates is less than a metre.
+ * path as it is: the sway of a whole roll period at usual rates is less than a meter.
  * With two cameras, every image is taken by both, and the row is that of the camera that sees the whole obstacle; if both or
- * neither do, of the one whose axis is nearer to its middle. The detector's error goes on over the change: it is the worse for
- * an estimator that what one camera gets wrong the other gets wrong alike.
+ * neither do, of the one whose axis is nearer to its middle. The detector's error continues over the change: the cameras
+ * share it, which is worse for an estimator.
  * With a recording, the camera sees from the recorded true pose and the log carries the recorded estimate. Z then points from
  * the true place at the start to the one at reach_s, whose distance is Z0, unless course or z0 are given. Path, speed, slope,
  * wind, roll and the pose part of the noise do not apply.
@@ -81,8 +81,8 @@ typedef struct {
     obstacle_t obstacle; /* placed */
     vec3_t origin_ned_m; /* where the path starts: x0_m and z0_m of all obstacles are from there */
     double course_rad;
-    /* in T's axes, from the true camera of the first frame: centre of the base, middle of the near base edge across the
-     * length axis (line model's reference; of a cylinder the centre) */
+    /* in T's axes, from the true camera of the first frame: center of the base, middle of the near base edge across the
+     * length axis (line model's reference; of a cylinder the center) */
     double x0_m, z0_m, front_x0_m, front_z0_m;
     double orientation_deg; /* length axis from Z, -90 < b <= 90 */
     const char *ended;      /* null, or why the flight ended before run_s */
@@ -103,20 +103,20 @@ const char *flight_case_fault(const flight_case_t *setup);
  * flown in several threads at once. */
 const char *flight_case_fly(const flight_case_t *given, flight_log_t *log);
 
-/* Another obstacle beside that of a flight. */
+/* Another obstacle in addition to that of a flight. */
 typedef struct {
     obstacle_t obstacle;          /* its shape */
     double x0_m, z0_m, alpha_deg; /* as those of flight_case_t; z0_m must be known */
-} neighbour_t;
+} neighbor_t;
 
 /* Null if it can be placed, otherwise why not. */
-const char *neighbour_fault(const neighbour_t *neighbour);
+const char *neighbor_fault(const neighbor_t *neighbor);
 
 /* What the camera of a flight that was flown with *setup shows of another obstacle on the same ground: times, poses and lost
  * frames are the flight's, pixels have errors of their own, drawn from seed. It ends where the aircraft is inside of the other
  * one. Returns null and fills *log (to be freed with flight_log_free), or says why not. */
-const char *flight_log_of_neighbour(const flight_case_t *setup, const flight_log_t *flown, const neighbour_t *neighbour,
-                                    uint64_t seed, flight_log_t *log);
+const char *flight_log_of_neighbor(const flight_case_t *setup, const flight_log_t *flown, const neighbor_t *neighbor,
+                                   uint64_t seed, flight_log_t *log);
 
 void flight_log_free(flight_log_t *log);
 

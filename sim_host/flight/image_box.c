@@ -5,7 +5,7 @@
 #include <string.h>
 
 #define CURVES_MAX 12 /* edges of a box; of a cylinder two rims and two lines on the wall are enough */
-#define STEPS 32      /* a curve is first looked at so often; the best place is then refined */
+#define STEPS 32      /* a curve is first looked at so often; the best place is then filter */
 #define HALVINGS 50   /* of a step: down to rounding */
 #define THIRDS 40     /* of two steps: (2/3)^40 is 1e-7, of which the square counts */
 #define LEAST_PX 2.0  /* width and height of what a detector finds */
@@ -101,7 +101,7 @@ static void include_end(const outline_t *outline, extreme_t extremes[SIDE_COUNT]
 }
 
 static void look_along(const outline_t *outline, extreme_t extremes[SIDE_COUNT], const curve_t *curve) {
-    bool was_seen = false;
+    bool was_visible = false;
     for (int i = 0; i <= STEPS; i++) {
         const double s = (double)i / STEPS, before = (double)(i - 1) / STEPS;
         double pixel[2];
@@ -109,14 +109,14 @@ static void look_along(const outline_t *outline, extreme_t extremes[SIDE_COUNT],
         if (seen) {
             include(extremes, s, pixel);
         }
-        if (i > 0 && seen != was_seen) {
+        if (i > 0 && seen != was_visible) {
             include_end(outline, extremes, curve, seen ? s : before, seen ? before : s);
         }
-        was_seen = seen;
+        was_visible = seen;
     }
 }
 
-/* Of a straight edge with an image all along, which its ends tell as the field is convex. */
+/* Of a straight edge that is entirely visible, shown by its ends as the field is convex. */
 static bool look_at_ends(const outline_t *outline, extreme_t extremes[SIDE_COUNT], const curve_t *edge) {
     double from[2], to[2];
     if (!see(outline, edge, 0.0, from) || !see(outline, edge, 1.0, to)) {
@@ -133,7 +133,7 @@ static double out_at(const outline_t *outline, const curve_t *curve, double s, i
 }
 
 /* How far a curve reaches towards a side: near the best step it turns back once. */
-static double refined(const outline_t *outline, const curve_t *curve, const extreme_t *best, int side) {
+static double filter(const outline_t *outline, const curve_t *curve, const extreme_t *best, int side) {
     double low = best->s - 1.0 / STEPS, high = best->s + 1.0 / STEPS;
     if (!(curve->radius_m > 0.0)) { /* an edge ends, a rim goes round */
         low = fmax(low, 0.0);
@@ -210,7 +210,7 @@ static bool include_rim(const outline_t *outline, double out_px[SIDE_COUNT], con
 
 /* ------------------------------------------------------------------------------------------------------- all curves -- */
 
-/* Every curve is refined, not the best of them alone: where a rim meets the wall, the rim's farthest point may lie between two
+/* Every curve is filter, not the best of them alone: where a rim meets the wall, the rim's farthest point may lie between two
  * steps and reach farther than the wall's end. */
 static void include_curve(const outline_t *outline, double out_px[SIDE_COUNT], const curve_t *curve) {
     extreme_t extremes[SIDE_COUNT];
@@ -227,7 +227,7 @@ static void include_curve(const outline_t *outline, double out_px[SIDE_COUNT], c
     }
     for (int side = 0; side < SIDE_COUNT && isfinite(extremes[side].out_px); side++) {
         const extreme_t *best = &extremes[side];
-        out_px[side] = fmax(out_px[side], bent ? refined(outline, curve, best, side) : best->out_px);
+        out_px[side] = fmax(out_px[side], bent ? filter(outline, curve, best, side) : best->out_px);
     }
 }
 

@@ -42,7 +42,7 @@ static extent_t extent_empty(void) {
 
 static void extent_include(extent_t *extent, const eye_t *eye, vec3_t point) {
     feature_t image;
-    /* a point without an image lies beyond the left or the right margin: +-HUGE_VAL keeps that side from being seen */
+    /* a point without an image lies beyond the left or the right margin: +-HUGE_VAL makes that side invisible */
     (void)camera_project(eye->camera, eye->view, point, &image.u_px, &image.v_px);
     image.seen = camera_in_image(eye->camera, image.u_px, image.v_px);
     if (image.u_px < extent->left.u_px) {

@@ -9,8 +9,8 @@
  *   base_left, base_near, base_right   box only: base corners of the one or two walls that the camera sees; near only if it
  *                 sees two
  *
- * A feature whose image lies outside the frame, behind the camera, or outside the lens model's field is not seen. From
- * inside the obstacle nothing is seen; from straight above it no base corner is.
+ * A feature whose image lies outside the frame, behind the camera, or outside the lens model's field is not visible. From
+ * inside the obstacle nothing is visible; from straight above it no base corner is.
  *
  * Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT
  */
@@ -33,7 +33,7 @@ enum {
 };
 
 typedef struct {
-    double u_px, v_px; /* 0 if not seen */
+    double u_px, v_px; /* 0 if not visible */
     bool seen;
 } feature_t;
 

@@ -184,7 +184,7 @@ static void write_truth(FILE *file, const flight_case_t *setup, const flight_log
     for (size_t track = 0; track < logs->count; track++) {
         const flight_log_t *log = &logs->log[track];
         const obstacle_t *o = &log->obstacle;
-        const bool is_box = o->kind == OBSTACLE_BOX; /* what is round has neither sides nor an orientation */
+        const bool is_box = o->kind == OBSTACLE_BOX; /* a round obstacle has neither sides nor an orientation */
         (void)fprintf(file, "%d,1", LOG_TRACK_ID + (int)track);
         put(file, o->center_n_m);
         put(file, o->center_e_m);
@@ -409,7 +409,7 @@ bool log_write(const char *folder, const flight_case_t *setup, const flight_logs
         (void)snprintf(fault, fault_size, "%s: %s", place, reason);
         return false;
     }
-    /* An interrupt waits until the log stands or is gone: it must not leave a half of it behind. */
+    /* An interrupt waits until the log is complete or gone: it must not leave a half of it behind. */
     sigset_t interrupts, before;
     (void)sigemptyset(&interrupts);
     (void)sigaddset(&interrupts, SIGINT);

@@ -20,7 +20,7 @@ static const named_shape_t NAMED_SHAPES[] = {
     {"long-truck", OBSTACLE_BOX, 2.5, 18.0, 4.0},
 };
 
-/* corner -> side of the centre along the width and the length axis */
+/* corner -> side of the center along the width and the length axis */
 static const double CORNER_WIDTH[4] = {-0.5, -0.5, 0.5, 0.5};
 static const double CORNER_LENGTH[4] = {-0.5, 0.5, 0.5, -0.5};
 
@@ -67,7 +67,7 @@ vec3_t obstacle_corner(const obstacle_t *box, int corner, bool top) {
     return point;
 }
 
-/* The point in the box's own axes, from its centre. */
+/* The point in the box's own axes, from its center. */
 static void to_own_axes(const obstacle_t *box, vec3_t point, double *along_width, double *along_length) {
     const double c = cos(box->heading_rad), s = sin(box->heading_rad);
     const double n = point.x - box->center_n_m, e = point.y - box->center_e_m;

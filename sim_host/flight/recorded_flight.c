@@ -65,7 +65,7 @@ static pose_t pose_of(reader_t *reader, int first) {
     if (!(fabs(sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z) - 1.0) <= NORM_TOLERANCE)) {
         FAIL(reader, columns[first + 3].name, "norm of the quaternion is off 1 by more than 1 %%");
     }
-    pose.attitude = quat_normalised(q);
+    pose.attitude = quat_normalized(q);
     return pose;
 }
 

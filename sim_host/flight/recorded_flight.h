@@ -1,5 +1,5 @@
 /*
- * A flight recorded elsewhere: what was true and what the autopilot believed, side by side.
+ * A flight recorded elsewhere: the true and the estimated motion, side by side.
  *
  * CSV with a header line; columns in any order, others ignored:
  * t_s, true_{n,e,d}_m, true_q{w,x,y,z}, est_{n,e,d}_m, est_q{w,x,y,z}; NED, Hamilton, body FRD -> NED. Times within

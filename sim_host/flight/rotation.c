@@ -93,7 +93,7 @@ quat_t quat_multiply(quat_t a, quat_t b) {
     return q;
 }
 
-quat_t quat_normalised(quat_t q) {
+quat_t quat_normalized(quat_t q) {
     const double scale = 1.0 / sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
     quat_t unit = {q.w * scale, q.x * scale, q.y * scale, q.z * scale};
     return unit;
@@ -122,5 +122,5 @@ quat_t quat_interpolate(quat_t a, quat_t b, double fraction) {
     share_b *= sign;
     quat_t q = {share_a * a.w + share_b * b.w, share_a * a.x + share_b * b.x, share_a * a.y + share_b * b.y,
                 share_a * a.z + share_b * b.z};
-    return quat_normalised(q);
+    return quat_normalized(q);
 }

@@ -41,7 +41,7 @@ quat_t quat_from_euler(double roll, double pitch, double yaw); /* applied yaw, p
 void quat_to_euler(quat_t q, double *roll, double *pitch, double *yaw);
 quat_t quat_from_rotation_vector(vec3_t angle); /* radians about each axis */
 quat_t quat_multiply(quat_t a, quat_t b);
-quat_t quat_normalised(quat_t q);
+quat_t quat_normalized(quat_t q);
 mat3_t quat_to_matrix(quat_t q);
 quat_t quat_interpolate(quat_t a, quat_t b, double fraction); /* the short way round, of constant speed */
 

@@ -15,7 +15,7 @@
 #define SECTION_OBSTACLE "obstacle "
 
 /* Keys of an obstacle. */
-enum { KEY_WHAT, KEY_X0, KEY_Z0, KEY_ALPHA, OBSTACLE_KEYS };
+enum { KEY_KIND, KEY_X0, KEY_Z0, KEY_ALPHA, OBSTACLE_KEYS };
 static const char *const KEY_NAMES[OBSTACLE_KEYS] = {"what", "x0", "z0", "alpha"};
 
 typedef struct {
@@ -23,7 +23,7 @@ typedef struct {
     const char *path;
     scenario_option_t option;
     scenario_file_t *scenario;
-    unsigned long line_of[SCENARIO_NEIGHBOURS_MAX + 1]
+    unsigned long line_of[SCENARIO_NEIGHBORS_MAX + 1]
                          [OBSTACLE_KEYS]; /* where each obstacle's key was given; 0: nowhere */
     bool failed;
     char *fault;
@@ -73,7 +73,7 @@ static char *read_line(char *line, int size, void *user) {
 /* Number of an "obstacle N"; 0: it is none. */
 static int obstacle_number(const char *section) {
     double number = 0.0;
-    if (!text_numbers(section, SECTION_OBSTACLE, &number, 1) || number > (double)(SCENARIO_NEIGHBOURS_MAX + 1)) {
+    if (!text_numbers(section, SECTION_OBSTACLE, &number, 1) || number > (double)(SCENARIO_NEIGHBORS_MAX + 1)) {
         return 0;
     }
     return number >= 1.0 && floor(number) >= number ? (int)number : 0;
@@ -101,26 +101,26 @@ static void take_option(scenario_reader_t *reader, const char *key, const char *
 /* The first obstacle is the command line's. */
 static void take_first(scenario_reader_t *reader, int key, const char *value) {
     obstacle_t shape;
-    if (key == KEY_WHAT && !obstacle_parse(value, &shape)) {
+    if (key == KEY_KIND && !obstacle_parse(value, &shape)) {
         fail(reader, KEY_NAMES[key], "'%s' is not %s", value, OBSTACLE_FORMS);
     } else {
-        take_option(reader, KEY_NAMES[key], key == KEY_WHAT ? "obstacle" : KEY_NAMES[key], value);
+        take_option(reader, KEY_NAMES[key], key == KEY_KIND ? "obstacle" : KEY_NAMES[key], value);
     }
 }
 
-static void take_neighbour(scenario_reader_t *reader, int i, int key, const char *value) {
-    neighbour_t *neighbour = &reader->scenario->neighbour[i];
-    double *const numbers[OBSTACLE_KEYS] = {NULL, &neighbour->x0_m, &neighbour->z0_m, &neighbour->alpha_deg};
-    if (i >= reader->scenario->neighbours) {
-        reader->scenario->neighbours = i + 1;
-        neighbour->z0_m = (double)NAN;
+static void take_neighbor(scenario_reader_t *reader, int i, int key, const char *value) {
+    neighbor_t *neighbor = &reader->scenario->neighbor[i];
+    double *const numbers[OBSTACLE_KEYS] = {NULL, &neighbor->x0_m, &neighbor->z0_m, &neighbor->alpha_deg};
+    if (i >= reader->scenario->neighbors) {
+        reader->scenario->neighbors = i + 1;
+        neighbor->z0_m = (double)NAN;
     }
-    if (key == KEY_WHAT && !obstacle_parse(value, &neighbour->obstacle)) {
+    if (key == KEY_KIND && !obstacle_parse(value, &neighbor->obstacle)) {
         fail(reader, KEY_NAMES[key], "'%s' is not %s", value, OBSTACLE_FORMS);
-    } else if (key != KEY_WHAT && !text_numbers(value, "", numbers[key], 1)) {
+    } else if (key != KEY_KIND && !text_numbers(value, "", numbers[key], 1)) {
         fail(reader, KEY_NAMES[key], "'%s' is not a number", value);
     } else if (key == KEY_X0) {
-        neighbour->x0_m = 0.0 - neighbour->x0_m; /* as --x0, right is positive; in a case, left */
+        neighbor->x0_m = 0.0 - neighbor->x0_m; /* as --x0, right is positive; in a case, left */
     }
 }
 
@@ -134,12 +134,12 @@ static void take_obstacle(scenario_reader_t *reader, int number, const char *nam
         fail(reader, name, "an obstacle has what, x0, z0 and alpha");
     } else if (lines[key] != 0) {
         fail(reader, name, "[obstacle %d] has it twice, first in line %lu", number, lines[key]);
-    } else if (number > reader->scenario->neighbours + 2 || (number == 2 && first_line(reader, 0) == 0)) {
+    } else if (number > reader->scenario->neighbors + 2 || (number == 2 && first_line(reader, 0) == 0)) {
         fail(reader, name, "obstacle %d comes before obstacle %d", number, number - 1);
     } else if (number == 1) {
         take_first(reader, key, value);
     } else {
-        take_neighbour(reader, number - 2, key, value);
+        take_neighbor(reader, number - 2, key, value);
     }
     if (key < OBSTACLE_KEYS) {
         lines[key] = reader->lines.number;
@@ -156,17 +156,17 @@ static int on_key(void *user, const char *section, const char *key, const char *
         take_obstacle(reader, number, key, value);
     } else {
         fail(reader, key, "[%s] is neither [flight] nor [obstacle 1] to [obstacle %d]", section,
-             SCENARIO_NEIGHBOURS_MAX + 1);
+             SCENARIO_NEIGHBORS_MAX + 1);
     }
     return !reader->failed;
 }
 
-static void check_neighbours(scenario_reader_t *reader) {
-    for (int i = 0; i < reader->scenario->neighbours && !reader->failed; i++) {
+static void check_neighbors(scenario_reader_t *reader) {
+    for (int i = 0; i < reader->scenario->neighbors && !reader->failed; i++) {
         const unsigned long *lines = reader->line_of[i + 1];
-        const char *reason = neighbour_fault(&reader->scenario->neighbour[i]);
-        if (lines[KEY_WHAT] == 0) {
-            reason = "what it is, is missing";
+        const char *reason = neighbor_fault(&reader->scenario->neighbor[i]);
+        if (lines[KEY_KIND] == 0) {
+            reason = "the kind of obstacle (what) is missing";
         } else if (lines[KEY_Z0] == 0) {
             reason = "z0 is missing";
         }
@@ -201,6 +201,6 @@ bool scenario_file_read(const char *path, scenario_option_t option, scenario_fil
         fail(&reader, NULL, "cannot be understood");
     }
     (void)fclose(reader.lines.stream);
-    check_neighbours(&reader);
+    check_neighbors(&reader);
     return !reader.failed;
 }

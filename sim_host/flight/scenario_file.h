@@ -23,7 +23,7 @@
 
 #include "flight_case.h"
 
-#define SCENARIO_NEIGHBOURS_MAX 15
+#define SCENARIO_NEIGHBORS_MAX 15
 #define SCENARIO_REASON_MAX 256
 
 /* Takes an option by its name, from this line; false: reason says why not. */
@@ -31,8 +31,8 @@ typedef bool (*scenario_option_t)(const char *name, const char *value, unsigned 
                                   char reason[SCENARIO_REASON_MAX]);
 
 typedef struct {
-    neighbour_t neighbour[SCENARIO_NEIGHBOURS_MAX]; /* obstacles from the second on */
-    int neighbours;
+    neighbor_t neighbor[SCENARIO_NEIGHBORS_MAX]; /* obstacles from the second on */
+    int neighbors;
 } scenario_file_t;
 
 /* The keys of [flight] and, as options obstacle, x0, z0 and alpha, those of the first obstacle go to option. False: fault is

@@ -136,7 +136,7 @@ pose_t sensors_pose(sensors_t *sensors, const pose_t *truth, double t_s) {
     return pose;
 }
 
-/* The detector's noise goes on from frame to frame whether or not a feature is seen. */
+/* The detector's noise continues from frame to frame whether or not a feature is visible. */
 static void step_detector(sensors_t *sensors) {
     const double keep = sensors->detector_started ? sensors->noise.detector_correlation : 0.0;
     const double fresh = sqrt(1.0 - keep * keep);
@@ -182,7 +182,7 @@ features_t sensors_features(sensors_t *sensors, const features_t *truth, const c
     return measured;
 }
 
-/* As step_detector, in time instead of frames: boxes of any image rate forget alike. */
+/* As step_detector, in time instead of frames: boxes of any image rate have the same correlation time. */
 static void step_box(sensors_t *sensors, double t_s) {
     const double constant_s = sensors->noise.box_correlation_s;
     const bool remembers = sensors->box_started && constant_s > 0.0;

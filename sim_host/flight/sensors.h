@@ -67,7 +67,7 @@ typedef struct {
  *              as measured on recorded feeds of detectors */
 bool sensor_noise_parse(const char *text, sensor_noise_t *noise);
 
-/* Null if the figures can be used, otherwise what is wrong. */
+/* Null if the figures can be used, otherwise the fault. */
 const char *sensor_noise_fault(const sensor_noise_t *noise);
 
 sensors_t sensors_start(const sensor_noise_t *noise, uint64_t seed);

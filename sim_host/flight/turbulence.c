@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#define METRES_PER_FOOT 0.3048
+#define METERS_PER_FOOT 0.3048
 #define MPS_PER_KNOT (1852.0 / 3600.0)
 #define LOWEST_FT 10.0
 #define HIGHEST_FT 1000.0
@@ -24,12 +24,12 @@ bool turbulence_parse(const char *text, double *w20_mps) {
 }
 
 turbulence_scale_t turbulence_scale(double w20_mps, double height_m) {
-    const double h = clamp(height_m / METRES_PER_FOOT, LOWEST_FT, HIGHEST_FT);
+    const double h = clamp(height_m / METERS_PER_FOOT, LOWEST_FT, HIGHEST_FT);
     const double shape = 0.177 + 0.000823 * h;
     turbulence_scale_t scale;
     scale.sigma_w_mps = 0.1 * w20_mps;
     scale.sigma_uv_mps = scale.sigma_w_mps / pow(shape, 0.4);
-    scale.scale_w_m = h * METRES_PER_FOOT;
+    scale.scale_w_m = h * METERS_PER_FOOT;
     scale.scale_uv_m = scale.scale_w_m / pow(shape, 1.2);
     return scale;
 }

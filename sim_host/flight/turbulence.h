@@ -25,7 +25,7 @@
 
 typedef struct {
     double w20_mps; /* 0 = still air */
-    double span_m;  /* of the aircraft: it averages out what is smaller */
+    double span_m;  /* of the aircraft: it averages out smaller scales */
     random_t random;
     double u;                 /* unit variance */
     double v_first, v_second; /* the two stages of the second-order filters, unit noise */

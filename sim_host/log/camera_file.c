@@ -66,7 +66,7 @@ typedef struct {
     input_error_t *error;
 } camera_reader_t;
 
-/* The first fault counts; what follows from it is not told. */
+/* The first fault counts; faults that follow from it are not reported. */
 #define FAIL(reader, line, ...)                                                                                        \
     do {                                                                                                               \
         if (!(reader)->failed) {                                                                                       \

@@ -41,13 +41,13 @@ static const quantity_t velocities[] = {
 #define ROW_MAX (LEADING_MAX + 2 * QUANTITIES * (NUMBER_TEXT_MAX + 1) + DOUBT_MAX + RESIDUALS_MAX + 1)
 
 bool estimate_write_header(FILE *stream, bool residuals) {
-    bool written = fputs("t_s,id,status,model,n_used", stream) >= 0;
+    bool written = fputs("t_s,id,status,model,images_used", stream) >= 0;
     for (size_t i = 0; i < QUANTITIES; i++) {
         written = fprintf(stream, ",%s,%s", quantities[i].name, quantities[i].sigma_name) >= 0 && written;
     }
     written = fputs(",suspect,reason", stream) >= 0 && written;
     if (residuals) {
-        written = fputs(",nis,nis_rows,misfit", stream) >= 0 && written;
+        written = fputs(",nis,nis_rows,nis_ratio", stream) >= 0 && written;
         for (size_t i = 0; i < VELOCITIES; i++) {
             written = fprintf(stream, ",%s,%s", velocities[i].name, velocities[i].sigma_name) >= 0 && written;
         }
@@ -100,8 +100,8 @@ static char *append_residuals(char *out, const goe_estimate_t *estimate) {
     *out++ = ',';
     out += number_format(out, (float)estimate->nis_rows);
     *out++ = ',';
-    if (estimate->misfit > 0.0f) {
-        out += number_format(out, estimate->misfit);
+    if (estimate->nis_ratio > 0.0f) {
+        out += number_format(out, estimate->nis_ratio);
     }
     for (size_t i = 0; i < VELOCITIES; i++) {
         out = append_quantity(out, estimate, &velocities[i]);
@@ -116,7 +116,7 @@ bool estimate_write_row(FILE *stream, const char *time_text, int64_t id, goe_sta
                         const goe_estimate_t *estimate, bool residuals) {
     char row[ROW_MAX];
     const int leading = snprintf(row, LEADING_MAX, "%s,%" PRId64 ",%s,%s,%d", time_text, id, goe_status_text(status),
-                                 model_text(estimate->model), estimate->points);
+                                 model_text(estimate->model), estimate->images_used);
     if (leading < 0 || leading >= LEADING_MAX) {
         return false;
     }

@@ -26,14 +26,14 @@ static float pose_value(const frame_t *frame, frame_value_t name) {
 static goe_pixel_t image_point(const frame_t *frame, frame_value_t name_u) {
     const frame_value_t name_v = (frame_value_t)(name_u + 1);
     goe_pixel_t point = {0.0f, 0.0f, frame->given[name_u] && frame->given[name_v]};
-    if (point.seen) {
+    if (point.visible) {
         point.u_px = number_to_float(frame->value[name_u]);
         point.v_px = number_to_float(frame->value[name_v]);
     }
     return point;
 }
 
-/* A side of the box: tells its bit, 0 if it is not seen. */
+/* A side of the box: returns its bit, 0 if it is not visible. */
 static unsigned box_side(const frame_t *frame, frame_value_t name, unsigned bit, float *side_px) {
     if (!frame->given[name]) {
         return 0;
@@ -43,11 +43,11 @@ static unsigned box_side(const frame_t *frame, frame_value_t name, unsigned bit,
 }
 
 static void read_box(const frame_t *frame, goe_box_t *box) {
-    unsigned seen = box_side(frame, FRAME_BOX_LEFT_PX, GOE_SEES_LEFT, &box->left_px);
-    seen |= box_side(frame, FRAME_BOX_TOP_PX, GOE_SEES_TOP, &box->top_px);
-    seen |= box_side(frame, FRAME_BOX_RIGHT_PX, GOE_SEES_RIGHT, &box->right_px);
-    seen |= box_side(frame, FRAME_BOX_BOTTOM_PX, GOE_SEES_BOTTOM, &box->bottom_px);
-    box->seen = (uint8_t)seen;
+    unsigned seen = box_side(frame, FRAME_BOX_LEFT_PX, GOE_SIDE_LEFT, &box->left_px);
+    seen |= box_side(frame, FRAME_BOX_TOP_PX, GOE_SIDE_TOP, &box->top_px);
+    seen |= box_side(frame, FRAME_BOX_RIGHT_PX, GOE_SIDE_RIGHT, &box->right_px);
+    seen |= box_side(frame, FRAME_BOX_BOTTOM_PX, GOE_SIDE_BOTTOM, &box->bottom_px);
+    box->sides = (uint8_t)seen;
 }
 
 static void read_reset(const frame_t *frame, goe_pose_t *pose) {

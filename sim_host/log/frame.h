@@ -58,10 +58,10 @@ typedef struct {
     bool given[FRAME_VALUES];   /* false: the field is empty or the column absent; value means nothing */
 } frame_t;
 
-/* What the library is shown. An image point is seen if both coordinates are given, a side of the box if its number is. A
+/* The library's input. An image point is visible if both coordinates are given, a side of the box if its number is. A
  * missing pose value becomes NaN and a time that is not finite or does not fit microseconds GOE_TIME_UNKNOWN, both of which
  * the library refuses. agl_m not given: -d_m. The jump of a reset is known if all three of its numbers are given; of the
- * count the lowest 8 bits go on, as counters wrap at any width. A camera's number that does not fit becomes one that no camera
+ * count only the lowest 8 bits are used, as counters wrap at any width. A camera's number that does not fit becomes one that no camera
  * has. */
 void frame_to_image(const frame_t *frame, goe_image_t *image);
 

@@ -12,7 +12,7 @@ typedef struct frame_reader frame_reader_t;
 typedef enum {
     FRAME_READER_ROW,  /* *frame holds the next row */
     FRAME_READER_END,  /* no more rows */
-    FRAME_READER_ERROR /* *error says what is wrong and where; so will every further call */
+    FRAME_READER_ERROR /* *error gives the fault and its position; every further call returns it again */
 } frame_reader_result_t;
 
 /* Opens the file and checks its header line. A row of none of the so many cameras is an error: the two files of the log do not

@@ -1,5 +1,5 @@
-/* What looks wrong in a log although it can be read: other units, other signs, another order of the quaternion. Nothing is refused for
- * it: a hint says what was seen and what to do. SPDX-License-Identifier: MIT */
+/* Suspicious content of a readable log: other units, other signs, another order of the quaternion. Nothing is refused for
+ * it: a hint describes the observation and the remedy. SPDX-License-Identifier: MIT */
 #ifndef LOG_HINTS_H
 #define LOG_HINTS_H
 
@@ -16,7 +16,7 @@ typedef struct {
     double way_m; /* flown, level */
     double anchor[2];
     unsigned long moves, odd,
-        odd_as_xyzw; /* of a metre; against the nose or tilted; the same with the quaternion's parts moved */
+        odd_as_xyzw; /* of a meter; against the nose or tilted; the same with the quaternion's parts moved */
     unsigned long heights, below; /* images with agl_m; images without it that are below the ground */
     double up[2], agl[2], up_agl; /* sums of -d_m and agl_m from the first, of their squares and of their products */
     double first_up, first_agl;

@@ -9,6 +9,7 @@
 #include "input_error.h"
 #include "nearest_name.h"
 #include "number_text.h"
+#include "renamed_names.h"
 
 #define WHOLE_MAX 1.0e6
 #define LINE_MAX_LENGTH 100
@@ -30,13 +31,13 @@ typedef struct {
 
 /* The tuned ones first: the others have places of their own in logs and options. */
 static const setting_t settings_by_name[] = {
-    GOE_SETTINGS_REFINED(SETTING) GOE_SETTINGS_VELOCITY(SETTING) /* all of one list */
+    GOE_SETTINGS_FILTER(SETTING) GOE_SETTINGS_VELOCITY(SETTING) /* all of one list */
     GOE_SETTINGS_WINDOW(SETTING) GOE_SETTINGS_GENERAL(SETTING) GOE_SETTINGS_CAMERA(SETTING)};
 #define SETTINGS (sizeof settings_by_name / sizeof settings_by_name[0])
 
 static size_t count_tuned(void) {
 #define ONE(field, kind, unit, low, high, value, text) 1,
-    static const char tuned[] = {GOE_SETTINGS_REFINED(ONE) GOE_SETTINGS_VELOCITY(ONE) GOE_SETTINGS_WINDOW(ONE)};
+    static const char tuned[] = {GOE_SETTINGS_FILTER(ONE) GOE_SETTINGS_VELOCITY(ONE) GOE_SETTINGS_WINDOW(ONE)};
     return sizeof tuned;
 #undef ONE
 }
@@ -95,8 +96,13 @@ static void append(setting_fault_t *fault, const char *text) {
     (void)snprintf(fault->text + used, sizeof fault->text - used, "%s", text);
 }
 
-static bool tell_names(const char *name, size_t length, setting_fault_t *fault) {
+static bool list_names(const char *name, size_t length, setting_fault_t *fault) {
     const excerpt_t excerpt = excerpt_of(name, length);
+    const char *now = renamed_name(name, length);
+    if (now != NULL) {
+        (void)snprintf(fault->text, sizeof fault->text, "unknown setting %s: now %s", excerpt.text, now);
+        return false;
+    }
     nearest_name_t nearest = nearest_name_of(name, length);
     for (size_t i = 0; i < count_tuned(); i++) {
         nearest_name_try(&nearest, settings_by_name[i].name);
@@ -114,7 +120,7 @@ static bool tell_names(const char *name, size_t length, setting_fault_t *fault) 
     return false;
 }
 
-static bool tell_value(const setting_t *setting, const char *text, const char *reason, setting_fault_t *fault) {
+static bool describe_value(const setting_t *setting, const char *text, const char *reason, setting_fault_t *fault) {
     const excerpt_t excerpt = excerpt_of(text, strlen(text));
     (void)snprintf(fault->text, sizeof fault->text, "%s: '%s' is not %s", setting->name, excerpt.text, reason);
     return false;
@@ -124,7 +130,7 @@ bool setting_assign(goe_settings_t *settings, const char *assignment, setting_fa
     const size_t length = strcspn(assignment, "=");
     const setting_t *setting = find_setting(assignment, length, count_tuned());
     if (setting == NULL) {
-        return tell_names(assignment, length, fault);
+        return list_names(assignment, length, fault);
     }
     if (assignment[length] == '\0') {
         (void)snprintf(fault->text, sizeof fault->text, "%s: no value; write %s=VALUE", setting->name, setting->name);
@@ -133,10 +139,10 @@ bool setting_assign(goe_settings_t *settings, const char *assignment, setting_fa
     const char *text = assignment + length + 1u;
     double value = 0.0;
     if (!number_parse(text, strlen(text), &value)) {
-        return tell_value(setting, text, "a number", fault);
+        return describe_value(setting, text, "a number", fault);
     }
     if (!suits(setting, value)) {
-        return tell_value(setting, text, setting->kind == KIND_TRUTH ? "0 or 1" : "a whole number", fault);
+        return describe_value(setting, text, setting->kind == KIND_TRUTH ? "0 or 1" : "a whole number", fault);
     }
     store(settings, setting, value);
     return true;
@@ -144,7 +150,7 @@ bool setting_assign(goe_settings_t *settings, const char *assignment, setting_fa
 
 /* ------------------------------------------------------------------------------------------------------------ range -- */
 
-/* The name of the first setting beside the camera that goe_init() refuses; null if it refuses none. */
+/* The name of the first setting, camera excluded, that goe_init() refuses; null if it refuses none. */
 static const char *first_refused(const goe_settings_t *settings) {
     goe_settings_t trial = *settings;
     goe_estimator_t estimator;

@@ -12,7 +12,7 @@ typedef struct {
     char text[1024];
 } setting_fault_t;
 
-/* Takes "NAME=VALUE" of the settings to be tuned: navigation, detector, refined and window; the others have places of their own
+/* Takes "NAME=VALUE" of the settings to be tuned: navigation, detector, filter and window; the others have places of their own
  * in logs and options. False, and nothing set: *fault says why. */
 bool setting_assign(goe_settings_t *settings, const char *assignment, setting_fault_t *fault);
 

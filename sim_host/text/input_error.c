@@ -1,4 +1,4 @@
-/* What is wrong with an input file, and where. SPDX-License-Identifier: MIT */
+/* A fault of an input file, with its position. SPDX-License-Identifier: MIT */
 #include "input_error.h"
 
 #include <stdarg.h>
@@ -43,8 +43,8 @@ void input_error_first(bool *failed, input_error_t *error, const char *file, uns
 
 excerpt_t excerpt_of(const char *text, size_t length) {
     excerpt_t excerpt;
-    const size_t room = sizeof excerpt.text - sizeof ELLIPSIS;
-    const size_t kept = length < room ? length : room;
+    const size_t capacity = sizeof excerpt.text - sizeof ELLIPSIS;
+    const size_t kept = length < capacity ? length : capacity;
     for (size_t i = 0; i < kept; i++) {
         const unsigned char c = (unsigned char)text[i];
         excerpt.text[i] = c >= 0x20u && c < 0x7fu ? text[i] : '?';

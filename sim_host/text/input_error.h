@@ -1,4 +1,4 @@
-/* What is wrong with an input file, and where. SPDX-License-Identifier: MIT */
+/* A fault of an input file, with its position. SPDX-License-Identifier: MIT */
 #ifndef INPUT_ERROR_H
 #define INPUT_ERROR_H
 
@@ -21,7 +21,7 @@ typedef struct {
 void input_error_set(input_error_t *error, const char *file, unsigned long line, const char *column, const char *format,
                      ...) INPUT_ERROR_FORMAT(5);
 
-/* The same for a reader that goes on: of its faults the first is told. Nothing happens if *failed; else it becomes true. */
+/* The same for a reader that continues: it reports the first fault. Nothing happens if *failed; else it becomes true. */
 void input_error_first(bool *failed, input_error_t *error, const char *file, unsigned long line, const char *column,
                        const char *format, ...) INPUT_ERROR_FORMAT(6);
 

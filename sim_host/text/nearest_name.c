@@ -15,7 +15,7 @@ static size_t least(size_t a, size_t b) { return a < b ? a : b; }
 
 static int at(const char *text, size_t i) { return tolower((unsigned char)text[i]); }
 
-/* Optimal string alignment: as Levenshtein's, and two neighbours that are swapped are one edit. Neither longer than
+/* Optimal string alignment: as Levenshtein's, and a swap of two neighbors is one edit. Neither longer than
  * NEAREST_WORD_MAX. */
 static size_t edits_between(const char *a, size_t a_length, const char *b, size_t b_length) {
     size_t rows[3][NEAREST_WORD_MAX + 1]; /* of two characters ago, of the one before, of this one */

@@ -10,7 +10,7 @@ typedef struct {
     const char *word;
     size_t length;
     const char *name; /* the nearest so far; null: none near enough */
-    size_t edits;     /* characters to change, insert or leave out, and neighbours to swap, from word to name */
+    size_t edits;     /* characters to change, insert or leave out, and neighbors to swap, from word to name */
 } nearest_name_t;
 
 /* The word need not end with a zero; it must outlive the search. */

@@ -88,7 +88,7 @@ static uint64_t scaled(float magnitude, int power) {
     return quotient + (remainder > half || (remainder == half && (quotient & 1u) != 0) ? 1u : 0u);
 }
 
-/* Decimal exponent of a number of the fixed range. A power of ten below 1 is no float: the nearest double above stands
+/* Decimal exponent of a number of the fixed range. A power of ten below 1 is no float: the nearest double above is
  * between the same two floats. */
 static int decimal_exponent(float magnitude) {
     static const double power_of_ten[] = {1e-3, 1e-2, 1e-1, 1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8};

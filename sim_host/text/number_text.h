@@ -16,7 +16,7 @@ bool integer_parse(const char *text, size_t length, int64_t *value);
 /* The nearest float; infinite beyond float's range. */
 float number_to_float(double value);
 
-#define NUMBER_TEXT_MAX 24 /* room that number_format() needs */
+#define NUMBER_TEXT_MAX 24 /* bytes that number_format() needs */
 
 /* Writes exactly what printf("%.9g") writes, so that a float survives the round trip, several times faster.
  * Returns the number of characters; no NUL is written. */

@@ -31,7 +31,7 @@ const char *option_blamed(poptContext context, int argc, const char *const *argv
     return bad;
 }
 
-static void tell(char *text, size_t room, const struct poptOption *table, const char *word, const char *value,
+static void tell(char *text, size_t capacity, const struct poptOption *table, const char *word, const char *value,
                  int error, const char *dashes) {
     const char *quote = value != NULL ? " '" : "";
     nearest_name_t nearest = nearest_name_of(word, strcspn(word, "="));
@@ -43,13 +43,13 @@ static void tell(char *text, size_t room, const struct poptOption *table, const 
     }
     const bool guess = error == POPT_ERROR_BADOPT && nearest.name != NULL;
     const excerpt_t shown = excerpt_of(value != NULL ? value : "", value != NULL ? strlen(value) : 0u);
-    (void)snprintf(text, room, "%s%s%s%s%s%s%s%s", poptStrerror(error), quote, shown.text, value != NULL ? "'" : "",
+    (void)snprintf(text, capacity, "%s%s%s%s%s%s%s%s", poptStrerror(error), quote, shown.text, value != NULL ? "'" : "",
                    guess ? "; did you mean " : "", guess ? dashes : "", guess ? nearest.name : "", guess ? "?" : "");
 }
 
-void option_fault_bare(char *text, size_t room, const struct poptOption *table, const char *name, const char *value,
+void option_fault_bare(char *text, size_t capacity, const struct poptOption *table, const char *name, const char *value,
                        int error) {
-    tell(text, room, table, name, error != POPT_ERROR_BADOPT ? value : NULL, error, "");
+    tell(text, capacity, table, name, error != POPT_ERROR_BADOPT ? value : NULL, error, "");
 }
 
 void option_fault(char text[OPTION_FAULT_MAX], poptContext context, const struct poptOption *table, const char *bad,

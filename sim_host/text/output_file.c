@@ -31,7 +31,7 @@ static void on_interrupt(int number) {
     (void)raise(number); /* SA_RESETHAND: the default action ends the program, as soon as this returns */
 }
 
-/* What the caller's shell told the program to ignore stays ignored. */
+/* A signal that the caller's shell made the program ignore stays ignored. */
 static void catch_interrupts(void) {
     struct sigaction action;
     (void)memset(&action, 0, sizeof action);
@@ -70,10 +70,10 @@ static void release(output_file_t *output) {
 static char *temporary_pattern(const char *target) {
     const char *slash = strrchr(target, '/');
     const size_t directory = slash != NULL ? (size_t)(slash - target) + 1u : 0u;
-    const size_t room = strlen(target) + sizeof "." TEMPORARY_SUFFIX;
-    char *pattern = malloc(room);
+    const size_t capacity = strlen(target) + sizeof "." TEMPORARY_SUFFIX;
+    char *pattern = malloc(capacity);
     if (pattern != NULL) {
-        (void)snprintf(pattern, room, "%.*s.%s" TEMPORARY_SUFFIX, (int)directory, target, target + directory);
+        (void)snprintf(pattern, capacity, "%.*s.%s" TEMPORARY_SUFFIX, (int)directory, target, target + directory);
     }
     return pattern;
 }
@@ -106,7 +106,7 @@ static FILE *make_temporary(output_file_t *output, mode_t mode) {
     return stream;
 }
 
-static bool open_beside(output_file_t *output, const char *path, const struct stat *existing) {
+static bool open_temporary(output_file_t *output, const char *path, const struct stat *existing) {
     output->target = existing != NULL ? realpath(path, NULL) : strdup(path); /* a symbolic link stays one */
     output->temporary = output->target != NULL ? temporary_pattern(output->target) : NULL;
     if (output->temporary == NULL) {
@@ -141,9 +141,9 @@ bool output_file_open(output_file_t *output, const char *path) {
     if (path == NULL) {
         output->stream = stdout;
     } else if (stat(path, &status) != 0) {
-        (void)(errno == ENOENT && !is_link(path) && parent_folders_make(path) && open_beside(output, path, NULL));
+        (void)(errno == ENOENT && !is_link(path) && parent_folders_make(path) && open_temporary(output, path, NULL));
     } else if (S_ISREG(status.st_mode)) {
-        (void)open_beside(output, path, &status);
+        (void)open_temporary(output, path, &status);
     } else {
         output->stream = fopen(path, "w");
     }

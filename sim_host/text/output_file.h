@@ -8,7 +8,7 @@
 typedef struct {
     FILE *stream;    /* write here */
     char *target;    /* null: standard output, a device or a pipe, which cannot be replaced and is streamed to */
-    char *temporary; /* beside the target; removed when the program is interrupted */
+    char *temporary; /* next to the target; removed when the program is interrupted */
 } output_file_t;
 
 /* path null: standard output. A regular file is left as it is until output_file_commit(); a symbolic link to one stays a link.
@@ -23,7 +23,7 @@ bool output_file_commit(output_file_t *output);
 /* Whether both paths lead to one regular file, by links of any kind: an input that the output would replace. */
 bool output_file_is(const char *path, const char *input);
 
-/* Drops what was written. */
+/* Drops the written text. */
 void output_file_discard(output_file_t *output);
 
 #endif

@@ -1,4 +1,4 @@
-/* Whether what was printed arrived. SPDX-License-Identifier: MIT */
+/* Checks that printed text arrived. SPDX-License-Identifier: MIT */
 #ifndef STANDARD_OUTPUT_H
 #define STANDARD_OUTPUT_H
 
@@ -8,7 +8,7 @@
  * disk, a closed pipe. */
 bool standard_output_written(const char *program);
 
-/* Asks so when the program ends, also where popt ends it (--help), and then ends it with this status. The program must not close
+/* Checks it when the program ends, also where popt ends it (--help), and then ends it with this status. The program must not close
  * standard output. */
 void standard_output_watch(const char *program, int failed_status);
 

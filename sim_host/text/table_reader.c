@@ -13,7 +13,7 @@
 #include "nearest_name.h"
 
 #define BUFFER_BYTES (256u * 1024u)
-#define FIRST_ROOM 1024u
+#define FIRST_CAPACITY 1024u
 #define FIELD_STEP_BYTES (64u * 1024u) /* by which the parser enlarges its room for a field; its own are tiny */
 
 struct table_reader {
@@ -24,9 +24,9 @@ struct table_reader {
     double bytes, bytes_read; /* of the file; 0: not known */
     struct csv_parser parser;
     char *buffer;
-    size_t begin, end; /* what is not yet parsed of the buffer */
+    size_t begin, end; /* the part of the buffer that is not yet parsed */
     bool at_end;       /* of the file */
-    bool finished;     /* the parser was told so */
+    bool finished;     /* the parser knows the end */
 
     unsigned long line;     /* of the next byte to parse */
     unsigned long row_line; /* on which the current row began */
@@ -34,9 +34,9 @@ struct table_reader {
     bool row_open;          /* a row has begun and not ended */
 
     char *text; /* the current row's fields, a NUL behind each */
-    size_t text_used, text_room;
+    size_t text_used, text_capacity;
     table_field_t *fields; /* of the header, then of the current row */
-    size_t field_room;
+    size_t field_capacity;
     size_t count;         /* fields of the current row so far */
     size_t nul;           /* the first of them that holds a NUL; SIZE_MAX: none */
     char *header_text;    /* names of the columns, as text */
@@ -53,28 +53,28 @@ struct table_reader {
 /* The first fault of a file ends the reading. */
 #define FAIL(reader, ...) input_error_first(&(reader)->failed, &(reader)->error, (reader)->path, __VA_ARGS__)
 
-/* ------------------------------------------------------------------------------------------------------------ room -- */
+/* ------------------------------------------------------------------------------------------------------------ memory -- */
 
-/* False: there is no memory. *room: in items of so many bytes. */
-static bool grow(void **items, size_t *room, size_t needed, size_t size) {
-    if (needed <= *room) {
+/* False: there is no memory. *capacity: in items of so many bytes. */
+static bool grow(void **items, size_t *capacity, size_t needed, size_t size) {
+    if (needed <= *capacity) {
         return true;
     }
-    const size_t doubled = 2u * *room + FIRST_ROOM;
+    const size_t doubled = 2u * *capacity + FIRST_CAPACITY;
     const size_t more = doubled > needed ? doubled : needed;
     void *grown = realloc(*items, more * size);
     if (grown == NULL) {
         return false;
     }
     *items = grown;
-    *room = more;
+    *capacity = more;
     return true;
 }
 
 static bool add_text(table_reader_t *reader, const char *text, size_t length) {
-    void *room = reader->text;
-    const bool grown = grow(&room, &reader->text_room, reader->text_used + length + 1u, 1u);
-    reader->text = room;
+    void *capacity = reader->text;
+    const bool grown = grow(&capacity, &reader->text_capacity, reader->text_used + length + 1u, 1u);
+    reader->text = capacity;
     if (grown) {
         (void)memcpy(reader->text + reader->text_used, text, length);
         reader->text_used += length;
@@ -84,9 +84,9 @@ static bool add_text(table_reader_t *reader, const char *text, size_t length) {
 }
 
 static bool add_field(table_reader_t *reader, const char *text, size_t length) {
-    void *room = reader->fields;
-    const bool grown = grow(&room, &reader->field_room, reader->count + 1u, sizeof *reader->fields);
-    reader->fields = room;
+    void *capacity = reader->fields;
+    const bool grown = grow(&capacity, &reader->field_capacity, reader->count + 1u, sizeof *reader->fields);
+    reader->fields = capacity;
     if (!grown || !add_text(reader, text, length)) {
         return false;
     }
@@ -130,7 +130,7 @@ static void take_header(table_reader_t *reader) {
     reader->header_line = reader->row_line;
     reader->header_text = reader->text;
     reader->text = NULL;
-    reader->text_room = 0;
+    reader->text_capacity = 0;
     reader->headers = calloc(reader->count + 1u, sizeof *reader->headers);
     if (reader->headers == NULL) {
         FAIL(reader, reader->row_line, NULL, "out of memory");
@@ -230,10 +230,10 @@ static void on_field(void *text, size_t length, void *user) {
     } else if (!reader->header_done) {
         FAIL(reader, reader->row_line, NULL, "more than %u columns", TABLE_COLUMNS_MAX);
     }
-    reader->count++; /* of a row, more than there are columns, too: they are told when it ends */
+    reader->count++; /* of a row, more than there are columns, too: reported at its end */
 }
 
-/* Too few or too many fields are the cause of what else is wrong in a row: they are told first. */
+/* Too few or too many fields are the cause of other faults of a row: they are reported first. */
 static void check_row(table_reader_t *reader) {
     if (reader->count < reader->columns) {
         FAIL(reader, reader->row_line, name_of(reader, reader->count),
@@ -339,7 +339,7 @@ static void fill(table_reader_t *reader) {
     reader->at_end = got == 0;
 }
 
-/* One line, or what the buffer holds of it. */
+/* One line, or its part in the buffer. */
 static void parse_line(table_reader_t *reader) {
     const char *text = reader->buffer + reader->begin;
     const size_t held = reader->end - reader->begin;

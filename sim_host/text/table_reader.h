@@ -1,4 +1,4 @@
-/* Rows of a CSV file with a header line, in bounded memory: what is the same for every table that the programs read.
+/* Rows of a CSV file with a header line, in bounded memory: the common part of all tables that the programs read.
  * SPDX-License-Identifier: MIT */
 #ifndef TABLE_READER_H
 #define TABLE_READER_H
@@ -35,11 +35,12 @@ typedef struct {
 typedef enum {
     TABLE_ROW,  /* *row holds the next row */
     TABLE_END,  /* no more rows */
-    TABLE_ERROR /* *error says what is wrong and where; so will every further call */
+    TABLE_ERROR /* *error gives the fault and its position; every further call returns it again */
 } table_result_t;
 
-/* Opens a file and reads its header line; the columns must outlive the reader. Null on failure, and *error says why: the file cannot be read, a required column is
- * missing, one of the columns is there twice. It also says what was probably meant: another delimiter, a mistyped name.
+/* Opens a file and reads its header line; the columns must outlive the reader. Null on failure, and *error gives the
+ * reason: the file is unreadable, a required column is missing, one of the columns is there twice. It also suggests the probable name:
+ * another delimiter, a mistyped name.
  *
  * Blank lines and a byte order mark are passed over. Rows end in LF, also CR LF, the last one too: a row at whose end the file
  * ends may have been cut off within its last number. */

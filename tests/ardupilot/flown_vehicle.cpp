@@ -23,9 +23,9 @@ static const AP_Param::GroupInfo &parameter(const char *name) {
 }
 
 AP_GOE *new_goe() {
-    static uint64_t room[(sizeof(AP_GOE) + 7) / 8]; // it is a singleton
-    memset(room, 0, sizeof room);
-    return new (room) AP_GOE();
+    static uint64_t memory[(sizeof(AP_GOE) + 7) / 8]; // it is a singleton
+    memset(memory, 0, sizeof memory);
+    return new (memory) AP_GOE();
 }
 
 void set_parameter(AP_GOE &goe, const char *name, float value) {
@@ -81,7 +81,7 @@ static goe_mavlink_features_t features_of(const goe_flight_detection_t &detectio
     features.number = number;
     if (number > 0) {
         features.obstacle_id = detection.id;
-        features.seen = detection.box.seen;
+        features.visible = detection.box.sides;
         features.box[GOE_MAVLINK_LEFT] = tenths(detection.box.left_px);
         features.box[GOE_MAVLINK_TOP] = tenths(detection.box.top_px);
         features.box[GOE_MAVLINK_RIGHT] = tenths(detection.box.right_px);
@@ -101,7 +101,7 @@ void FlownVehicle::send_image() {
         return;
     }
     goe_flight_detection_t detection = flown_detection(&flown, exposed);
-    const bool sees = flown.sees && detection.box.seen == GOE_SEES_BOX;
+    const bool sees = flown.detects && detection.box.sides == GOE_SIDES_ALL;
     const uint8_t number = sees ? copies : 0;
     const uint64_t exposed_us = first_us + uint64_t(exposed) * STEP_US + uint64_t(int64_t(ahead_us));
     images++;
@@ -122,7 +122,7 @@ void FlownVehicle::restart_layer() {
     goe_flight_settings_t settings;
     goe_settings_default(&estimator);
     goe_flight_settings_default(&settings);
-    estimator.navigation.attitude_drift_deg = AP_GOE_ATTITUDE_DRIFT;
+    estimator.navigation.attitude_walk_sd_deg = AP_GOE_ATTITUDE_DRIFT;
     estimator.camera.fx_px = estimator.camera.fy_px = flown.scene.camera.fx_px;
     estimator.camera.cx_px = estimator.camera.cy_px = 0.5f * SIZE_PX;
     estimator.camera.width_px = estimator.camera.height_px = SIZE_PX;
@@ -143,7 +143,7 @@ void FlownVehicle::step_layer() {
     goe_flight_position_t position;
     flown_samples(&flown, flown.sample - 1, &attitude, &position);
     attitude.time_us = position.time_us = scripted.sample_us;
-    attitude.reset = scripted.yaw_reset_ms + 1; // the first look at the filter is a change of it
+    attitude.reset = scripted.yaw_reset_ms + 1; // the first read of the filter's state counts as a change
     position.position_ned_m[0] += jump.x;
     position.position_ned_m[1] += jump.y;
     position.position_ned_m[2] += jump.z;
@@ -234,12 +234,12 @@ void FlownVehicle::fly(double seconds) {
 // ---------------------------------------------------------------------------------------------------------------- compare
 
 static void compare_hazards(const goe_hazard_t &expected, const goe_hazard_t &actual) {
-    CHECK_SAME(expected.time_s, actual.time_s);
-    CHECK_SAME(expected.time_sd_s, actual.time_sd_s);
-    CHECK_SAME(expected.miss_m, actual.miss_m);
-    CHECK_SAME(expected.miss_sd_m, actual.miss_sd_m);
+    CHECK_SAME(expected.tcpa_s, actual.tcpa_s);
+    CHECK_SAME(expected.tcpa_sd_s, actual.tcpa_sd_s);
+    CHECK_SAME(expected.dcpa_m, actual.dcpa_m);
+    CHECK_SAME(expected.dcpa_sd_m, actual.dcpa_sd_m);
     CHECK_SAME(expected.clearance_m, actual.clearance_m);
-    CHECK_SAME(expected.violation, actual.violation);
+    CHECK_SAME(expected.conflict_probability, actual.conflict_probability);
 }
 
 static void compare_obstacles(const goe_flight_obstacle_t &expected, const goe_flight_obstacle_t &actual) {
@@ -260,7 +260,7 @@ static void compare_obstacles(const goe_flight_obstacle_t &expected, const goe_f
     compare_hazards(expected.hazard, actual.hazard);
 }
 
-/* What the main thread knows is what the thread found at its latest assessment: compared once each. */
+/* The main thread's state is that of the thread's latest assessment: compared once for each. */
 void FlownVehicle::compare() {
     if (goe->_state->shown.assessed == compared) {
         return;

@@ -1,5 +1,5 @@
-/* AP_GOE in a vehicle that flies past the test scene's obstacle, and beside it a flight layer of its own that is given the same by
- * its own functions. SPDX-License-Identifier: MIT */
+/* AP_GOE in a vehicle that flies past the test scene's obstacle, and a reference flight layer that gets the same input
+ * directly. SPDX-License-Identifier: MIT */
 #pragma once
 
 #include <cmath>
@@ -12,7 +12,7 @@
 #include <AP_Param/AP_Param.h>
 #include <GCS_MAVLink/GCS_MAVLink.h>
 
-#define private public // the thread's own flight layer is nobody's else
+#define private public // only the thread uses its flight layer
 #include <AP_GOE.h>
 #undef private
 
@@ -26,31 +26,31 @@ struct Parameter {
     float value;
 };
 
-/* As the firmware has it: its objects begin as zeros. */
+/* As in the firmware, objects begin as zeros. */
 AP_GOE *new_goe();
 
 /* Writes a parameter as a ground station does. */
 void set_parameter(AP_GOE &goe, const char *name, float value);
 float get_parameter(const AP_GOE &goe, const char *name);
 
-/* A GOE_FEATURES as the link's parser hands it over that does not know it. */
+/* A GOE_FEATURES as the parser of a link delivers it that does not know the message. */
 mavlink_message_t features_message(const goe_mavlink_features_t &features, uint8_t system = 1);
 
 class FlownVehicle {
   public:
     FlownVehicle();
 
-    /* One sample on: pose, update, and an image every fifth. Compares. */
+    /* Advances by one sample: pose, update, and an image with every fifth one. Compares. */
     void step();
     void fly(double seconds);
 
-    /* AP_GOE and the layer beside it know the same. */
+    /* AP_GOE and the reference layer have the same state. */
     void compare();
 
-    /* The layer beside starts anew with these parameters; as AP_GOE should have. */
+    /* Restarts the reference layer with these parameters, as AP_GOE should have done. */
     void restart_layer();
 
-    const goe_flight_t &flight() const { return goe->_state->flight; } // the thread's, which waits
+    const goe_flight_t &flight() const { return goe->_state->flight; } // of the thread, which waits
     const goe_flight_assessment_t &seen() const { return goe->_state->shown.assessment; }
 
     AP_GOE *goe;
@@ -62,13 +62,13 @@ class FlownVehicle {
 
     // the detector
     int delay;         // samples from exposure to arrival
-    int ahead_us;      // by which the sender's clock is wrong
+    int ahead_us;      // error of the sender's clock
     bool sends;        // it is alive
     uint8_t copies;    // obstacles in the image, side by side
     uint64_t first_us; // of the vehicle's clock at sample 0
     Vector3f jump;     // of the position, from now on
     unsigned images;
-    uint32_t compared; // number of the latest assessment that was
+    uint32_t compared; // number of the latest assessment that was compared
 
   private:
     struct Kept {

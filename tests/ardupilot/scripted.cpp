@@ -1,4 +1,4 @@
-/* Behind the stand-in headers. SPDX-License-Identifier: MIT */
+/* Implements the stand-in headers. SPDX-License-Identifier: MIT */
 #include "scripted.h"
 
 #include <unity.h>
@@ -70,22 +70,22 @@ int AP_HAL::Util::snprintf(char *text, size_t size, const char *format, ...) {
     return length;
 }
 
-static std::atomic<uint64_t> clock_us; // what the thread sees of scripted.now_us
+static std::atomic<uint64_t> clock_us; // the thread's view of scripted.now_us
 void show_clock() { clock_us = scripted.now_us; }
 
-static uint64_t seen_us() {
+static uint64_t detected_us() {
     if (!scripted.runs_at_once) {
         show_clock();
     }
     return clock_us;
 }
 
-uint32_t AP_HAL::micros() { return uint32_t(seen_us()); }
-uint64_t AP_HAL::micros64() { return seen_us(); }
-uint32_t AP_HAL::millis() { return uint32_t(seen_us() / 1000); }
+uint32_t AP_HAL::micros() { return uint32_t(detected_us()); }
+uint64_t AP_HAL::micros64() { return detected_us(); }
+uint32_t AP_HAL::millis() { return uint32_t(detected_us() / 1000); }
 
 void *operator new(size_t size, const ScriptedHeap &) noexcept {
-    static std::vector<void *> &taken = *new std::vector<void *>; // what an object that a test has left still holds
+    static std::vector<void *> &taken = *new std::vector<void *>; // locked by an object of an earlier test
     scripted.allocations++;
     taken.push_back(scripted.has_memory ? ::operator new(size, std::nothrow) : nullptr);
     return taken.back();
@@ -93,8 +93,8 @@ void *operator new(size_t size, const ScriptedHeap &) noexcept {
 
 // -------------------------------------------------------------------------------------------------------------- threads
 
-/* The thread and who wakes it run in turns, so that a test repeats to the last bit. A thread whose object a test has left waits for
- * ever. */
+/* The thread and its waker run in turns, so that a test repeats to the last bit. A thread whose object belongs to an earlier test waits
+ * for ever. */
 struct ScriptedThread {
     std::mutex mutex;
     std::condition_variable changed;
@@ -168,7 +168,7 @@ static std::map<const AP_Param *, std::string> &names() {
     return the_names;
 }
 
-/* By name through all of them: a slow search, which is counted. */
+/* A search by name through all parameters is slow, and is counted. */
 AP_Param *AP_Param::find(const char *name, enum ap_var_type *type, uint16_t *) {
     static AP_Param found[8];
     scripted.searches++;
@@ -295,7 +295,7 @@ AP_Logger &logger() {
 bool AP_Arming::is_armed() const { return scripted.armed; }
 bool AP_Vehicle::is_landing() const { return scripted.landing; }
 
-static AP_OADatabase::OA_DbItem database_items[5]; // of which one is another's
+static AP_OADatabase::OA_DbItem database_items[5]; // one of which belongs to another source
 
 AP_OADatabase::AP_OADatabase() : _database{database_items, 0, 5}, _radius_min(0.01f), _dist_max(0.0f) {}
 
@@ -316,7 +316,7 @@ void AP_OADatabase::begin(unsigned foreign) {
     for (unsigned i = 0; i < foreign; i++) {
         OA_DbItem item{};
         item.source = OA_DbItem::Source::AIS;
-        item.id = 0x474F4500u; // as AP_GOE's first
+        item.id = 0x474F4500u; // the first, as AP_GOE's is
         database_item_add(item);
     }
 }
@@ -332,7 +332,7 @@ void AP_OADatabase::set_limits(float radius_min, float dist_max) {
     _dist_max = dist_max;
 }
 
-/* Reads the arguments as the format says: an argument of another kind gives nonsense, which a test sees. */
+/* Reads the arguments by the format: an argument of another type gives garbage, which a test detects. */
 void AP_Logger::WriteStreaming(const char *name, const char *labels, const char *units, const char *mults,
                                const char *fmt, ...) {
     ScriptedRecord record{{}, units, mults, fmt, {}};

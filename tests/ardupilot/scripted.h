@@ -1,4 +1,4 @@
-/* What is behind the stand-in headers: a vehicle by script, and what AP_GOE did to it. SPDX-License-Identifier: MIT */
+/* Behind the stand-in headers: a scripted vehicle, and a record of AP_GOE's actions. SPDX-License-Identifier: MIT */
 #pragma once
 
 #include <AC_Avoidance/AP_OADatabase.h>
@@ -47,14 +47,14 @@ struct Scripted {
 
     // the rest of the vehicle
     bool armed, landing, has_memory, has_threads, has_database;
-    bool thread_is_late;                     // it gets no turn
-    bool runs_at_once;                       // the thread and the others, on as many cores
+    bool thread_is_late;                     // the thread gets no turn
+    bool runs_at_once;                       // the thread and the others run in parallel
     std::map<std::string, float> parameters; // of the vehicle
     std::vector<mavlink_status_t> channel;   // links, one each
     std::vector<bool> active, is_private;
     uint16_t txspace;
 
-    // what came of it
+    // results
     std::vector<std::string> texts;
     std::vector<ScriptedSent> sent;
     std::map<std::string, std::vector<ScriptedRecord>> log;
@@ -62,15 +62,15 @@ struct Scripted {
     std::string thread_name;
     uint32_t thread_stack;
     unsigned wakes;
-    unsigned searches; // for parameters, by name
+    unsigned searches; // searches of parameters by name
 
     Scripted();
     bool has_said(const char *part) const;
-    std::map<uint32_t, AP_OADatabase::OA_DbItem> database() const; // what AP_GOE put there, by id
+    std::map<uint32_t, AP_OADatabase::OA_DbItem> database() const; // AP_GOE's entries, by id
 };
 
 extern Scripted scripted;
 
-/* While the threads run at once: the thread sees the clock from here on; and who waits until it waits. */
+/* For parallel threads: sets the thread's clock from here on, and waits until the thread waits. */
 void show_clock();
 void wait_for_the_thread();

@@ -1,5 +1,5 @@
-/* AP_GOE, compiled as ArduPilot compiles it and run with a scripted vehicle: it knows what a flight layer knows that is given the
- * same, to the last bit, and does with it what its header says. SPDX-License-Identifier: MIT */
+/* AP_GOE, compiled as in ArduPilot and run with a scripted vehicle: it has the state of a flight layer with the same input,
+ * to the last bit, and acts on it as its header documents. SPDX-License-Identifier: MIT */
 #include "flown_vehicle.h"
 
 #include <AP_HAL/AP_HAL.h>
@@ -39,7 +39,7 @@ static bool may_arm(const FlownVehicle &vehicle, const char *why) {
 
 // -------------------------------------------------------------------------------------------------------------- equality
 
-static void test_it_knows_what_the_layer_knows(void) {
+static void test_it_has_the_state_of_the_layer(void) {
     FlownVehicle vehicle;
     vehicle.fly(8.0);
     TEST_ASSERT_EQUAL(1, vehicle.seen().obstacles);
@@ -51,16 +51,16 @@ static void test_it_knows_what_the_layer_knows(void) {
 static void test_an_early_image_waits_for_its_pose(void) {
     FlownVehicle vehicle;
     vehicle.delay = 0;
-    vehicle.ahead_us = 50000; // exposed between samples that are yet to come
+    vehicle.ahead_us = 50000; // exposed between future samples
     vehicle.fly(4.0);
     TEST_ASSERT_GREATER_THAN(20, vehicle.flight().counters.early);
     TEST_ASSERT_GREATER_OR_EQUAL(vehicle.images - 1, vehicle.flight().counters.taken);
     TEST_ASSERT_EQUAL(1, vehicle.seen().obstacles);
 }
 
-static void test_images_of_the_future_hold_up_nobody(void) {
+static void test_images_of_the_future_block_nobody(void) {
     FlownVehicle vehicle;
-    vehicle.compares = false; // a full queue drops the oldest, which the layer beside does not
+    vehicle.compares = false; // a full queue drops the oldest image, and the reference layer does not
     vehicle.ahead_us = 40000000;
     vehicle.fly(4.0);
     TEST_ASSERT_EQUAL(0, vehicle.flight().counters.taken);
@@ -127,7 +127,7 @@ static void test_a_reset_of_the_heading_ends_all(void) {
     TEST_ASSERT_EQUAL(1, vehicle.flight().counters.lost);
     vehicle.fly(0.2);
     TEST_ASSERT_TRUE(scripted.has_said("all obstacles given up"));
-    TEST_ASSERT_EQUAL(1, vehicle.seen().obstacles); /* kept, suspect, until an image places it again */
+    TEST_ASSERT_EQUAL(1, vehicle.seen().obstacles); /* kept as suspect, until an image locates it again */
     TEST_ASSERT_TRUE(vehicle.seen().suspect);
 }
 
@@ -169,7 +169,7 @@ static void test_without_a_pose_it_is_not_healthy(void) {
 
 static void test_healthy_means_alive_and_not_that_something_is_there(void) {
     FlownVehicle vehicle;
-    vehicle.flown.sees = false;
+    vehicle.flown.detects = false;
     vehicle.fly(3.0);
     TEST_ASSERT_TRUE(vehicle.goe->healthy());
     TEST_ASSERT_EQUAL(0, vehicle.seen().obstacles);
@@ -249,7 +249,7 @@ static void test_the_scheduler_waits_for_no_estimator(void) {
     scripted.thread_is_late = true;
     const unsigned taken = vehicle.flight().counters.taken;
     vehicle.fly(0.2);
-    TEST_ASSERT_EQUAL(taken, vehicle.flight().counters.taken); // update() touched nothing of it
+    TEST_ASSERT_EQUAL(taken, vehicle.flight().counters.taken); // update() used none of it
 }
 
 static void test_the_layer_knows_that_the_vehicle_lands(void) {
@@ -269,7 +269,7 @@ static void test_the_layer_knows_that_the_vehicle_lands(void) {
 
 static void test_a_thread_that_is_late_loses_no_pose_and_no_image(void) {
     FlownVehicle vehicle;
-    vehicle.compares = false; // the layer beside assesses meanwhile
+    vehicle.compares = false; // the reference layer assesses meanwhile
     vehicle.fly(6.0);
     for (int i = 0; i < 5; i++) {
         scripted.thread_is_late = true;
@@ -281,7 +281,7 @@ static void test_a_thread_that_is_late_loses_no_pose_and_no_image(void) {
     TEST_ASSERT_EQUAL(1, vehicle.seen().obstacles);
 }
 
-/* The thread, the main loop and the database's thread at once, as fast as they can: what a sanitizer of threads looks at. */
+/* The thread, the main loop and the database's thread in parallel, at full speed: input for a thread sanitizer. */
 static void test_the_threads_may_run_at_once(void) {
     FlownVehicle vehicle;
     vehicle.compares = false;
@@ -313,7 +313,7 @@ static void test_the_threads_may_run_at_once(void) {
     TEST_ASSERT_EQUAL(1, scripted.database().size());
 }
 
-static void test_a_thread_that_stands_still_is_survived(void) {
+static void test_a_stopped_thread_is_survived(void) {
     FlownVehicle vehicle;
     vehicle.compares = false;
     vehicle.copies = 4;
@@ -333,10 +333,10 @@ static void test_parameters_wait_in_flight_until_nothing_is_followed(void) {
     vehicle.fly(6.0);
     scripted.armed = true;
     set_parameter(*vehicle.goe, "MARGIN", 25);
-    vehicle.fly(3.0); // compared with the layer that has the old ones
+    vehicle.fly(3.0); // compared with the layer, which has the old ones
     TEST_ASSERT_TRUE(scripted.has_said("parameters wait"));
     CHECK_CLOSE(0.0, 15.0, vehicle.flight().settings.margin_m);
-    vehicle.flown.sees = false;
+    vehicle.flown.detects = false;
     vehicle.fly(1.0);
     vehicle.compares = false;
     vehicle.fly(13.0); // forgotten by then
@@ -365,14 +365,14 @@ static void test_bad_parameters_are_refused_and_the_good_ones_go_on(void) {
     TEST_ASSERT_FALSE(may_arm(vehicle, "GOE: bad parameter GOE_CLEAR"));
     TEST_ASSERT_FALSE(vehicle.goe->healthy());
     CHECK_CLOSE(0.0, 10.0, vehicle.flight().settings.clearance_m);
-    TEST_ASSERT_EQUAL(1, vehicle.seen().obstacles); // it goes on
+    TEST_ASSERT_EQUAL(1, vehicle.seen().obstacles); // it continues
     set_parameter(*vehicle.goe, "CLEAR", 12);
     vehicle.fly(4.0);
     TEST_ASSERT_TRUE(vehicle.goe->healthy());
     CHECK_CLOSE(0.0, 12.0, vehicle.flight().settings.clearance_m);
 }
 
-static void test_without_a_camera_it_names_what_is_missing(void) {
+static void test_without_a_camera_it_names_the_missing_parameter(void) {
     FlownVehicle vehicle;
     set_parameter(*vehicle.goe, "FX", 0);
     vehicle.compares = false;
@@ -401,7 +401,7 @@ static void test_a_bad_parameter_is_named_as_the_ground_station_shows_it(void) {
     TEST_ASSERT_FALSE(may_arm(vehicle, "GOE: bad parameter ROLL_LIMIT_DEG"));
 }
 
-// ------------------------------------------------------------------------------------- what the vehicle's parameters tell
+// --------------------------------------------------------------------------------- settings from the vehicle's parameters
 
 static goe_flight_settings_t settings_of(const std::map<std::string, float> &parameters) {
     FlownVehicle vehicle;
@@ -486,8 +486,8 @@ static void test_defaults_are_those_of_the_library(void) {
     goe_settings_default(&library);
     library.camera = goe._state->good.estimator.camera;
     CHECK_CLOSE(1e-6, 0.3,
-                goe._state->good.estimator.navigation.attitude_drift_deg); // the library's 0 is of a better filter
-    library.navigation.attitude_drift_deg = goe._state->good.estimator.navigation.attitude_drift_deg;
+                goe._state->good.estimator.navigation.attitude_walk_sd_deg); // the library's 0 assumes a better filter
+    library.navigation.attitude_walk_sd_deg = goe._state->good.estimator.navigation.attitude_walk_sd_deg;
     TEST_ASSERT_EQUAL_MEMORY(&library, &goe._state->good.estimator, sizeof library);
 }
 
@@ -544,7 +544,7 @@ static void test_only_whole_messages_of_the_own_vehicle_are_taken(void) {
         0, taken_of([](mavlink_message_t &, FlownVehicle &) { scripted.channel[0].signing = &no_callback; }));
     TEST_ASSERT_EQUAL(1, taken_of([](mavlink_message_t &, FlownVehicle &) { scripted.channel[0].signing = &lenient; }));
     TEST_ASSERT_EQUAL(1, taken_of([](mavlink_message_t &m, FlownVehicle &vehicle) {
-                          vehicle.goe->handle_message(m); // by a dialect that knows it
+                          vehicle.goe->handle_message(m); // by a dialect that includes it
                           m.checksum ^= 1;
                       }));
 }
@@ -557,7 +557,7 @@ static unsigned count_sent(mavlink_channel_t channel, uint32_t msgid) {
     return count;
 }
 
-static void test_what_it_sends(void) {
+static void test_sent_messages(void) {
     FlownVehicle vehicle;
     scripted.channel.resize(3);
     scripted.active = {true, true, true};
@@ -640,7 +640,7 @@ static void test_a_full_database_is_survived(void) {
     TEST_ASSERT_TRUE(scripted.database().empty());
 }
 
-static void test_what_the_database_forgot_comes_back(void) {
+static void test_an_obstacle_that_the_database_forgot_comes_back(void) {
     FlownVehicle vehicle;
     vehicle.fly(6.0);
     AP::oadatabase()->begin(0);
@@ -659,13 +659,14 @@ static void test_the_database_keeps_its_limits(void) {
     TEST_ASSERT_TRUE(scripted.database().empty());
 }
 
-/* What is followed stays fresh; what is not ages, until the database forgets it. */
-static void test_what_is_given_up_is_left_to_the_database(void) {
+/* Followed obstacles stay fresh; others age, until the database forgets them. */
+static void test_an_obstacle_that_is_given_up_is_left_to_the_database(void) {
     FlownVehicle vehicle;
     vehicle.fly(6.0);
-    vehicle.flown.sees = false;
+    vehicle.flown.detects = false;
     vehicle.fly(5.0);
-    TEST_ASSERT_EQUAL(AP_HAL::millis(), scripted.database().at(ID).timestamp_ms); // unseen for 5 s, and still followed
+    TEST_ASSERT_EQUAL(AP_HAL::millis(),
+                      scripted.database().at(ID).timestamp_ms); // not visible for 5 s, and still followed
     vehicle.compares = false;
     vehicle.fly(9.0);
     TEST_ASSERT_EQUAL(0, vehicle.seen().obstacles);
@@ -682,7 +683,7 @@ static void test_the_sphere_is_at_the_own_height_between_foot_and_top(void) {
     CHECK_CLOSE(0.3, fminf(fmaxf(own, foot), top), up);
     vehicle.compares = false;
     scripted.vertical_reset_ms = AP_HAL::millis();
-    vehicle.flown.sees = false;
+    vehicle.flown.detects = false;
     vehicle.jump = Vector3f(0.0f, 0.0f, -500.0f); // far over it
     vehicle.fly(0.4);
     TEST_ASSERT_TRUE(scripted.database().at(ID).pos.z < own + 100.0f);
@@ -768,7 +769,7 @@ static void test_the_log(void) {
     TEST_ASSERT_EQUAL(obstacle.id, place.at("Id"));
     TEST_ASSERT_EQUAL(obstacle.model, place.at("Mdl"));
     const auto &hazard = scripted.log["GOEH"].back().value;
-    CHECK_CLOSE(0.0, obstacle.hazard.miss_m, hazard.at("Miss"));
+    CHECK_CLOSE(0.0, obstacle.hazard.dcpa_m, hazard.at("DCPA"));
     TEST_ASSERT_EQUAL(0, hazard.at("I"));
     const auto &status = scripted.log["GOES"].back().value;
     TEST_ASSERT_INT_WITHIN(12, vehicle.flight().counters.taken, status.at("Tkn"));
@@ -782,9 +783,9 @@ int main(void) {
     feenableexcept(FE_OVERFLOW | FE_DIVBYZERO | FE_INVALID);
 #endif
     UNITY_BEGIN();
-    RUN_TEST(test_it_knows_what_the_layer_knows);
+    RUN_TEST(test_it_has_the_state_of_the_layer);
     RUN_TEST(test_an_early_image_waits_for_its_pose);
-    RUN_TEST(test_images_of_the_future_hold_up_nobody);
+    RUN_TEST(test_images_of_the_future_block_nobody);
     RUN_TEST(test_a_late_image_is_counted_and_left);
     RUN_TEST(test_the_clock_may_wrap);
     RUN_TEST(test_a_full_table);
@@ -802,11 +803,11 @@ int main(void) {
     RUN_TEST(test_the_layer_knows_that_the_vehicle_lands);
     RUN_TEST(test_a_thread_that_is_late_loses_no_pose_and_no_image);
     RUN_TEST(test_the_threads_may_run_at_once);
-    RUN_TEST(test_a_thread_that_stands_still_is_survived);
+    RUN_TEST(test_a_stopped_thread_is_survived);
     RUN_TEST(test_parameters_wait_in_flight_until_nothing_is_followed);
     RUN_TEST(test_on_the_ground_parameters_are_taken_at_once);
     RUN_TEST(test_bad_parameters_are_refused_and_the_good_ones_go_on);
-    RUN_TEST(test_without_a_camera_it_names_what_is_missing);
+    RUN_TEST(test_without_a_camera_it_names_the_missing_parameter);
     RUN_TEST(test_a_bad_parameter_is_named_as_the_ground_station_shows_it);
     RUN_TEST(test_the_loiter_radius_is_the_vehicles);
     RUN_TEST(test_a_circle_that_cannot_be_flown_is_widened_with_a_word);
@@ -816,14 +817,14 @@ int main(void) {
     RUN_TEST(test_defaults_are_those_of_the_library);
     RUN_TEST(test_parameters_fit_into_their_table);
     RUN_TEST(test_only_whole_messages_of_the_own_vehicle_are_taken);
-    RUN_TEST(test_what_it_sends);
+    RUN_TEST(test_sent_messages);
     RUN_TEST(test_an_obstacle_in_the_database);
     RUN_TEST(test_the_ground_station_sees_an_item_twice_a_second);
     RUN_TEST(test_others_items_stay_as_they_are);
     RUN_TEST(test_a_full_database_is_survived);
-    RUN_TEST(test_what_the_database_forgot_comes_back);
+    RUN_TEST(test_an_obstacle_that_the_database_forgot_comes_back);
     RUN_TEST(test_the_database_keeps_its_limits);
-    RUN_TEST(test_what_is_given_up_is_left_to_the_database);
+    RUN_TEST(test_an_obstacle_that_is_given_up_is_left_to_the_database);
     RUN_TEST(test_the_sphere_is_at_the_own_height_between_foot_and_top);
     RUN_TEST(test_sigmas_widen_the_sphere);
     RUN_TEST(test_without_a_database_it_flies_on);

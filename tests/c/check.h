@@ -20,7 +20,7 @@
 uint32_t check_bits(float x);
 float check_from_bits(uint32_t bits);
 
-/* Not NaN, not infinite, told by the exponent bits: also in a program that is linked with -ffast-math. */
+/* Not NaN, not infinite, judged by the exponent bits: also in a program that is linked with -ffast-math. */
 bool check_is_finite(float x);
 
 /* The float next to x that is farther from zero. */

@@ -106,18 +106,18 @@ void scene_make_cylinder(scene_t *scene) {
     scene->height_m = 30.0;
 }
 
-void scene_tell_no_noise(goe_settings_t *settings) {
-    settings->detector.point_px = 0.05f;
-    settings->navigation.attitude_bias_deg = 1.0e-3f;
-    settings->navigation.attitude_white_deg = 1.0e-3f;
-    settings->navigation.height_bias_m = 1.0e-2f;
-    settings->navigation.velocity_bias_m_s = 0.0f;
-    settings->navigation.position_walk_m = 0.0f;
+void scene_clear_noise(goe_settings_t *settings) {
+    settings->detector.point_noise_px = 0.05f;
+    settings->navigation.attitude_bias_sd_deg = 1.0e-3f;
+    settings->navigation.attitude_white_sd_deg = 1.0e-3f;
+    settings->navigation.height_bias_sd_m = 1.0e-2f;
+    settings->navigation.velocity_bias_sd_m_s = 0.0f;
+    settings->navigation.position_walk_sd_m = 0.0f;
 }
 
 void scene_hide_points(goe_image_t *image) {
-    image->left.seen = image->right.seen = image->top.seen = false;
-    image->base_left.seen = image->base_near.seen = image->base_right.seen = false;
+    image->left.visible = image->right.visible = image->top.visible = false;
+    image->base_left.visible = image->base_near.visible = image->base_right.visible = false;
 }
 
 void scene_add_noise(goe_image_t *image, check_random_t *random, double sigma_px) {
@@ -257,21 +257,21 @@ static goe_pixel_t project(const scene_t *scene, const flight_t *flight, vector_
     scene_distort(&scene->camera, ray.v[0] / ray.v[2], ray.v[1] / ray.v[2], &x, &y);
     pixel.u_px = (float)((double)scene->camera.cx_px + (double)scene->camera.fx_px * x);
     pixel.v_px = (float)((double)scene->camera.cy_px + (double)scene->camera.fy_px * y);
-    pixel.seen = true;
+    pixel.visible = true;
     return pixel;
 }
 
 typedef struct {
     vector_t left, right, top;
     vector_t base[3]; /* left, near, right; on the ground */
-    bool base_seen[3];
+    bool base_visible[3];
 } points_t;
 
 /* Tangent points at half height, and the point of the top's rim that is highest in the image, or nearest. */
 static void cylinder_points(const scene_t *scene, double x, double z, double h, points_t *points) {
     const double r = 0.5 * scene->width_m;
     const double d2 = x * x + z * z;
-    const double along = 1.0 - r * r / d2; /* foot of the tangent, in shares of the way to the centre */
+    const double along = 1.0 - r * r / d2; /* foot of the tangent, in shares of the way to the center */
     const double across = r * sqrt(d2 - r * r) / d2;
     const double middle = h - 0.5 * scene->height_m;
     points->left = (vector_t){{x * along - z * across, middle, z * along + x * across}};
@@ -281,7 +281,7 @@ static void cylinder_points(const scene_t *scene, double x, double z, double h, 
         const double share = 1.0 - r / sqrt(d2);
         points->top = (vector_t){{x * share, h - scene->height_m, z * share}};
     }
-    memset(points->base_seen, 0, sizeof points->base_seen);
+    memset(points->base_visible, 0, sizeof points->base_visible);
 }
 
 /* Horizontal. */
@@ -297,9 +297,9 @@ static void box_points(const scene_t *scene, double x, double z, double h, point
     const vector_t back_left = {{front_left.v[0] + l * s, h, front_left.v[2] + l * c}};
     const vector_t back_right = {{front_right.v[0] + l * s, h, front_right.v[2] + l * c}};
     const vector_t corners[4] = {front_left, front_right, back_left, back_right};
-    const bool front_seen = x * s + z * c > 0.0;
-    const bool right_seen = front_right.v[0] * c - front_right.v[2] * s < 0.0;
-    const bool left_seen = front_left.v[0] * c - front_left.v[2] * s > 0.0;
+    const bool front_visible = x * s + z * c > 0.0;
+    const bool right_visible = front_right.v[0] * c - front_right.v[2] * s < 0.0;
+    const bool left_visible = front_left.v[0] * c - front_left.v[2] * s > 0.0;
     int leftmost = 0;
     int rightmost = 0;
     int highest = 0;
@@ -319,24 +319,24 @@ static void box_points(const scene_t *scene, double x, double z, double h, point
     points->right.v[1] = h - 0.5 * scene->height_m;
     points->top.v[1] = h - scene->height_m;
 
-    points->base[0] = left_seen ? back_left : front_left;
-    points->base[1] = left_seen ? front_left : front_right;
-    points->base[2] = right_seen ? back_right : front_right;
-    points->base_seen[0] = front_seen;
-    points->base_seen[1] = front_seen && (left_seen || right_seen);
-    points->base_seen[2] = front_seen;
+    points->base[0] = left_visible ? back_left : front_left;
+    points->base[1] = left_visible ? front_left : front_right;
+    points->base[2] = right_visible ? back_right : front_right;
+    points->base_visible[0] = front_visible;
+    points->base_visible[1] = front_visible && (left_visible || right_visible);
+    points->base_visible[2] = front_visible;
 }
 
-static void tell_points(const points_t *points, scene_truth_t *truth) {
+static void give_points(const points_t *points, scene_truth_t *truth) {
     truth->left_x = points->left.v[0] / points->left.v[2];
     truth->right_x = points->right.v[0] / points->right.v[2];
     truth->top_y = points->top.v[1] / points->top.v[2];
     truth->top_z_m = points->top.v[2];
     for (int i = 0; i < 3; i++) {
-        truth->base_seen[i] = points->base_seen[i];
-        truth->base_x[i] = points->base_seen[i] ? points->base[i].v[0] / points->base[i].v[2] : 0.0;
-        truth->base_y[i] = points->base_seen[i] ? points->base[i].v[1] / points->base[i].v[2] : 0.0;
-        truth->base_z_m[i] = points->base_seen[i] ? points->base[i].v[2] : 0.0;
+        truth->base_visible[i] = points->base_visible[i];
+        truth->base_x[i] = points->base_visible[i] ? points->base[i].v[0] / points->base[i].v[2] : 0.0;
+        truth->base_y[i] = points->base_visible[i] ? points->base[i].v[1] / points->base[i].v[2] : 0.0;
+        truth->base_z_m[i] = points->base_visible[i] ? points->base[i].v[2] : 0.0;
     }
 }
 
@@ -369,7 +369,7 @@ static bool frame_of(const scene_t *scene, const flight_t *flight, const scene_t
         vector_t point = footprint_point(scene, at->x_m, at->z_m, i / 2);
         point.v[1] = at->height_above_ground_m - (i % 2 == 0 ? 0.0 : scene->height_m);
         const goe_pixel_t p = project(scene, flight, point);
-        ahead = ahead && p.seen;
+        ahead = ahead && p.visible;
         frame->left = i == 0 || p.u_px < frame->left ? p.u_px : frame->left;
         frame->right = i == 0 || p.u_px > frame->right ? p.u_px : frame->right;
         frame->top = i == 0 || p.v_px < frame->top ? p.v_px : frame->top;
@@ -383,13 +383,13 @@ static void see_upright_box(const scene_t *scene, const flight_t *flight, const 
     const bool seen = frame_of(scene, flight, at, &f);
     if (scene->boxes) {
         scene_hide_points(image);
-        image->box = (goe_box_t){f.left, f.top, f.right, f.bottom, seen ? GOE_SEES_BOX : 0u};
+        image->box = (goe_box_t){f.left, f.top, f.right, f.bottom, seen ? GOE_SIDES_ALL : 0u};
         return;
     }
     image->left = (goe_pixel_t){f.left, 0.5f * (f.top + f.bottom), seen};
     image->right = (goe_pixel_t){f.right, 0.5f * (f.top + f.bottom), seen};
     image->top = (goe_pixel_t){0.5f * (f.left + f.right), f.top, seen};
-    image->base_left.seen = image->base_near.seen = image->base_right.seen = false;
+    image->base_left.visible = image->base_near.visible = image->base_right.visible = false;
 }
 
 /* --------------------------------------------------------------------------------------------------------- the image -- */
@@ -400,41 +400,41 @@ void scene_image(const scene_t *scene, int k, goe_image_t *image, scene_truth_t 
     flight_t now;
     points_t points;
     scene_truth_t ignored;
-    scene_truth_t *told = truth ? truth : &ignored;
+    scene_truth_t *reported = truth ? truth : &ignored;
     memset(image, 0, sizeof *image);
-    memset(told, 0, sizeof *told);
+    memset(reported, 0, sizeof *reported);
     fly(scene, 0, &first_pose, &first);
     fly(scene, k, &image->pose, &now);
     const double c = cos(now.heading_deg * RAD_PER_DEG);
     const double s = sin(now.heading_deg * RAD_PER_DEG);
     const double north = now.camera_ned_m.v[0] - first.camera_ned_m.v[0];
     const double east = now.camera_ned_m.v[1] - first.camera_ned_m.v[1];
-    told->dx_m = c * east - s * north;
-    told->dz_m = c * north + s * east;
-    told->x_m = scene->x0_m - told->dx_m;
-    told->z_m = scene->z0_m - told->dz_m;
-    told->height_above_ground_m = scene->ground_d_m - now.camera_ned_m.v[2];
+    reported->dx_m = c * east - s * north;
+    reported->dz_m = c * north + s * east;
+    reported->x_m = scene->x0_m - reported->dx_m;
+    reported->z_m = scene->z0_m - reported->dz_m;
+    reported->height_above_ground_m = scene->ground_d_m - now.camera_ned_m.v[2];
     if (scene->shape == SCENE_BOX) {
-        box_points(scene, told->x_m, told->z_m, told->height_above_ground_m, &points);
+        box_points(scene, reported->x_m, reported->z_m, reported->height_above_ground_m, &points);
     } else {
-        cylinder_points(scene, told->x_m, told->z_m, told->height_above_ground_m, &points);
+        cylinder_points(scene, reported->x_m, reported->z_m, reported->height_above_ground_m, &points);
     }
-    tell_points(&points, told);
+    give_points(&points, reported);
     const double half = scene->shape == SCENE_BOX ? 0.5 * scene->length_m : 0.0;
-    const double center_x = told->x_m + half * sin(scene->alpha_deg * RAD_PER_DEG);
-    const double center_z = told->z_m + half * cos(scene->alpha_deg * RAD_PER_DEG);
-    told->center_north_m = now.camera_ned_m.v[0] + c * center_z - s * center_x;
-    told->center_east_m = now.camera_ned_m.v[1] + s * center_z + c * center_x;
+    const double center_x = reported->x_m + half * sin(scene->alpha_deg * RAD_PER_DEG);
+    const double center_z = reported->z_m + half * cos(scene->alpha_deg * RAD_PER_DEG);
+    reported->center_north_m = now.camera_ned_m.v[0] + c * center_z - s * center_x;
+    reported->center_east_m = now.camera_ned_m.v[1] + s * center_z + c * center_x;
     image->left = project(scene, &now, points.left);
     image->right = project(scene, &now, points.right);
     image->top = project(scene, &now, points.top);
     goe_pixel_t *base[3] = {&image->base_left, &image->base_near, &image->base_right};
     for (int i = 0; i < 3; i++) {
-        if (points.base_seen[i]) {
+        if (points.base_visible[i]) {
             *base[i] = project(scene, &now, points.base[i]);
         }
     }
     if (scene->upright_boxes || scene->boxes) {
-        see_upright_box(scene, &now, told, image);
+        see_upright_box(scene, &now, reported, image);
     }
 }

@@ -1,11 +1,11 @@
 /* Noise-free flights past one upright box or cylinder on flat ground. SPDX-License-Identifier: MIT
  *
- * Written from the definitions of the frames alone and in double, so that it shares nothing with the library: what comes
- * out of it is exact but for the rounding of each number to float.
+ * Written from the definitions of the frames alone and in double, independent of the library: its output
+ * is exact but for the rounding of each number to float.
  *
  * The obstacle is placed in T of the first image, relative to the camera: a box by the middle of its front edge (length
- * width_m) and the angle alpha of its side edge (length length_m) from Z, clockwise seen from above; a cylinder by its
- * centre. */
+ * width_m) and the angle alpha of its side edge (length length_m) from Z, clockwise as viewed from above; a cylinder by its
+ * center. */
 #ifndef SCENE_H
 #define SCENE_H
 
@@ -51,13 +51,13 @@ typedef struct {
     double left_x, right_x;                   /* silhouette, aligned */
     double top_y, top_z_m;                    /* aligned y, and its Z */
     double base_x[3], base_y[3], base_z_m[3]; /* left, near, right */
-    bool base_seen[3];
+    bool base_visible[3];
 } scene_truth_t;
 
 /* A truck on the left of a straight level flight to the north, 1280 x 1280 pixels of 70 degrees, 8 images a second. */
 void scene_default(scene_t *scene);
 
-/* The k-th image, k >= 0. truth may be null. Points behind the camera are not seen. */
+/* The k-th image, k >= 0. truth may be null. Points behind the camera are not visible. */
 void scene_image(const scene_t *scene, int k, goe_image_t *image, scene_truth_t *truth);
 
 /* Settings of the library's defaults with the scene's camera; the same for the paper's method. */
@@ -68,15 +68,15 @@ goe_settings_t scene_window_settings(const scene_t *scene);
 void scene_make_cylinder(scene_t *scene);
 
 /* The noise that the scenes have: nothing but the rounding of their numbers is wrong. */
-void scene_tell_no_noise(goe_settings_t *settings);
+void scene_clear_noise(goe_settings_t *settings);
 
-/* No point is seen; a box may be. */
+/* No point is visible; a box may be. */
 void scene_hide_points(goe_image_t *image);
 
-/* Gaussian noise on every point, seen or not. */
+/* Gaussian noise on every point, visible or not. */
 void scene_add_noise(goe_image_t *image, check_random_t *random, double sigma_px);
 
-/* Brown-Conrady distortion of a normalised image point. */
+/* Brown-Conrady distortion of a normalized image point. */
 void scene_distort(const goe_camera_t *camera, double x, double y, double *distorted_x, double *distorted_y);
 
 /* The left-right mirror image of a flight to the north with the principal point at u = 0. */

@@ -1,4 +1,4 @@
-/* One image as the refined method sees it. SPDX-License-Identifier: MIT */
+/* One image as the filter method sees it. SPDX-License-Identifier: MIT */
 #include "sighting.h"
 
 #include <math.h>
@@ -49,10 +49,10 @@ void sighting_start(sighting_t *sighting, check_random_t *random) {
     sighting->sight.settings = &sighting->settings;
     sighting->sight.camera = &sighting->settings.camera;
     sighting->sight.sides = &no_sides;
-    sighting->sight.point_px = sighting->settings.detector.point_px;
-    sighting->sight.side_px = sighting->settings.detector.box_px;
-    sighting->sight.white_rad = sighting->settings.navigation.attitude_white_deg * GOE_RAD_PER_DEG;
-    sighting->sight.height_sd_m = sighting->settings.navigation.height_bias_m;
+    sighting->sight.point_px = sighting->settings.detector.point_noise_px;
+    sighting->sight.side_px = sighting->settings.detector.box_noise_px;
+    sighting->sight.white_rad = sighting->settings.navigation.attitude_white_sd_deg * GOE_RAD_PER_DEG;
+    sighting->sight.height_sd_m = sighting->settings.navigation.height_bias_sd_m;
     sighting->sight.state = sighting->state;
     sighting->sight.camera_m.x = 3.0f;
     sighting->sight.camera_m.z = 25.0f;
@@ -82,7 +82,7 @@ double sighting_height(const sighting_t *sighting, const double state[GOE_STATES
     return y + e[0] * (1.0 + y * y) - e[2] * x - e[1] * x * y;
 }
 
-/* A ray r of the told axes is r + e x r in the true ones, and the other way round with the other sign. */
+/* A ray r of the given axes is r + e x r in the true ones, and the other way round with the other sign. */
 void sighting_project(const sighting_t *sighting, const double state[GOE_STATES], const double point[3],
                       double seen[2]) {
     double e[3];
@@ -105,7 +105,7 @@ double sighting_place(sighting_t *sighting, check_random_t *random) {
 
 void sighting_finish(sighting_t *sighting, check_random_t *random, double z0_m, double truth[GOE_STATES]) {
     sighting->state[GOE_TOP] = (float)(check_random_between(random, 2.0, 60.0) / z0_m);
-    sighting->settings.refined.top_is_highest = check_random_bits(random) % 2u != 0u;
+    sighting->settings.filter.top_is_highest = check_random_bits(random) % 2u != 0u;
     for (int i = 0; i < GOE_STATES; i++) {
         truth[i] = (double)sighting->state[i];
     }

@@ -6,7 +6,7 @@
 #include "check.h"
 #include "refined/goe_observation.h"
 
-#define SETTLED 4 /* turns until a fixed point is as near as a float tells */
+#define SETTLED 4 /* iterations until a fixed point is exact to a float */
 
 typedef struct {
     goe_settings_t settings;
@@ -23,7 +23,7 @@ void sighting_start(sighting_t *sighting, check_random_t *random);
 /* As it starts, and the states that every obstacle has but for its extents: place and height's offset. Returns Z0, m. */
 double sighting_place(sighting_t *sighting, check_random_t *random);
 
-/* The top, whichever the detector tells; then what depends on the state. truth: the state in double. */
+/* The top, whichever the detector marks; then the parts that depend on the state. truth: the state in double. */
 void sighting_finish(sighting_t *sighting, check_random_t *random, double z0_m, double truth[GOE_STATES]);
 
 /* What depends on the state, after a change of it. */
@@ -32,7 +32,7 @@ void sighting_look(sighting_t *sighting);
 /* Y/Z at which a point of the image was measured, freed of the attitude bias of `state`, to first order. */
 double sighting_height(const sighting_t *sighting, const double state[GOE_STATES], size_t feature);
 
-/* Where the point is seen under the attitude bias of `state`: the exact small-rotation model of goe_observation.h in double. */
+/* Image of the point under the attitude bias of `state`: the exact small-rotation model of goe_observation.h in double. */
 void sighting_project(const sighting_t *sighting, const double state[GOE_STATES], const double point[3],
                       double seen[2]);
 

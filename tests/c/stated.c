@@ -9,13 +9,13 @@ void stated_start(goe_estimator_t *estimator, goe_method_t method) {
     settings.camera.fx_px = settings.camera.fy_px = 900.0f;
     settings.camera.cx_px = settings.camera.cy_px = 640.0f;
     settings.method = method;
-    settings.navigation.velocity_bias_m_s = 0.0f;
+    settings.navigation.velocity_bias_sd_m_s = 0.0f;
     CHECK_STATUS(GOE_OK, goe_init(estimator, sizeof *estimator, &settings, NULL));
     estimator->motion.heading_cos = 1.0f;
 }
 
 void stated_answer(goe_estimator_t *estimator, const stated_t *cylinder) {
-    stated_start(estimator, GOE_WITH_REFINED ? GOE_METHOD_REFINED : GOE_METHOD_WINDOW);
+    stated_start(estimator, GOE_WITH_FILTER ? GOE_METHOD_FILTER : GOE_METHOD_WINDOW);
     estimator->motion.time_us = NOW_US;
     estimator->motion.height_m = cylinder->camera_m;
     estimator->estimate_time_us = NOW_US;

@@ -10,18 +10,18 @@ static goe_camera_t camera;
 static goe_image_t image;
 static goe_view_t view;
 static goe_faults_t faults;
-static uint32_t causes[GOE_CAUSES];
+static uint32_t fault_counts[GOE_FAULT_COUNTS];
 
 void setUp(void) {
     memset(&camera, 0, sizeof camera);
     memset(&image, 0, sizeof image);
     memset(&view, 0xA5, sizeof view);
-    memset(causes, 0, sizeof causes);
+    memset(fault_counts, 0, sizeof fault_counts);
     camera.fx_px = 1000.0f;
     camera.fy_px = 500.0f;
     camera.cx_px = 320.0f;
     camera.cy_px = 240.0f;
-    faults.causes = causes;
+    faults.fault_counts = fault_counts;
     faults.first = GOE_OK;
 }
 void tearDown(void) {}
@@ -37,7 +37,7 @@ static void align(const float camera_to_trajectory[9]) {
 static void see(goe_pixel_t *pixel, float u, float v) {
     pixel->u_px = u;
     pixel->v_px = v;
-    pixel->seen = true;
+    pixel->visible = true;
 }
 
 static void check_point(float x, float y, const goe_point_t *point) {
@@ -63,7 +63,7 @@ static void every_feature_has_its_own_place(void) {
     CHECK_STATUS(GOE_OK, faults.first);
 }
 
-static void what_is_not_seen_is_not_usable(void) {
+static void invisible_features_are_not_usable(void) {
     see(&image.top, 320.0f, 240.0f);
     image.left.u_px = check_from_bits(0x7FC00000u); /* not read */
     align(unturned);
@@ -109,7 +109,7 @@ static void a_ray_too_far_aside_is_behind_the_camera(void) {
     TEST_ASSERT_FALSE(view.point[GOE_POINT_RIGHT].usable);
     TEST_ASSERT_FALSE(view.point[GOE_POINT_TOP].usable);
     CHECK_STATUS(GOE_BEHIND_CAMERA, faults.first);
-    TEST_ASSERT_EQUAL_UINT32(2u, causes[-GOE_BEHIND_CAMERA]);
+    TEST_ASSERT_EQUAL_UINT32(2u, fault_counts[-GOE_BEHIND_CAMERA]);
 }
 
 static void a_lens_that_cannot_be_inverted_loses_its_pixel_only(void) {
@@ -120,22 +120,22 @@ static void a_lens_that_cannot_be_inverted_loses_its_pixel_only(void) {
     TEST_ASSERT_FALSE(view.point[GOE_POINT_LEFT].usable);
     TEST_ASSERT_TRUE(view.point[GOE_POINT_RIGHT].usable);
     CHECK_STATUS(GOE_LENS_FAILED, faults.first);
-    TEST_ASSERT_EQUAL_UINT32(1u, causes[-GOE_LENS_FAILED]);
+    TEST_ASSERT_EQUAL_UINT32(1u, fault_counts[-GOE_LENS_FAILED]);
 }
 
-/* [GOE_CAUSES, goe_fault.c] */
+/* [GOE_FAULT_COUNTS, goe_fault.c] */
 static void counters_saturate(void) {
-    causes[-GOE_LENS_FAILED] = UINT32_MAX;
+    fault_counts[-GOE_LENS_FAILED] = UINT32_MAX;
     camera.k1 = -0.5f;
     see(&image.left, 320.0f + 900.0f, 240.0f);
     align(unturned);
-    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, causes[-GOE_LENS_FAILED]);
+    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, fault_counts[-GOE_LENS_FAILED]);
 }
 
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(every_feature_has_its_own_place);
-    RUN_TEST(what_is_not_seen_is_not_usable);
+    RUN_TEST(invisible_features_are_not_usable);
     RUN_TEST(own_rotation_is_taken_out);
     RUN_TEST(a_ray_too_far_aside_is_behind_the_camera);
     RUN_TEST(a_lens_that_cannot_be_inverted_loses_its_pixel_only);

@@ -15,7 +15,7 @@ typedef struct {
     double x, z;
 } corner_t;
 
-enum { FL, BL, BR, FR }; /* clockwise seen from above */
+enum { FL, BL, BR, FR }; /* clockwise as viewed from above */
 
 static check_random_t any;
 static sighting_t sighting;
@@ -46,7 +46,7 @@ static void corners_of(const double state[GOE_STATES], corner_t corner[4]) {
     }
 }
 
-/* The face from corner i clockwise to the next is seen if the camera lies on its outer side. */
+/* The face from corner i clockwise to the next is visible if the camera lies on its outer side. */
 static bool face_is_seen(const corner_t corner[4], int i) {
     const corner_t a = corner[i];
     const corner_t b = corner[(i + 1) % 4];
@@ -61,7 +61,7 @@ static bool face_is_hidden(const corner_t corner[4], int i) {
 
 static double range2(corner_t c) { return c.x * c.x + c.z * c.z; }
 
-/* Visible corners in image order; false if a face is seen from its end. */
+/* Visible corners in image order; false if a face is viewed from its end. */
 static bool find_visible(const corner_t corner[4], int visible[4], int *count) {
     bool seen[4] = {false, false, false, false};
     *count = 0;
@@ -105,10 +105,10 @@ static double down_of(corner_t c) {
     return seen[0] / seen[1];
 }
 
-/* What is least at the corner that the top is over: nearest to the camera, or highest in the raw image. */
+/* The quantity that is least at the corner below the top: distance from the camera, or height in the raw image. */
 static double rank(corner_t c, bool highest) { return highest ? down_of(c) : range2(c); }
 
-/* False if two are alike. */
+/* False if two are equal. */
 static bool find_top(const corner_t corner[4], bool highest, int *found) {
     bool clear = true;
     *found = 0;
@@ -164,7 +164,7 @@ static void any_box(corner_t corner[4]) {
         sighting.state[GOE_FRONT_X] = (float)(w * cos(b));
         sighting.state[GOE_DEPTH_DIFFERENCE] = (float)(l * cos(b) - w * fabs(sin(b)));
         sighting.state[GOE_TOP] = (float)(check_random_between(&any, 2.0, 40.0) / z0_m);
-        sighting.settings.refined.top_is_highest = check_random_bits(&any) % 2u != 0u;
+        sighting.settings.filter.top_is_highest = check_random_bits(&any) % 2u != 0u;
         for (int i = 0; i < GOE_STATES; i++) {
             truth[i] = (double)sighting.state[i];
         }
@@ -219,9 +219,9 @@ static void check_rows(void) {
 static const int faces_to_feature[3] = {GOE_POINT_BASE_LEFT, GOE_POINT_BASE_NEAR, GOE_POINT_BASE_RIGHT};
 
 /* [goe_image_t.base_left, goe_image_t.pose, goe_image_t.top, (R1), (R10), (R11), (R12), (R13), (R2), (R9)]
- * GIVEN boxes of any size, side and orientation WHEN all that can be seen is measured where brute force puts it THEN all
- * residuals are 0, so that the same corners were taken, and all derivatives are those of the projection. */
-static void rows_are_those_of_the_corners_that_are_seen(void) {
+ * GIVEN boxes of any size, side and orientation WHEN all visible features are measured at their brute-force places THEN all
+ * residuals are 0, which shows that the same corners were taken, and all derivatives are those of the projection. */
+static void rows_are_those_of_the_corners_that_are_visible(void) {
     int faces[3] = {0, 0, 0};
     any = check_random_start("all features");
     for (int n = 0; n < CASES; n++) {
@@ -230,7 +230,7 @@ static void rows_are_those_of_the_corners_that_are_seen(void) {
         int count;
         int top;
         any_box(corner);
-        const bool highest = sighting.settings.refined.top_is_highest;
+        const bool highest = sighting.settings.filter.top_is_highest;
         if (!find_visible(corner, visible, &count) || !find_top(corner, highest, &top)) {
             continue;
         }
@@ -252,8 +252,8 @@ static void rows_are_those_of_the_corners_that_are_seen(void) {
         check_rows();
         faces[count - 1]++;
     }
-    check_report("boxes of which one face is seen", faces[1]);
-    check_report("boxes of which two faces are seen", faces[2]);
+    check_report("boxes with one visible face", faces[1]);
+    check_report("boxes with two visible faces", faces[2]);
     TEST_ASSERT_TRUE(faces[1] > CASES / 20 && faces[2] > CASES / 2);
 }
 
@@ -281,7 +281,7 @@ static void a_silhouette_alone_takes_the_outermost_corners(void) {
 /* [goe_image_t.base_left]
  * GIVEN two faces of which the detector missed the corner between them WHEN the length is estimated THEN the outer corners
  * are those of both faces all the same, if that fits clearly better. */
-static void a_missed_near_corner_is_told_from_a_single_face(void) {
+static void a_missed_near_corner_is_distinguished_from_a_single_face(void) {
     int checked = 0;
     any = check_random_start("missed corner");
     for (int n = 0; n < CASES; n++) {
@@ -416,7 +416,7 @@ static void names_move_the_reference_point_and_not_the_middle(void) {
 }
 
 /* [(R24)] 1 + 12 var(d)/(sz + fz)^2, of which the ratio is at most 4. */
-static void an_unsure_depth_widens_what_hangs_on_the_corner(void) {
+static void an_uncertain_depth_widens_corner_quantities(void) {
     goe_box_edges_t edges;
     goe_shape_t shape;
     start_at(30.0);
@@ -434,12 +434,12 @@ static void an_unsure_depth_widens_what_hangs_on_the_corner(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(rows_are_those_of_the_corners_that_are_seen);
+    RUN_TEST(rows_are_those_of_the_corners_that_are_visible);
     RUN_TEST(a_silhouette_alone_takes_the_outermost_corners);
-    RUN_TEST(a_missed_near_corner_is_told_from_a_single_face);
+    RUN_TEST(a_missed_near_corner_is_distinguished_from_a_single_face);
     RUN_TEST(depths_solve_their_equations);
     RUN_TEST(an_edge_keeps_its_name_until_it_lies_clearly_across);
     RUN_TEST(names_move_the_reference_point_and_not_the_middle);
-    RUN_TEST(an_unsure_depth_widens_what_hangs_on_the_corner);
+    RUN_TEST(an_uncertain_depth_widens_corner_quantities);
     return UNITY_END();
 }

@@ -72,7 +72,7 @@ static void a_front_alone_is_exact(void) {
         const place_t right = {middle.x + 0.5 * w * cos(b), middle.z - 0.5 * w * sin(b)};
         show_face(left, right);
         sighting.sight.point_px = 0.05f;
-        sighting.settings.navigation.attitude_bias_deg = 0.05f;
+        sighting.settings.navigation.attitude_bias_sd_deg = 0.05f;
         TEST_ASSERT_TRUE(goe_footprint_one_face(&sighting.sight, &box));
         const place_t reference = reference_of(&box);
         CHECK_CLOSE(1.0e-4, b, box.orientation_rad);
@@ -86,7 +86,7 @@ static void a_front_alone_is_exact(void) {
 }
 
 /* [(R20)] GIVEN a face that lies more along than across THEN it is the side, and its near end is a corner of the front: the right one
- * if the side lies to the right of it, seen from outside. */
+ * if the side lies to the right of it, viewed from outside. */
 static void a_side_alone_has_its_near_end_on_the_front(void) {
     any = check_random_start("side");
     for (int n = 0; n < CASES; n++) {
@@ -97,11 +97,11 @@ static void a_side_alone_has_its_near_end_on_the_front(void) {
         const place_t near = {on_right ? -aside : aside, check_random_between(&any, 40.0, 50.0)};
         const place_t far = {near.x + l * sin(b), near.z + l * cos(b)};
         if (on_right ? near.x / near.z > far.x / far.z - 0.01 : near.x / near.z < far.x / far.z + 0.01) {
-            continue; /* that side is not seen */
+            continue; /* that side is not visible */
         }
         show_face(on_right ? near : far, on_right ? far : near);
         sighting.sight.point_px = 0.05f;
-        sighting.settings.navigation.attitude_bias_deg = 0.05f;
+        sighting.settings.navigation.attitude_bias_sd_deg = 0.05f;
         TEST_ASSERT_TRUE(goe_footprint_one_face(&sighting.sight, &box));
         const place_t reference = reference_of(&box);
         const double half = (on_right ? -0.5 : 0.5) * width_of(&box); /* from the corner to the middle of the front */
@@ -112,11 +112,11 @@ static void a_side_alone_has_its_near_end_on_the_front(void) {
     }
 }
 
-/* [(R20)] GIVEN noise THEN the told sigma of the orientation is at least what the noise makes of it. */
+/* [(R20)] GIVEN noise THEN the reported sigma of the orientation is at least its effect on the orientation. */
 static void the_sigma_covers_the_noise(void) {
     const int draws = 2000;
     double sum2 = 0.0;
-    double told = 0.0;
+    double reported = 0.0;
     any = check_random_start("sigma");
     for (int n = 0; n < draws; n++) {
         show_face((place_t){-6.0, 51.0}, (place_t){2.0, 49.0});
@@ -128,11 +128,11 @@ static void the_sigma_covers_the_noise(void) {
         TEST_ASSERT_TRUE(goe_footprint_one_face(&sighting.sight, &box));
         const double error = (double)box.orientation_rad - atan2(2.0, 8.0);
         sum2 += error * error;
-        told = (double)box.sigma_rad;
+        reported = (double)box.sigma_rad;
     }
-    check_report("rms error of the orientation over the told sigma", sqrt(sum2 / draws) / told);
-    TEST_ASSERT_TRUE(sqrt(sum2 / draws) < told);
-    TEST_ASSERT_TRUE(sqrt(sum2 / draws) > 0.2 * told);
+    check_report("rms error of the orientation over the reported sigma", sqrt(sum2 / draws) / reported);
+    TEST_ASSERT_TRUE(sqrt(sum2 / draws) < reported);
+    TEST_ASSERT_TRUE(sqrt(sum2 / draws) > 0.2 * reported);
 }
 
 /* GIVEN a face and an attitude that may be off by a roll THEN the roll tilts the face's ends against each other, which looks like a
@@ -145,7 +145,7 @@ static void a_roll_looks_like_a_depth(void) {
     for (int n = 0; n < 2; n++) {
         show_face(left, right);
         sighting.sight.point_px = 0.05f;
-        sighting.settings.navigation.attitude_bias_deg = n == 0 ? 0.001f : 1.0f;
+        sighting.settings.navigation.attitude_bias_sd_deg = n == 0 ? 0.001f : 1.0f;
         TEST_ASSERT_TRUE(goe_footprint_one_face(&sighting.sight, &box));
         sigma[n] = (double)box.sigma_rad;
     }
@@ -154,20 +154,21 @@ static void a_roll_looks_like_a_depth(void) {
     CHECK_CLOSE(0.01 * tilt, tilt, added);
 }
 
-/* The next image shows a face of 8 m that falls back by `back_m` to the right, across the line of sight. Returns how many images agree by now. */
+/* The next image shows a face of 8 m that falls back by `back_m` to the right, across the line of sight. Returns how many images agree by
+ * now. */
 static int agreeing_after(goe_filter_t *filter, double back_m) {
     const double across_m = sqrt(64.0 - back_m * back_m);
     const place_t middle = {-70.0 / 8.0 * back_m, 70.0 / 8.0 * across_m};
     show_face((place_t){middle.x - 0.5 * across_m, middle.z - 0.5 * back_m},
               (place_t){middle.x + 0.5 * across_m, middle.z + 0.5 * back_m});
     sighting.sight.point_px = 0.05f;
-    sighting.settings.navigation.attitude_bias_deg = 0.05f;
+    sighting.settings.navigation.attitude_bias_sd_deg = 0.05f;
     TEST_ASSERT_FALSE(goe_box_start(filter, &sighting.sight));
     return filter->candidate.agreeing;
 }
 
-/* GIVEN two ends that stand askew across the line of sight WHEN the camera does not stand before them THEN they are the ends of two faces, and
- * no image agrees; nor does any while the near corner was seen shortly before. */
+/* GIVEN two ends askew across the line of sight WHEN the camera is not in front of them THEN they are the ends of two faces, and
+ * no image agrees; nor does any while the near corner was visible shortly before. */
 static void ends_that_would_show_a_second_face_are_none_of_one(void) {
     any = check_random_start("askew");
     for (int n = 0; n < 2; n++) {
@@ -178,7 +179,7 @@ static void ends_that_would_show_a_second_face_are_none_of_one(void) {
             const double back_m = n == 0 ? 4.0 : 0.0;
             show_face((place_t){-4.0, 70.0 - back_m}, (place_t){4.0, 70.0 + back_m});
             sighting.sight.point_px = 0.05f;
-            sighting.settings.navigation.attitude_bias_deg = 0.05f;
+            sighting.settings.navigation.attitude_bias_sd_deg = 0.05f;
             TEST_ASSERT_FALSE(goe_box_start(&filter, &sighting.sight));
             TEST_ASSERT_EQUAL_UINT8(0, filter.candidate.agreeing);
         }
@@ -268,7 +269,7 @@ static void good_box(void) {
 }
 
 /* [(R20)] */
-static void what_one_face_does_not_tell_is_refused(void) {
+static void an_unobservable_quantity_of_one_face_is_refused(void) {
     any = check_random_start("refusals");
     good_face();
     sighting.sight.base = false;
@@ -294,13 +295,13 @@ static void what_one_face_does_not_tell_is_refused(void) {
     show_face((place_t){-20.0, 51.0}, (place_t){20.0, 49.0}); /* larger than 0.4 of the range */
     TEST_ASSERT_FALSE(one_face());
     show_face((place_t){0.0, 5.0},
-              (place_t){1.0e-4, 5.0}); /* a tenth of a millimetre has no direction, whatever its sigma */
+              (place_t){1.0e-4, 5.0}); /* a tenth of a millimeter has no direction, whatever its sigma */
     TEST_ASSERT_FALSE(one_face());
     TEST_ASSERT_TRUE(box.sigma_rad < 0.2f);
 }
 
 /* [(R19)] */
-static void what_two_faces_do_not_tell_is_refused(void) {
+static void an_unobservable_quantity_of_two_faces_is_refused(void) {
     any = check_random_start("refusals");
     good_box();
     sighting.sight.base = false;
@@ -332,7 +333,7 @@ int main(void) {
     RUN_TEST(ends_that_would_show_a_second_face_are_none_of_one);
     RUN_TEST(a_front_that_becomes_a_side_agrees_with_itself);
     RUN_TEST(two_faces_of_equal_depth_are_right_to_first_order);
-    RUN_TEST(what_one_face_does_not_tell_is_refused);
-    RUN_TEST(what_two_faces_do_not_tell_is_refused);
+    RUN_TEST(an_unobservable_quantity_of_one_face_is_refused);
+    RUN_TEST(an_unobservable_quantity_of_two_faces_is_refused);
     return UNITY_END();
 }

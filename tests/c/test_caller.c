@@ -43,18 +43,18 @@ static goe_status_t see(int k, bool blind, scene_truth_t *truth) {
     }
     if (blind) {
         scene_hide_points(&image);
-        image.box.seen = 0;
+        image.box.sides = 0;
     }
     return goe_update(&estimator, &image, &estimate);
 }
 
 static void foresee(void) {
-    goe_plan_t plan;
-    memset(&plan, 0, sizeof plan);
-    plan.velocity_ned_m_s[0] = (float)scene.speed_mps;
-    plan.margin_m = 25.0f;
-    plan.clearance_m = 30.0f;
-    CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &plan, &hazard));
+    goe_intent_t intent;
+    memset(&intent, 0, sizeof intent);
+    intent.velocity_ned_m_s[0] = (float)scene.speed_mps;
+    intent.margin_m = 25.0f;
+    intent.clearance_m = 30.0f;
+    CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &intent, &hazard));
 }
 
 /* [goe_hazard]
@@ -67,23 +67,23 @@ static void a_silent_detector(void) {
         const bool blind = k >= 32 && k < 56;
         const goe_status_t status = see(k, blind, &truth);
         if (blind) {
-            CHECK_STATUS(GOE_NOTHING_SEEN, status);
+            CHECK_STATUS(GOE_NO_DETECTION, status);
             TEST_ASSERT_FALSE(estimate.fresh);
             TEST_ASSERT_TRUE(estimate.valid & GOE_HAS_POSITION);
             CHECK_CLOSE(1.0e-4, (k - 31) / RATE_HZ, estimate.age_s);
             CHECK_CLOSE(4.0 * (double)estimate.sigma.z_m + DEEP_M, truth.z_m, estimate.z_m);
             foresee();
-            TEST_ASSERT_TRUE(hazard.violation > 0.5f);
+            TEST_ASSERT_TRUE(hazard.conflict_probability > 0.5f);
         }
-        TEST_ASSERT_TRUE(estimate.points >= images); /* no restart */
-        images = estimate.points;
+        TEST_ASSERT_TRUE(estimate.images_used >= images); /* no restart */
+        images = estimate.images_used;
     }
     TEST_ASSERT_TRUE(estimate.fresh);
     TEST_ASSERT_FALSE(estimate.suspect);
 }
 
-/* GIVEN a number that passes to another obstacle THEN within three seconds the estimate is suspect or began anew, and within six
- * it is at the one that is seen. */
+/* GIVEN a number that passes to another obstacle THEN within three seconds the estimate is suspect or began again, and within six
+ * it is at the visible one. */
 static void a_number_that_passes_to_another(void) {
     scene_truth_t truth;
     bool noticed = false;
@@ -95,9 +95,9 @@ static void a_number_that_passes_to_another(void) {
             scene.width_m = 12.0;
         }
         (void)see(k, false, &truth);
-        noticed = noticed || (k >= 32 && (estimate.suspect || estimate.points < images || !estimate.fresh));
+        noticed = noticed || (k >= 32 && (estimate.suspect || estimate.images_used < images || !estimate.fresh));
         TEST_ASSERT_TRUE(k < 32 + NOTICED || noticed);
-        images = estimate.points;
+        images = estimate.images_used;
     }
     check_report("range, off by, m", (double)estimate.z_m - truth.z_m);
     check_report("sigma, m", (double)estimate.sigma.z_m);
@@ -106,7 +106,7 @@ static void a_number_that_passes_to_another(void) {
 }
 
 /* [goe_estimate_t.x_m, goe_hazard]
- * GIVEN an obstacle that is passed, and is seen no more THEN the hazard is over when it lies behind, though the estimate is old. */
+ * GIVEN an obstacle that is passed and no longer visible THEN the hazard is over when it is behind, though the estimate is old. */
 static void an_obstacle_that_is_passed(void) {
     scene_truth_t truth;
     for (int k = 0; k < 136; k++) {
@@ -116,8 +116,8 @@ static void an_obstacle_that_is_passed(void) {
     TEST_ASSERT_FALSE(estimate.fresh);
     TEST_ASSERT_TRUE(estimate.z_m < 0.0f);
     foresee();
-    CHECK_SAME(0.0f, hazard.time_s);
-    TEST_ASSERT_TRUE(hazard.miss_m > 20.0f);
+    CHECK_SAME(0.0f, hazard.tcpa_s);
+    TEST_ASSERT_TRUE(hazard.dcpa_m > 20.0f);
 }
 
 static void by_boxes(void (*test)(void)) {

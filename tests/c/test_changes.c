@@ -1,4 +1,4 @@
-/* Changes of the model: what is known is told in other states, and nothing of it is lost or made up. SPDX-License-Identifier: MIT
+/* Changes of the model: the information is expressed in other states, and nothing of it is lost or made up. SPDX-License-Identifier: MIT
  *
  * The covariance after a change, less what the change adds on purpose, must be the one before, by the derivatives of the old states
  * by the new ones, which are taken here as differences, in double. */
@@ -41,7 +41,7 @@ static void covariance_of(covariance_t c) {
     }
 }
 
-/* The states in some triangle, each about as uncertain as it is told and with something of all that follow. */
+/* The states in some triangle, each with its uncertainty and a correlation with all that follow. */
 static void be_uncertain(const double sigma[GOE_STATES]) {
     goe_srif_clear(&filter.root);
     for (size_t i = 0; i < GOE_STATES; i++) {
@@ -106,7 +106,7 @@ static void differences(map_t map, double by[GOE_STATES][GOE_STATES]) {
     }
 }
 
-/* `before` is what the covariance now, less what was added, is in the old states. */
+/* `before` is the covariance now, less the added one, in the old states. */
 static void check_carried(map_t to_old, covariance_t before, const double added[GOE_STATES]) {
     covariance_t now;
     covariance_t carried;
@@ -182,7 +182,7 @@ static void make_chord(bool right) {
     filter.state[GOE_SIDE_X] = (float)check_random_between(&any, -0.1, 0.1);
     filter.state[GOE_FRONT_X] = (float)check_random_between(&any, 0.05, 0.2);
     be_uncertain(sigma);
-    for (size_t i = 0; i < GOE_DEPTH_DIFFERENCE; i++) { /* idle: no image told of it */
+    for (size_t i = 0; i < GOE_DEPTH_DIFFERENCE; i++) { /* idle: no image observed it */
         *goe_srif_at(&filter.root, i, GOE_DEPTH_DIFFERENCE) = 0.0f;
     }
     *goe_srif_at(&filter.root, GOE_DEPTH_DIFFERENCE, GOE_TOP) = 0.0f;
@@ -198,8 +198,8 @@ static void make_chord(bool right) {
     }
 }
 
-/* The corner between the faces, at the end of the front from which the chord leads away, lies where the end that has left was seen. */
-static void check_corner(const double x[GOE_STATES], float seen_x) {
+/* The corner between the faces, at the end of the front from which the chord leads away, is where the departed end was visible. */
+static void check_corner(const double x[GOE_STATES], float image_x) {
     double side_z;
     double front_z;
     edges_of(x, &side_z, &front_z);
@@ -207,13 +207,13 @@ static void check_corner(const double x[GOE_STATES], float seen_x) {
     const double q = x[GOE_INVERSE_RANGE];
     const double px = x[GOE_BEARING] + end * x[GOE_FRONT_X] - (double)sighting.sight.camera_m.x * q;
     const double pz = 1.0 + end * front_z - (double)sighting.sight.camera_m.z * q;
-    CHECK_CLOSE(1.0e-4, px / pz, seen_x);
+    CHECK_CLOSE(1.0e-4, px / pz, image_x);
 }
 
-/* GIVEN a chord that becomes a box WHEN one face has turned away THEN what was known of its ends is known of the box's outer corners,
+/* GIVEN a chord that becomes a box WHEN one face has turned away THEN the information on its ends is that on the box's outer corners,
  * a little less well for the images in which it went unnoticed; the corner between them is somewhere on the circle over the
  * chord; and the images to come are free to correct it. */
-static void a_box_by_its_outline_knows_what_the_chord_knew(void) {
+static void an_outline_box_starts_from_the_chord(void) {
     int changed = 0;
     any = check_random_start("a face turns away");
     for (int n = 0; n < 20 * CASES && changed < CASES; n++) {
@@ -270,8 +270,8 @@ static void renamed(const double x[GOE_STATES], double to[GOE_STATES]) {
     to[GOE_TOP] = x[GOE_TOP] / zeta;
 }
 
-/* GIVEN a box that is seen from so far aside that its side lies across THEN side and front change names, and all that is known of
- * the one is known of the other. */
+/* GIVEN a box viewed from so far aside that its side is across THEN side and front change names, and all information
+ * on the one is that on the other. */
 static void a_box_by_other_names_is_known_as_well(void) {
     const double sigma[GOE_STATES] = {0.01, 0.01, 0.01, 0.005, 0.01, 2.0e-4, 0.01, 0.01, 0.01, 0.01};
     const double nothing[GOE_STATES] = {0.0};
@@ -295,7 +295,7 @@ static void a_box_by_other_names_is_known_as_well(void) {
     }
 }
 
-/* GIVEN a box of which one face was seen WHEN the second comes into view THEN its length, which was held, is open by twice itself, along
+/* GIVEN a box with one visible face WHEN the second comes into view THEN its length, which was fixed, is open by twice itself, along
  * the side and nothing else. */
 static void a_second_face_opens_the_length_alone(void) {
     const double sigma[GOE_STATES] = {0.01, 0.01, 0.01, 0.005, 0.01, 2.0e-4, 0.01, 0.01, 0.01, 0.01};
@@ -340,7 +340,7 @@ static void make_disc(bool both, goe_footprint_t *box) {
     const double z = 1.0 / (double)filter.state[GOE_INVERSE_RANGE] - 25.0;
     const double x = check_random_between(&any, -0.2, 0.2);
     const double xs[3] = {x - 0.06, x + 0.01, x + 0.07};
-    /* a face that is seen alone stands across the line of sight: what stands askew shows a second one */
+    /* a face that is visible alone is across the line of sight: an oblique one shows a second one */
     const double nearer[3] = {both ? 0.04 : -0.06 * x, 0.0, both ? -0.04 : 0.07 * x};
     filter.phase = GOE_PHASE_DISC;
     filter.state[GOE_FRONT_X] = 0.1f;
@@ -356,7 +356,7 @@ static void make_disc(bool both, goe_footprint_t *box) {
     }
     sighting.sight.base = true;
     sighting.sight.point_px = 0.1f;
-    sighting.settings.navigation.attitude_bias_deg = 0.01f;
+    sighting.settings.navigation.attitude_bias_sd_deg = 0.01f;
     memset(box, 0, sizeof *box);
     TEST_ASSERT_TRUE(both ? goe_footprint_two_faces(&sighting.sight, box)
                           : goe_footprint_one_face(&sighting.sight, box));
@@ -380,10 +380,10 @@ static void turned(const double x[GOE_STATES], double to[GOE_STATES]) {
     to[GOE_INVERSE_RANGE] = x[GOE_INVERSE_RANGE] / zeta;
 }
 
-/* GIVEN a disc that becomes a box THEN it keeps what it knew of attitude, ground, place and range, with what the biases and the place
- * have gained since; the place is open again by the size of the box, as another point of it counts from now on, and the range by as
- * much; extents are open but for the length of a single face, which nothing tells. */
-static void a_box_begins_with_what_the_disc_knew(void) {
+/* GIVEN a disc that becomes a box THEN it keeps its information on attitude, ground, place and range, with the process noise of biases and
+ * place since then; the place is open again by the size of the box, as another point of it counts from now on, and the range by as
+ * much; extents are open but for the length of a single face, which nothing determines. */
+static void a_box_starts_from_the_disc(void) {
     any = check_random_start("a box starts");
     for (int n = 0; n < CASES; n++) {
         const bool both = n % 2 == 0;
@@ -424,7 +424,7 @@ static void a_box_begins_with_what_the_disc_knew(void) {
     }
 }
 
-/* GIVEN one face WHEN its orientation differs from that of the image before THEN the count of images that agree begins anew with
+/* GIVEN one face WHEN its orientation differs from that of the image before THEN the count of images that agree begins again with
  * this one; nor do images of one face and of two agree. */
 static void only_images_that_agree_start_a_box(void) {
     goe_footprint_t box;
@@ -450,10 +450,10 @@ static void only_images_that_agree_start_a_box(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(a_box_by_its_outline_knows_what_the_chord_knew);
+    RUN_TEST(an_outline_box_starts_from_the_chord);
     RUN_TEST(a_box_by_other_names_is_known_as_well);
     RUN_TEST(a_second_face_opens_the_length_alone);
-    RUN_TEST(a_box_begins_with_what_the_disc_knew);
+    RUN_TEST(a_box_starts_from_the_disc);
     RUN_TEST(only_images_that_agree_start_a_box);
     return UNITY_END();
 }

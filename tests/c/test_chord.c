@@ -1,4 +1,4 @@
-/* Boxes by their silhouette alone, and what is no box or no disc. SPDX-License-Identifier: MIT */
+/* Boxes by their silhouette alone, and shapes that are no box or no disc. SPDX-License-Identifier: MIT */
 /* tests: lib/refined/goe_chord.c */
 #include "refined/goe_chord.h"
 
@@ -12,7 +12,7 @@
 
 #define CASES CHECK_DRAWS(1000)
 #define HOUSES CHECK_DRAWS(300)
-#define IMAGES 188 /* half a metre each, to some metres before the obstacle */
+#define IMAGES 188 /* half a meter each, to some meters before the obstacle */
 #define RAD_PER_DEG 0.017453292519943295
 #define BOX_BITS 0x3Fu
 
@@ -29,9 +29,9 @@ static goe_estimate_t estimate;
 static goe_image_t image;
 static unsigned phases; /* bit i: phase i was there */
 static bool suspected;
-static unsigned reasons; /* bit i: reason i was told */
+static unsigned reasons; /* bit i: reason i was reported */
 
-/* A box on the left whose front and right face are seen until the front turns away; the aircraft passes it closely. */
+/* A box on the left whose front and right face are visible until the front turns away; the aircraft passes it closely. */
 void setUp(void) {
     scene_default(&scene);
     scene.width_m = 5.0;
@@ -62,12 +62,12 @@ static void update(void) {
     reasons |= 1u << estimate.reason;
 }
 
-static bool was_told(goe_reason_t reason) { return (reasons >> reason & 1u) != 0u; }
+static bool was_reported(goe_reason_t reason) { return (reasons >> reason & 1u) != 0u; }
 
 static void leave_base_out(void) {
-    image.base_left.seen = false;
-    image.base_near.seen = false;
-    image.base_right.seen = false;
+    image.base_left.visible = false;
+    image.base_near.visible = false;
+    image.base_right.visible = false;
 }
 
 static void see_silhouette(int k, double sigma_px) {
@@ -91,7 +91,7 @@ static double see(const double state[GOE_STATES], size_t feature) {
     const double px = state[GOE_BEARING] - (double)sighting.sight.camera_m.x * state[GOE_INVERSE_RANGE];
     const double pz = 1.0 - (double)sighting.sight.camera_m.z * state[GOE_INVERSE_RANGE];
     const double y = (double)sighting.sight.height_m * state[GOE_INVERSE_RANGE] - state[GOE_TOP];
-    const bool highest = sighting.settings.refined.top_is_highest && y > 0.0;
+    const bool highest = sighting.settings.filter.top_is_highest && y > 0.0;
     const bool right_is_near = px * state[GOE_FRONT_X] + pz * state[GOE_SIDE_X] < 0.0;
     const double side = (feature == GOE_POINT_TOP ? right_is_near != highest : feature == GOE_POINT_RIGHT) ? 0.5 : -0.5;
     const double held = sighting_height(&sighting, state, feature) * end_z(truth, side);
@@ -126,7 +126,7 @@ static void measure(size_t feature) {
     kind[expected_rows++] = feature;
 }
 
-/* [refined.top_is_highest, (R8)]
+/* [filter.top_is_highest, (R8)]
  * GIVEN chords of any place, slope and length THEN the residuals are 0 at the truth and the derivatives those of its ends; base
  * corners give no rows. */
 static void rows_are_those_of_the_ends(void) {
@@ -153,7 +153,7 @@ static void rows_are_those_of_the_ends(void) {
 
 static double half_diagonal(void) { return 0.5 * hypot(scene.width_m, scene.length_m); }
 
-/* The estimate's centre from the box's, in sigmas of each axis; the camera starts at north 0, east 0, heading north. */
+/* The estimate's center from the box's, in sigmas of each axis; the camera starts at north 0, east 0, heading north. */
 static double center_off(void) {
     const double s = sin(scene.alpha_deg * RAD_PER_DEG);
     const double c = cos(scene.alpha_deg * RAD_PER_DEG);
@@ -162,7 +162,7 @@ static double center_off(void) {
     return fmax(fabs(north) / (double)estimate.sigma.center_north_m, fabs(east) / (double)estimate.sigma.center_east_m);
 }
 
-/* GIVEN a box without base corners WHEN two of its faces are seen THEN it is told as a disc about its middle. */
+/* GIVEN a box without base corners WHEN two of its faces are visible THEN it is reported as a disc about its middle. */
 static void check_chord(void) {
     TEST_ASSERT_EQUAL_INT(GOE_MODEL_DISC, estimate.model);
     TEST_ASSERT_EQUAL_HEX32(0u, estimate.valid & (GOE_HAS_LENGTH | GOE_HAS_ORIENTATION));
@@ -189,7 +189,7 @@ static void a_box_comes_out_of_its_silhouette(void) {
     for (int i = 0; i < 3; i++) {
         setUp();
         scene.alpha_deg = alpha_deg[i];
-        scene_tell_no_noise(&settings);
+        scene_clear_noise(&settings);
         start();
         for (int k = 0; k < IMAGES; k++) {
             see_silhouette(k, 0.0);
@@ -204,11 +204,11 @@ static void a_box_comes_out_of_its_silhouette(void) {
     }
 }
 
-/* GIVEN errors as settings tell them THEN what is told of the box holds within its sigmas. */
+/* GIVEN errors as configured THEN the reported box is right within its sigmas. */
 static void noise_does_not_hide_the_box(void) {
     any = check_random_start("silhouettes");
-    settings.navigation.attitude_bias_deg = 1.0e-3f;
-    settings.navigation.attitude_white_deg = 1.0e-3f;
+    settings.navigation.attitude_bias_sd_deg = 1.0e-3f;
+    settings.navigation.attitude_white_sd_deg = 1.0e-3f;
     start();
     for (int k = 0; k < IMAGES; k++) {
         see_silhouette(k, 0.5);
@@ -242,7 +242,7 @@ static int any_house(void) {
     return (int)(scene.image_rate_hz * (reach_s - 1.0 - half_diagonal() / scene.speed_mps));
 }
 
-/* Worst error of the centre, or of the height, in sigmas, of all answers of a flight that are not suspect. */
+/* Worst error of the center, or of the height, in sigmas, of all answers of a flight that are not suspect. */
 static double worst_confident(int images) {
     double worst = 0.0;
     start();
@@ -276,10 +276,10 @@ static void outlines_of_houses_are_not_confidently_wrong(void) {
 }
 
 /* GIVEN a flight WHEN it is mirrored THEN the same models come at the same images, and the box is the mirrored one. */
-static void left_and_right_are_alike(void) {
+static void left_and_right_are_equal(void) {
     unsigned char phase[IMAGES];
     scene.camera.cx_px = 0.0f;
-    scene_tell_no_noise(&settings);
+    scene_clear_noise(&settings);
     start();
     for (int k = 0; k < IMAGES; k++) {
         see_silhouette(k, 0.0);
@@ -304,7 +304,7 @@ static void left_and_right_are_alike(void) {
 
 /* GIVEN a box that starts by its silhouette WHEN its base comes into view THEN it becomes a box by its corners. */
 static void base_corners_end_the_chord(void) {
-    scene_tell_no_noise(&settings);
+    scene_clear_noise(&settings);
     start();
     for (int k = 0; k < 60; k++) {
         see_silhouette(k, 0.0);
@@ -366,7 +366,7 @@ static void ends_that_leave_in_turn_make_no_box(void) {
     TEST_ASSERT_FALSE(changes());
 }
 
-/* GIVEN a camera that stands within the circle over the chord THEN no ray of it meets that circle from outside. */
+/* GIVEN a camera that is within the circle over the chord THEN no ray of it meets that circle from outside. */
 static void within_the_circle_there_is_no_corner(void) {
     leave_chord(0.0f, 0.1f, 0.04f);
     filter.state[GOE_FRONT_X] = 2.2f;
@@ -387,7 +387,8 @@ static void faces_of_no_box_are_left_a_chord(void) {
 
 /* ---------------------------------------------------------------------------------------------------------- cylinders -- */
 
-/* [GOE_REASON_SHAPE, (R7)] GIVEN cylinders, noise-free and noisy THEN they stay discs and are not suspect, also if a disc was asked for. */
+/* [GOE_REASON_SHAPE, (R7)] GIVEN cylinders, noise-free and noisy THEN they stay discs and are not suspect, also if a disc was configured.
+ * */
 static void a_cylinder_stays_a_disc(void) {
     any = check_random_start("cylinders");
     for (int i = 0; i < 12; i++) {
@@ -409,12 +410,12 @@ static void a_cylinder_stays_a_disc(void) {
     }
 }
 
-/* [goe_report.c, (R7)] GIVEN a long box WHEN a disc is asked for THEN it is told, and told as suspect. */
+/* [goe_report.c, (R7)] GIVEN a long box WHEN a disc is configured THEN it is reported, and reported as suspect. */
 static void a_disc_by_force_is_suspect(void) {
     any = check_random_start("force");
     scene.length_m = 18.0;
     settings.model = GOE_MODEL_DISC;
-    settings.navigation.position_walk_m = 0.0f; /* as it is flown */
+    settings.navigation.position_walk_sd_m = 0.0f; /* as it is flown */
     start();
     for (int k = 0; k < 120; k++) {
         see_silhouette(k, 0.3);
@@ -426,7 +427,7 @@ static void a_disc_by_force_is_suspect(void) {
 
 /* ------------------------------------------------------------------------------------------------------ base corners -- */
 
-/* What a detector without a sense of shape tells of a cylinder: the lower corners of its bounding box, and the point between. */
+/* A cylinder from a detector without a sense of shape: the lower corners of its bounding box, and the point between. */
 static void fake_base(int k) {
     scene_truth_t seen;
     scene_image(&scene, k, &image, &seen);
@@ -458,14 +459,14 @@ static void false_base_corners_are_found_out(void) {
     }
     TEST_ASSERT_TRUE(was_in(GOE_PHASE_BOX));
     TEST_ASSERT_TRUE(suspected);
-    TEST_ASSERT_TRUE(was_told(GOE_REASON_BASE));
+    TEST_ASSERT_TRUE(was_reported(GOE_REASON_BASE));
     TEST_ASSERT_EQUAL_INT(GOE_REASON_BASE, estimate.reason); /* and stays so */
     TEST_ASSERT_FALSE(goe_filter_is_box(&estimator.filter));
 }
 
-/* GIVEN base corners that proved to be none WHEN the window answers, which knows of no doubt THEN its answer tells of it, and a
- * graver reason stands. */
-static void refused_corners_are_told_with_every_answer(void) {
+/* GIVEN base corners that proved to be wrong WHEN the window answers, which has no doubt THEN its answer reports them, and a
+ * graver reason stays. */
+static void refused_corners_are_reported_with_every_answer(void) {
     goe_filter_clear(&filter);
     for (int refused = 0; refused < 2; refused++) {
         filter.health.base_refused = refused != 0;
@@ -479,8 +480,8 @@ static void refused_corners_are_told_with_every_answer(void) {
     }
 }
 
-/* [goe_estimate_t.suspect, refined.misfit_max]
- * GIVEN noise larger than told by a factor of 2 THEN a true box is suspect, but keeps its base corners in the end. */
+/* [goe_estimate_t.suspect, filter.nis_ratio_max]
+ * GIVEN noise larger than configured by a factor of 2 THEN a true box is suspect, but keeps its base corners in the end. */
 static void noise_does_not_make_corners_false(void) {
     any = check_random_start("large noise");
     start();
@@ -490,8 +491,8 @@ static void noise_does_not_make_corners_false(void) {
         update();
     }
     TEST_ASSERT_TRUE(suspected);
-    TEST_ASSERT_TRUE(was_told(GOE_REASON_NOISE));
-    TEST_ASSERT_FALSE(was_told(GOE_REASON_BASE));
+    TEST_ASSERT_TRUE(was_reported(GOE_REASON_NOISE));
+    TEST_ASSERT_FALSE(was_reported(GOE_REASON_BASE));
     TEST_ASSERT_FALSE(estimator.filter.health.base_refused);
     TEST_ASSERT_EQUAL_INT(GOE_MODEL_BOX, estimate.model);
 }
@@ -502,7 +503,7 @@ int main(void) {
     RUN_TEST(a_box_comes_out_of_its_silhouette);
     RUN_TEST(noise_does_not_hide_the_box);
     RUN_TEST(outlines_of_houses_are_not_confidently_wrong);
-    RUN_TEST(left_and_right_are_alike);
+    RUN_TEST(left_and_right_are_equal);
     RUN_TEST(base_corners_end_the_chord);
     RUN_TEST(a_corner_makes_a_box);
     RUN_TEST(ends_that_leave_in_turn_make_no_box);
@@ -511,7 +512,7 @@ int main(void) {
     RUN_TEST(a_cylinder_stays_a_disc);
     RUN_TEST(a_disc_by_force_is_suspect);
     RUN_TEST(false_base_corners_are_found_out);
-    RUN_TEST(refused_corners_are_told_with_every_answer);
+    RUN_TEST(refused_corners_are_reported_with_every_answer);
     RUN_TEST(noise_does_not_make_corners_false);
     return UNITY_END();
 }

@@ -1,4 +1,4 @@
-/* The latest estimate's covariance, and what goe_hazard asks beside it. SPDX-License-Identifier: MIT
+/* The latest estimate's covariance, and the further inputs of goe_hazard. SPDX-License-Identifier: MIT
  *
  * Estimates and states are written into the estimator, so that every number is known. */
 /* tests: lib/goe_covariance.c */
@@ -26,7 +26,7 @@ void setUp(void) {
     estimator.motion.time_us = 5000000;
     estimator.estimate_time_us = 5000000;
     estimator.motion.height_m = 40.0f;
-    estimator.estimate.method = GOE_METHOD_REFINED;
+    estimator.estimate.method = GOE_METHOD_FILTER;
     estimator.estimate.valid = GOE_HAS_POSITION;
     for (int i = 0; i < GOE_STATES; i++) {
         estimator.filter.state[i] = 0.01f * (float)(i + 1);
@@ -80,9 +80,9 @@ static void the_place_grows_uncertain_by_the_own_motion(void) {
     CHECK_SAME(4.0f, covariance[GOE_X0][GOE_X0]);
 }
 
-/* GIVEN an obstacle that moves, last seen four seconds ago THEN its place has become uncertain by four times the larger sigma of
- * its velocity, along both axes alike, as those of T are not north and east; and its size has not. */
-static void the_place_of_what_moves_grows_uncertain(void) {
+/* GIVEN an obstacle that moves, last detected four seconds ago THEN its place has become uncertain by four times the larger sigma of
+ * its velocity, along both axes equally, as those of T are not north and east; and its size has not. */
+static void the_position_of_a_moving_target_grows_uncertain(void) {
     for (int larger = 0; larger < 2; larger++) {
         goe_sigma_t *sigma = &estimator.estimate.sigma;
         const double own_m2 = 16.0 * 0.05 * 0.05 + 4.0 * 0.05 * 0.05; /* of the own motion in four seconds */
@@ -106,7 +106,7 @@ static void the_place_of_what_moves_grows_uncertain(void) {
 
 /* [A34] GIVEN an answer of the filter's, fresh or not THEN reach, height and what its height is freed of are as they were with it; of an
  * answer of the window's the filter has no part. */
-static void what_a_hazard_needs_is_kept_with_the_answer(void) {
+static void inputs_of_a_hazard_are_kept_with_the_answer(void) {
     goe_answer_t *answer = &estimator.filter.answer;
     answer->reach_m = 7.0f;
     answer->height_bias_m = 0.5f;
@@ -142,8 +142,8 @@ static void make_box(void) {
 }
 
 /* GIVEN a box's answer THEN its covariance is symmetric, in degrees where it is the orientation's; and of a quantity that is not
- * told rows and columns are 0, and no other. */
-static void what_is_not_told_has_no_covariance(void) {
+ * reported rows and columns are 0, and no other. */
+static void an_unreported_quantity_has_no_covariance(void) {
     static const unsigned bits[GOE_QUANTITIES] = {GOE_HAS_POSITION, GOE_HAS_POSITION, GOE_HAS_ORIENTATION,
                                                   GOE_HAS_WIDTH,    GOE_HAS_LENGTH,   GOE_HAS_HEIGHT};
     goe_covariance_t all;
@@ -197,7 +197,7 @@ static void start(flight_t flight) {
     }
     goe_settings_t settings = scene_settings(&scene);
     if (flight == OUTLINE) {
-        scene_tell_no_noise(&settings);
+        scene_clear_noise(&settings);
     }
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
 }
@@ -213,7 +213,7 @@ static void see(flight_t flight, int k, check_random_t *any, goe_image_t *image)
     }
     scene_add_noise(image, any, flight == OUTLINE ? 0.0 : 1.5); /* more than the settings say: the track scatters */
     if (flight == OUTLINE) {
-        image->base_left.seen = image->base_near.seen = image->base_right.seen = false;
+        image->base_left.visible = image->base_near.visible = image->base_right.visible = false;
     }
 }
 
@@ -255,10 +255,10 @@ static void sigmas_and_covariance_agree_in_flight(void) {
             see(flight, k, &any, &image);
             if (k % 7 == 6) {
                 scene_hide_points(&image);
-                image.box.seen = 0;
+                image.box.sides = 0;
             }
             (void)goe_update(&estimator, &image, &estimate);
-            if (estimate.method == GOE_METHOD_REFINED && (estimate.valid & GOE_HAS_POSITION)) {
+            if (estimate.method == GOE_METHOD_FILTER && (estimate.valid & GOE_HAS_POSITION)) {
                 valid += check_diagonal(&estimate);
                 models |= 1u << estimate.model;
                 phases |= 1u << estimator.filter.phase;
@@ -273,10 +273,10 @@ static void sigmas_and_covariance_agree_in_flight(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(an_old_answer_has_its_sigmas_alone);
-    RUN_TEST(the_place_of_what_moves_grows_uncertain);
+    RUN_TEST(the_position_of_a_moving_target_grows_uncertain);
     RUN_TEST(the_place_grows_uncertain_by_the_own_motion);
-    RUN_TEST(what_a_hazard_needs_is_kept_with_the_answer);
-    RUN_TEST(what_is_not_told_has_no_covariance);
+    RUN_TEST(inputs_of_a_hazard_are_kept_with_the_answer);
+    RUN_TEST(an_unreported_quantity_has_no_covariance);
     RUN_TEST(sigmas_and_covariance_agree_in_flight);
     return UNITY_END();
 }

@@ -10,11 +10,11 @@
 #include "stated.h"
 
 static goe_estimator_t estimator;
-static goe_plan_t plan;
+static goe_intent_t intent;
 static goe_rule_t rule;
 static goe_hazard_t hazard;
 
-/* A mast 6 m wide, 100 m ahead and aside_m aside, higher than the path, of which everything is known to a metre. */
+/* A mast 6 m wide, 100 m ahead and aside_m aside, higher than the path, of which everything is known to a meter. */
 static void place(double aside_m) {
     const stated_t mast = {(float)aside_m, 100.0f, 6.0f, 40.0f, 1.0f, 1.0f, 20.0f};
     stated_answer(&estimator, &mast);
@@ -22,50 +22,50 @@ static void place(double aside_m) {
 
 void setUp(void) {
     place(0.0);
-    memset(&plan, 0, sizeof plan);
-    plan.velocity_ned_m_s[0] = 10.0f;
-    plan.margin_m = 15.0f;
-    plan.clearance_m = 10.0f;
+    memset(&intent, 0, sizeof intent);
+    intent.velocity_ned_m_s[0] = 10.0f;
+    intent.margin_m = 15.0f;
+    intent.clearance_m = 10.0f;
     goe_rule_default(&rule);
 }
 void tearDown(void) {}
 
-static goe_decision_t decide(void) { return goe_decide(&estimator, &plan, &rule, &hazard); }
+static goe_decision_t decide(void) { return goe_decide(&estimator, &intent, &rule, &hazard); }
 
 /* [goe_decide]
  * GIVEN an obstacle on the course THEN the rule acts from the probability and from the time on that it is given, and not before. */
 static void probability_and_time_decide(void) {
     TEST_ASSERT_EQUAL_INT(GOE_DECISION_ACT, decide());
-    TEST_ASSERT_TRUE(hazard.violation > 0.99f);
-    rule.act_s = 0.99f * (hazard.time_s - 2.0f * hazard.time_sd_s);
+    TEST_ASSERT_TRUE(hazard.conflict_probability > 0.99f);
+    rule.act_within_s = 0.99f * (hazard.tcpa_s - 2.0f * hazard.tcpa_sd_s);
     TEST_ASSERT_EQUAL_INT(GOE_DECISION_CLEAR, decide());
-    rule.act_s = 1.01f * goe_soonest_s(&hazard);
+    rule.act_within_s = 1.01f * goe_earliest_tcpa_s(&hazard);
     TEST_ASSERT_EQUAL_INT(GOE_DECISION_ACT, decide());
-    rule.act_s = 12.0f;
-    place(19.0); /* passed by a metre more than the margin */
+    rule.act_within_s = 12.0f;
+    place(19.0); /* passed by a meter more than the margin */
     (void)decide();
-    TEST_ASSERT_TRUE(hazard.violation > 0.05f && hazard.violation < 0.5f);
-    rule.violation_max = hazard.violation;
+    TEST_ASSERT_TRUE(hazard.conflict_probability > 0.05f && hazard.conflict_probability < 0.5f);
+    rule.conflict_probability_max = hazard.conflict_probability;
     TEST_ASSERT_EQUAL_INT(GOE_DECISION_ACT, decide());
-    rule.violation_max = 1.01f * hazard.violation;
+    rule.conflict_probability_max = 1.01f * hazard.conflict_probability;
     TEST_ASSERT_EQUAL_INT(GOE_DECISION_CLEAR, decide());
 }
 
 /* GIVEN a place so uncertain that hardly any of it lies within the margin THEN the small probability is no "clear": too little is known.
  * A place that is surely outside is clear, by either distance. */
-static void what_is_hardly_known_is_not_clear(void) {
+static void a_poorly_known_obstacle_is_not_clear(void) {
     for (int far_aside = 0; far_aside < 2; far_aside++) {
         place(far_aside == 1 ? 60.0 : 0.0);
         estimator.estimate.sigma.x0_m = estimator.estimate.sigma.z0_m = 5000.0f;
         TEST_ASSERT_EQUAL_INT(GOE_DECISION_UNKNOWN, decide());
-        TEST_ASSERT_TRUE(hazard.violation < rule.violation_max);
+        TEST_ASSERT_TRUE(hazard.conflict_probability < rule.conflict_probability_max);
     }
     place(0.0); /* met for sure, but nobody knows when: 10 s +- 8 s */
     estimator.estimate.sigma.z0_m = 80.0f;
-    rule.act_s = 3.0f;
+    rule.act_within_s = 3.0f;
     TEST_ASSERT_EQUAL_INT(GOE_DECISION_UNKNOWN, decide());
-    TEST_ASSERT_TRUE(hazard.violation > 0.5f && goe_soonest_s(&hazard) > rule.act_s);
-    rule.act_s = 12.0f;
+    TEST_ASSERT_TRUE(hazard.conflict_probability > 0.5f && goe_earliest_tcpa_s(&hazard) > rule.act_within_s);
+    rule.act_within_s = 12.0f;
     place(60.0);
     estimator.estimate.sigma.x0_m = estimator.estimate.sigma.z0_m = 5000.0f;
     estimator.estimate.height_m = 2.0f; /* 18 m below the path */
@@ -78,7 +78,7 @@ static void what_is_hardly_known_is_not_clear(void) {
  * detections does. */
 static void an_old_answer_clears_nothing_after_new_detections(void) {
     place(60.0);
-    estimator.estimate.method = GOE_METHOD_REFINED;
+    estimator.estimate.method = GOE_METHOD_FILTER;
     estimator.estimate.fresh = false;
     for (int outdated = 0; outdated < 2; outdated++) {
         estimator.filter.answer.outdated = true; /* the covariance of the sigmas in both */
@@ -106,26 +106,26 @@ static void an_old_answer_clears_nothing_after_new_detections(void) {
 
 /* [goe_decide]
  * GIVEN a suspect estimate THEN margin and clearance count `doubt` times; GIVEN one that is some seconds old, by its own age and the
- * plan's THEN they have grown by the drift. The hazard is that of these distances. */
+ * intent's THEN they have grown by the drift. The hazard is that of these distances. */
 static void doubt_and_age_widen(void) {
     static const float seconds[] = {0.0f, 4.0f};
     place(40.0);
     for (int suspect = 0; suspect < 2; suspect++) {
         for (int old = 0; old < 2; old++) {
             goe_hazard_t expected;
-            goe_plan_t wide = plan;
-            rule.doubt = 1.8f;
-            rule.drift_m_s = 2.5f;
+            goe_intent_t wide = intent;
+            rule.suspect_factor = 1.8f;
+            rule.stale_growth_m_s = 2.5f;
             estimator.estimate.suspect = suspect == 1;
             estimator.estimate.fresh = old == 0;
             estimator.motion.time_us = 5000000 + (int64_t)(1.0e6f * seconds[old]);
-            plan.since_image_s = wide.since_image_s = 0.5f;
+            intent.since_image_s = wide.since_image_s = 0.5f;
             wide.margin_m = (suspect == 1 ? 1.8f : 1.0f) * 15.0f + 2.5f * (seconds[old] + 0.5f);
             wide.clearance_m = (suspect == 1 ? 1.8f : 1.0f) * 10.0f + 2.5f * (seconds[old] + 0.5f);
             CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &wide, &expected));
             (void)decide();
-            CHECK_CLOSE(1.0e-6, expected.violation, hazard.violation);
-            CHECK_SAME(expected.miss_m, hazard.miss_m);
+            CHECK_CLOSE(1.0e-6, expected.conflict_probability, hazard.conflict_probability);
+            CHECK_SAME(expected.dcpa_m, hazard.dcpa_m);
         }
     }
 }
@@ -134,27 +134,22 @@ static void doubt_and_age_widen(void) {
 static void without_a_position_nothing_is_known(void) {
     estimator.estimate.valid = 0u;
     TEST_ASSERT_EQUAL_INT(GOE_DECISION_UNKNOWN, decide());
-    CHECK_SAME(0.0f, hazard.violation);
+    CHECK_SAME(0.0f, hazard.conflict_probability);
     TEST_ASSERT_EQUAL_INT(GOE_DECISION_UNKNOWN, 0); /* memory of zeros is not "clear" */
 }
 
 static float *field(int i) {
-    float *const fields[] = {&plan.velocity_ned_m_s[0],
-                             &plan.velocity_ned_m_s[1],
-                             &plan.velocity_ned_m_s[2],
-                             &plan.margin_m,
-                             &plan.clearance_m,
-                             &plan.since_image_s,
-                             &plan.velocity_sd_m_s,
-                             &rule.violation_max,
-                             &rule.act_s,
-                             &rule.doubt,
-                             &rule.drift_m_s};
+    float *const fields[] = {&intent.velocity_ned_m_s[0], &intent.velocity_ned_m_s[1],
+                             &intent.velocity_ned_m_s[2], &intent.margin_m,
+                             &intent.clearance_m,         &intent.since_image_s,
+                             &intent.velocity_sd_m_s,     &rule.conflict_probability_max,
+                             &rule.act_within_s,          &rule.suspect_factor,
+                             &rule.stale_growth_m_s};
     return fields[i];
 }
 
-/* [goe_plan_t.velocity_sd_m_s, goe_rule_t.act_s, goe_rule_t.violation_max]
- * GIVEN anything that the rule cannot work with: a number that is none, or out of range, in each field; no plan, no estimator, one that was
+/* [goe_intent_t.velocity_sd_m_s, goe_rule_t.act_within_s, goe_rule_t.conflict_probability_max]
+ * GIVEN anything that the rule cannot work with: a number that is none, or out of range, in each field; no intent, no estimator, one that was
  * not set or whose settings have changed THEN the decision is to keep the previous one, and the hazard is all zero. */
 static void every_failure_keeps_the_decision(void) {
     static const uint32_t bits[] = {0x7FC00000u, 0xFFC00001u, 0x7F800000u, 0xFF800000u, 0x7F000000u, 0xFF000000u};
@@ -164,43 +159,43 @@ static void every_failure_keeps_the_decision(void) {
             setUp();
             *field(i) = check_from_bits(bits[k]);
             TEST_ASSERT_EQUAL_INT(GOE_DECISION_KEEP, decide());
-            CHECK_SAME(0.0f, hazard.violation);
-            CHECK_SAME(0.0f, hazard.time_s);
+            CHECK_SAME(0.0f, hazard.conflict_probability);
+            CHECK_SAME(0.0f, hazard.tcpa_s);
         }
     }
     setUp();
     TEST_ASSERT_EQUAL_INT(GOE_DECISION_KEEP, goe_decide(&estimator, NULL, &rule, &hazard));
-    TEST_ASSERT_EQUAL_INT(GOE_DECISION_KEEP, goe_decide(NULL, &plan, &rule, &hazard));
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_KEEP, goe_decide(NULL, &intent, &rule, &hazard));
     broken = estimator;
-    broken.settings.navigation.ground_m += 1.0f;
-    TEST_ASSERT_EQUAL_INT(GOE_DECISION_KEEP, goe_decide(&broken, &plan, &rule, &hazard));
+    broken.settings.navigation.terrain_height_sd_m += 1.0f;
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_KEEP, goe_decide(&broken, &intent, &rule, &hazard));
     memset(&broken, 0, sizeof broken);
-    TEST_ASSERT_EQUAL_INT(GOE_DECISION_KEEP, goe_decide(&broken, &plan, &rule, &hazard));
-    TEST_ASSERT_EQUAL_INT(GOE_DECISION_ACT, goe_decide(&estimator, &plan, &rule, NULL));
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_KEEP, goe_decide(&broken, &intent, &rule, &hazard));
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_ACT, goe_decide(&estimator, &intent, &rule, NULL));
 }
 
 /* GIVEN no rule THEN it is the default one, which goe.h states. */
 static void no_rule_is_the_default(void) {
     const goe_rule_t zero = {0.0f, 0.0f, 0.0f, 0.0f};
-    CHECK_SAME(0.1f, rule.violation_max);
-    CHECK_SAME(12.0f, rule.act_s);
-    CHECK_SAME(1.5f, rule.doubt);
-    CHECK_SAME(1.0f, rule.drift_m_s);
+    CHECK_SAME(0.1f, rule.conflict_probability_max);
+    CHECK_SAME(12.0f, rule.act_within_s);
+    CHECK_SAME(1.5f, rule.suspect_factor);
+    CHECK_SAME(1.0f, rule.stale_growth_m_s);
     goe_rule_default(NULL);
     for (double aside = -60.0; aside <= 60.0; aside += 1.5) {
         place(aside);
-        TEST_ASSERT_EQUAL_INT(decide(), goe_decide(&estimator, &plan, NULL, NULL));
+        TEST_ASSERT_EQUAL_INT(decide(), goe_decide(&estimator, &intent, NULL, NULL));
     }
     rule = zero; /* a doubt of 0 would narrow */
     TEST_ASSERT_EQUAL_INT(GOE_DECISION_KEEP, decide());
 }
 
-/* [goe_decide, goe_rule_t.doubt] GIVEN distances at the end of their range THEN doubt and age do not push them out of it. */
+/* [goe_decide, goe_rule_t.suspect_factor] GIVEN distances at the end of their range THEN doubt and age do not push them out of it. */
 static void the_widest_distances_are_taken(void) {
-    plan.margin_m = plan.clearance_m = 1.0e4f;
+    intent.margin_m = intent.clearance_m = 1.0e4f;
     estimator.estimate.suspect = true;
-    plan.since_image_s = 1.0e3f;
-    rule.drift_m_s = 100.0f;
+    intent.since_image_s = 1.0e3f;
+    rule.stale_growth_m_s = 100.0f;
     TEST_ASSERT_TRUE(decide() != GOE_DECISION_KEEP);
 }
 
@@ -208,27 +203,27 @@ static void the_widest_distances_are_taken(void) {
  * later for a larger sigma. */
 static void the_soonest_time_is_early(void) {
     memset(&hazard, 0, sizeof hazard);
-    CHECK_SAME(0.0f, goe_soonest_s(&hazard));
-    CHECK_SAME(0.0f, goe_soonest_s(NULL));
-    hazard.time_s = 10.0f;
-    hazard.time_sd_s = 0.05f;
-    CHECK_CLOSE(2.0e-3, 9.9, goe_soonest_s(&hazard));
-    hazard.time_sd_s = 5.0f;
-    CHECK_CLOSE(1.0e-6, 5.0, goe_soonest_s(&hazard));
+    CHECK_SAME(0.0f, goe_earliest_tcpa_s(&hazard));
+    CHECK_SAME(0.0f, goe_earliest_tcpa_s(NULL));
+    hazard.tcpa_s = 10.0f;
+    hazard.tcpa_sd_s = 0.05f;
+    CHECK_CLOSE(2.0e-3, 9.9, goe_earliest_tcpa_s(&hazard));
+    hazard.tcpa_sd_s = 5.0f;
+    CHECK_CLOSE(1.0e-6, 5.0, goe_earliest_tcpa_s(&hazard));
     float before = 10.0f;
     for (int i = 0; i < 100; i++) {
-        hazard.time_sd_s = 0.3f * (float)i;
-        TEST_ASSERT_TRUE(goe_soonest_s(&hazard) <= before && goe_soonest_s(&hazard) > 0.0f);
-        before = goe_soonest_s(&hazard);
+        hazard.tcpa_sd_s = 0.3f * (float)i;
+        TEST_ASSERT_TRUE(goe_earliest_tcpa_s(&hazard) <= before && goe_earliest_tcpa_s(&hazard) > 0.0f);
+        before = goe_earliest_tcpa_s(&hazard);
     }
-    hazard.time_sd_s = check_from_bits(0x7FC00000u);
-    CHECK_SAME(0.0f, goe_soonest_s(&hazard));
+    hazard.tcpa_sd_s = check_from_bits(0x7FC00000u);
+    CHECK_SAME(0.0f, goe_earliest_tcpa_s(&hazard));
 }
 
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(probability_and_time_decide);
-    RUN_TEST(what_is_hardly_known_is_not_clear);
+    RUN_TEST(a_poorly_known_obstacle_is_not_clear);
     RUN_TEST(an_old_answer_clears_nothing_after_new_detections);
     RUN_TEST(doubt_and_age_widen);
     RUN_TEST(without_a_position_nothing_is_known);

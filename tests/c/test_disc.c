@@ -21,8 +21,8 @@ void tearDown(void) {}
 
 /* ---------------------------------------------------------------------------------------------------------- reference -- */
 
-/* Seen coordinate of a feature: left, right: the tangent's azimuth; top: the rim's nearest point, or the farthest if it is
- * the highest; base corners: a point of the centre's range on the ground. */
+/* Image coordinate of a feature: left, right: the tangent's azimuth; top: the rim's nearest point, or the farthest if it is
+ * the highest; base corners: a point of the center's range on the ground. */
 static double see(const double state[GOE_STATES], size_t feature) {
     const double h = (double)sighting.sight.height_m;
     const double px = state[GOE_BEARING] - (double)sighting.sight.camera_m.x * state[GOE_INVERSE_RANGE];
@@ -42,7 +42,7 @@ static double see(const double state[GOE_STATES], size_t feature) {
     }
     if (feature == GOE_POINT_TOP) {
         const double y = h * state[GOE_INVERSE_RANGE] - state[GOE_TOP];
-        const bool farthest = sighting.settings.refined.top_is_highest && y > 0.0;
+        const bool farthest = sighting.settings.filter.top_is_highest && y > 0.0;
         const double share = (distance + (farthest ? radius : -radius)) / distance;
         const double rim[3] = {px * share, y, pz * share};
         sighting_project(&sighting, state, rim, seen);
@@ -97,9 +97,9 @@ static void check_rows(void) {
 
 /* -------------------------------------------------------------------------------------------------------------- tests -- */
 
-/* [goe_image_t.top, refined.top_is_highest, (R1), (R2), (R5), (R6)]
+/* [goe_image_t.top, filter.top_is_highest, (R1), (R2), (R5), (R6)]
  * GIVEN discs of any size and place, with the roof below or above the camera THEN residuals are 0 at the truth and all
- * derivatives are those of tangents and rim; with base corners, of the ground below the centre, too. */
+ * derivatives are those of tangents and rim; with base corners, of the ground below the center, too. */
 static void rows_are_those_of_tangents_and_rim(void) {
     any = check_random_start("discs");
     for (int n = 0; n < CASES; n++) {
@@ -135,7 +135,7 @@ static void shape_and_size_noise_are_shares_of_the_width(void) {
     measure(GOE_POINT_RIGHT);
     measure(GOE_POINT_TOP);
     for (int i = 0; i < 2; i++) {
-        sighting.settings.detector.shape_share = i ? 0.12f : 0.0f;
+        sighting.settings.detector.shape_error_rel = i ? 0.12f : 0.0f;
         sighting.sight.outline_share = i ? 0.05f : 0.0f;
         goe_rows_clear(&sighting.rows, &sighting.matrix);
         goe_disc_rows(&sighting.sight, &sighting.rows);
@@ -150,7 +150,7 @@ static void shape_and_size_noise_are_shares_of_the_width(void) {
 }
 
 /* [goe_image_t.left, (R18)]
- * GIVEN a disc of the typical size, noise-free and seen from a level camera WHEN the filter starts on it THEN the state is the
+ * GIVEN a disc of the typical size, noise-free and viewed from a level camera WHEN the filter starts on it THEN the state is the
  * truth; of another size, only the direction is. */
 static void a_first_guess_has_the_right_direction_and_the_typical_size(void) {
     any = check_random_start("start");
@@ -161,7 +161,7 @@ static void a_first_guess_has_the_right_direction_and_the_typical_size(void) {
         memset(sighting.state, 0, 3 * sizeof sighting.state[0]);
         memset(truth, 0, 3 * sizeof truth[0]);
         sighting_look(&sighting);
-        sighting.settings.refined.typical_size_m = sighting.state[GOE_FRONT_X] / sighting.state[GOE_INVERSE_RANGE];
+        sighting.settings.filter.prior_width_m = sighting.state[GOE_FRONT_X] / sighting.state[GOE_INVERSE_RANGE];
         measure(GOE_POINT_LEFT);
         measure(GOE_POINT_RIGHT);
         measure(GOE_POINT_TOP);
@@ -180,11 +180,11 @@ static void a_first_guess_has_the_right_direction_and_the_typical_size(void) {
 }
 
 /* Twice the sine of half the angle between tangents at -0.05 and 0.05. */
-#define SEEN_WIDTH (0.1 / sqrt(1.0 + 0.05 * 0.05))
+#define VISIBLE_WIDTH (0.1 / sqrt(1.0 + 0.05 * 0.05))
 
-/* [(R18)] GIVEN base corners clearly below the horizon THEN flat ground tells the first range; GIVEN ones that are not, or a camera
+/* [(R18)] GIVEN base corners clearly below the horizon THEN flat ground gives the first range; GIVEN ones that are not, or a camera
  * below the ground THEN the typical size does. */
-static void flat_ground_tells_the_first_range(void) {
+static void flat_ground_gives_the_first_range(void) {
     static const struct {
         float y, height_m;
         bool ground;
@@ -194,8 +194,8 @@ static void flat_ground_tells_the_first_range(void) {
         goe_triangle_t root;
         float state[GOE_STATES];
         any_disc();
-        sighting.settings.navigation.attitude_bias_deg = 0.5f; /* three of them are 0.026 */
-        sighting.settings.refined.typical_size_m = 6.0f;
+        sighting.settings.navigation.attitude_bias_sd_deg = 0.5f; /* three of them are 0.026 */
+        sighting.settings.filter.prior_width_m = 6.0f;
         sighting.sight.white_rad = 0.0f;
         sighting.sight.height_m = cases[i].height_m;
         sighting.sight.camera_m.x = 0.0f;
@@ -206,7 +206,8 @@ static void flat_ground_tells_the_first_range(void) {
             sighting.sight.point[f] = (goe_point_t){x, cases[i].y, f != GOE_POINT_BASE_NEAR};
         }
         TEST_ASSERT_TRUE(goe_disc_start(&sighting.sight, state, &root));
-        const double expected_m = cases[i].ground ? (double)cases[i].height_m / (double)cases[i].y : 6.0 / SEEN_WIDTH;
+        const double expected_m =
+            cases[i].ground ? (double)cases[i].height_m / (double)cases[i].y : 6.0 / VISIBLE_WIDTH;
         CHECK_CLOSE(1.0e-3 * expected_m, expected_m, 1.0 / (double)state[GOE_INVERSE_RANGE]);
     }
 }
@@ -222,7 +223,7 @@ static void see_base(double y) {
         sighting.sight.point[i == 0 ? GOE_POINT_BASE_LEFT : GOE_POINT_BASE_RIGHT] = (goe_point_t){x, (float)y, true};
     }
     sighting.sight.base = true;
-    sighting.settings.refined.typical_size_m = 4.0f;
+    sighting.settings.filter.prior_width_m = 4.0f;
 }
 
 /* GIVEN base corners THEN the first guess of the range is that of flat ground; but the typical size's where they lie so near to the
@@ -238,7 +239,7 @@ static void the_ground_gives_the_first_range_where_it_can(void) {
     see_base(0.25);
     sighting.sight.height_m = -20.0f;
     TEST_ASSERT_TRUE(goe_disc_start(&sighting.sight, state, &root));
-    const double by_size = 4.0 / SEEN_WIDTH;
+    const double by_size = 4.0 / VISIBLE_WIDTH;
     CHECK_CLOSE(1.0e-5, 1.0 / (by_size + 25.0), state[GOE_INVERSE_RANGE]);
     const double sigma = sqrt(pow(0.5 * 0.017453292519943295, 2.0) + pow(0.1 * 0.017453292519943295, 2.0) +
                               pow((double)goe_observation_pixel(&sighting.sight), 2.0));
@@ -250,8 +251,8 @@ static void the_ground_gives_the_first_range_where_it_can(void) {
     }
 }
 
-/* GIVEN a start THEN the first image says of no state more than it can: the sensors' errors as they are told, the range within a factor
- * of three, and all extents by several times themselves, as the images to come will tell them better. */
+/* GIVEN a start THEN the first image gives no more information than it has: the sensors' errors as configured, the range within a factor
+ * of three, and all extents by several times themselves, as later images will determine them better. */
 static void a_start_is_as_uncertain_as_one_image(void) {
     goe_triangle_t root;
     float x[GOE_STATES];
@@ -259,7 +260,7 @@ static void a_start_is_as_uncertain_as_one_image(void) {
     see_base(0.25);
     sighting.sight.point[GOE_POINT_TOP] = (goe_point_t){0.0f, -0.3f, true};
     sighting.sight.height_sd_m = 0.7f;
-    sighting.settings.navigation.velocity_bias_m_s = 0.1f;
+    sighting.settings.navigation.velocity_bias_sd_m_s = 0.1f;
     memset(x, 0xA5, sizeof x); /* whatever was there before */
     TEST_ASSERT_TRUE(goe_disc_start(&sighting.sight, x, &root));
     for (size_t i = 0; i < 4; i++) {
@@ -270,7 +271,7 @@ static void a_start_is_as_uncertain_as_one_image(void) {
     const double width = (double)x[GOE_FRONT_X];
     const double q = (double)x[GOE_INVERSE_RANGE];
     CHECK_CLOSE(1.0e-6, (20.0 + 0.3 * 80.0) * q, x[GOE_TOP]);
-    CHECK_CLOSE(1.0e-6, 80.0 * SEEN_WIDTH * q, width);
+    CHECK_CLOSE(1.0e-6, 80.0 * VISIBLE_WIDTH * q, width);
     const double sigma[GOE_STATES] = {bias,    bias,  hypot(bias, 0.008), 0.7 * q, 1.0,
                                       2.0 * q, width, 5.0 * width,        width,   10.0 * (double)x[GOE_TOP]};
     for (size_t i = 0; i < GOE_STATES; i++) {
@@ -279,9 +280,10 @@ static void a_start_is_as_uncertain_as_one_image(void) {
             CHECK_SAME(0.0f, *goe_srif_at(&root, i, j));
         }
     }
-    sighting.settings.navigation.ground_m = 2.4f; /* with an upright box the obstacle's own ground may lie off, too */
+    sighting.settings.navigation.terrain_height_sd_m =
+        2.4f; /* with an upright box the obstacle's own ground may lie off, too */
     goe_sides_t box = *sighting.sight.sides;
-    box.usable = GOE_SEES_TOP;
+    box.usable = GOE_SIDE_TOP;
     sighting.sight.sides = &box;
     TEST_ASSERT_TRUE(goe_disc_start(&sighting.sight, x, &root));
     CHECK_CLOSE(1.0e-4, 1.0, 2.5 * q * (double)*goe_srif_at(&root, GOE_GROUND, GOE_GROUND));
@@ -310,7 +312,7 @@ int main(void) {
     RUN_TEST(each_feature_alone_gives_its_row);
     RUN_TEST(shape_and_size_noise_are_shares_of_the_width);
     RUN_TEST(a_first_guess_has_the_right_direction_and_the_typical_size);
-    RUN_TEST(flat_ground_tells_the_first_range);
+    RUN_TEST(flat_ground_gives_the_first_range);
     RUN_TEST(the_ground_gives_the_first_range_where_it_can);
     RUN_TEST(a_start_is_as_uncertain_as_one_image);
     RUN_TEST(no_width_is_no_start);

@@ -13,7 +13,7 @@
 
 typedef struct {
     double x0, z0, width, b_deg;
-    double step_x, step_z; /* metres per image */
+    double step_x, step_z; /* meters per image */
 } case_t;
 
 void setUp(void) {}
@@ -101,9 +101,9 @@ static void the_sigmas_are_the_scatter(void) {
     for (int q = 0; q < 3; q++) {
         const double mean = sum[q] / DRAWS;
         const double scatter = sqrt(sum2[q] / DRAWS - mean * mean);
-        const double told = sqrt(variance[q] / DRAWS);
-        check_report("scatter by told sigma (X0, Z0, W)", scatter / told);
-        CHECK_CLOSE(0.05, 1.0, scatter / told);
+        const double reported = sqrt(variance[q] / DRAWS);
+        check_report("scatter by reported sigma (X0, Z0, W)", scatter / reported);
+        CHECK_CLOSE(0.05, 1.0, scatter / reported);
         CHECK_CLOSE(4.5 * scatter / sqrt((double)DRAWS), 0.0, mean); /* and without a bias */
     }
 }

@@ -1,4 +1,4 @@
-/* What two poses tell of the own motion between them, and what a late pose makes of it. SPDX-License-Identifier: MIT */
+/* The own motion between two poses, and the effect of a late pose on it. SPDX-License-Identifier: MIT */
 /* tests: lib/image/goe_ego_motion.c */
 #include "image/goe_ego_motion.h"
 
@@ -47,12 +47,12 @@ static void follow(double t) {
         image.pose.position_ned_m[i] += jump_m[i];
     }
     goe_motion_follow(&motion, &settings, &view);
-    motion.sighted = true; /* each image shows a feature */
+    motion.detected = true; /* each image shows a feature */
 }
 
 /* GIVEN two poses a tenth of a second apart THEN rate and velocity are those between them, in T: about its Y axis, which points down,
  * and along Z and X. */
-static void two_poses_tell_rate_and_velocity(void) {
+static void two_poses_give_rate_and_velocity(void) {
     follow(0.0);
     TEST_ASSERT_FALSE(motion.paced);
     follow(0.1);
@@ -74,7 +74,7 @@ static void pitch_and_roll_are_about_x_and_z(void) {
         image.pose.attitude[0] = 1.0f;
         image.pose.time_us = 1000000;
         goe_motion_follow(&motion, &settings, &view);
-        motion.sighted = true;
+        motion.detected = true;
         image.pose.time_us = 1100000;
         image.pose.attitude[0] = (float)cos(0.02);
         image.pose.attitude[n == 0 ? 2 : 1] = (float)sin(0.02);
@@ -84,8 +84,8 @@ static void pitch_and_roll_are_about_x_and_z(void) {
     }
 }
 
-/* GIVEN a camera on an arm of an aircraft that turns THEN the velocity is the vehicle's, not that with which the arm swings: two cameras
- * must tell the same of it. */
+/* GIVEN a camera on an arm of a turning aircraft THEN the velocity is the vehicle's, not that with which the arm swings: two cameras
+ * must give the same velocity. */
 static void the_velocity_is_the_vehicles(void) {
     settings.camera.offset_m[0] = 4.0f;
     settings.camera.offset_m[1] = -2.0f;
@@ -95,9 +95,9 @@ static void the_velocity_is_the_vehicles(void) {
     CHECK_CLOSE(1.0e-3, 12.0, motion.velocity_m_s[1]);
 }
 
-/* GIVEN poses that lie too near to each other THEN they tell their own noise, and the ones before stand; too far apart, they tell a mean,
- * and nothing is told; nor over a jump of the autopilot's filter. */
-static void only_poses_a_good_way_apart_tell(void) {
+/* GIVEN poses too near to each other THEN they would give only noise, and the previous motion stays; too far apart, they would give a mean,
+ * and there is no motion; nor over a jump of the autopilot's filter. */
+static void only_distant_poses_give_motion(void) {
     follow(0.0);
     follow(0.04);
     TEST_ASSERT_FALSE(motion.paced); /* nearer than 45 ms: not yet */
@@ -114,7 +114,7 @@ static void only_poses_a_good_way_apart_tell(void) {
     TEST_ASSERT_TRUE(motion.paced);
 }
 
-/* GIVEN a known jump of the autopilot's filter THEN it is in neither velocity nor rate: what is late is taken off in that image,
+/* GIVEN a known jump of the autopilot's filter THEN it is in neither velocity nor rate: the latency is corrected in that image,
  * too. */
 static void a_known_jump_is_in_no_velocity(void) {
     follow(0.0);
@@ -185,7 +185,7 @@ static void late_poses_are_behind_by_what_was_gained(void) {
     gained = goe_filter_gained(&filter, &motion);
     CHECK_CLOSE(1.0e-3, 0.8 * 2.0 - 0.6 * 10.0, gained.x);
     CHECK_CLOSE(1.0e-3, 0.6 * 2.0 + 0.8 * 10.0, gained.z);
-    filter.mover.beside[0] = 0.2f;
+    filter.mover.augmented[0] = 0.2f;
     filter.axes.start_dx_m = 0.5f;
     filter.axes.start_dz_m = 0.25f;
     const goe_xz_t camera = goe_filter_camera(&filter, &motion);
@@ -195,9 +195,9 @@ static void late_poses_are_behind_by_what_was_gained(void) {
     CHECK_CLOSE(1.0e-3, 0.6 * dx + 0.8 * dz + 0.2 * (double)gained.z, camera.z);
     /* of an obstacle that is followed, less by what that has moved */
     filter.mover.followed = 1;
-    filter.mover.beside[0] = 0.0f;
-    filter.mover.beside[1] = 5.0f;
-    filter.mover.beside[2] = -7.0f;
+    filter.mover.augmented[0] = 0.0f;
+    filter.mover.augmented[1] = 5.0f;
+    filter.mover.augmented[2] = -7.0f;
     filter.axes.start_time_us = motion.time_us - 2000000;
     const goe_xz_t moved = goe_filter_moved(&filter, &motion);
     CHECK_CLOSE(1.0e-4, 10.0, moved.x);
@@ -272,10 +272,10 @@ static void the_height_is_the_cameras(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(two_poses_tell_rate_and_velocity);
+    RUN_TEST(two_poses_give_rate_and_velocity);
     RUN_TEST(pitch_and_roll_are_about_x_and_z);
     RUN_TEST(the_velocity_is_the_vehicles);
-    RUN_TEST(only_poses_a_good_way_apart_tell);
+    RUN_TEST(only_distant_poses_give_motion);
     RUN_TEST(a_known_jump_is_in_no_velocity);
     RUN_TEST(a_new_track_has_no_velocity);
     RUN_TEST(a_jump_of_the_attitude_is_no_rate);

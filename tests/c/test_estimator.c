@@ -38,12 +38,12 @@ static goe_status_t fly(int from, int to) {
 }
 
 static void hide_all(goe_image_t *of) {
-    of->left.seen = false;
-    of->right.seen = false;
-    of->top.seen = false;
-    of->base_left.seen = false;
-    of->base_near.seen = false;
-    of->base_right.seen = false;
+    of->left.visible = false;
+    of->right.visible = false;
+    of->top.visible = false;
+    of->base_left.visible = false;
+    of->base_near.visible = false;
+    of->base_right.visible = false;
 }
 
 /* ------------------------------------------------------------------------------------------------- the normal course -- */
@@ -51,11 +51,11 @@ static void hide_all(goe_image_t *of) {
 /* [goe_init] */
 static void a_new_estimator_knows_nothing(void) {
     start();
-    CHECK_STATUS(GOE_COLLECTING, fly(0, 1));
+    CHECK_STATUS(GOE_CONVERGING, fly(0, 1));
     TEST_ASSERT_EQUAL_INT(GOE_MODEL_NONE, estimate.model);
     TEST_ASSERT_EQUAL_HEX32(GOE_HAS_ORIENTATION, estimate.valid);
     TEST_ASSERT_FALSE(estimate.fresh);
-    TEST_ASSERT_EQUAL_INT(0, estimate.points);
+    TEST_ASSERT_EQUAL_INT(0, estimate.images_used);
     TEST_ASSERT_EQUAL_FLOAT(0.0f, estimate.age_s);
     TEST_ASSERT_EQUAL_FLOAT(0.0f, estimate.width_m);
 }
@@ -65,29 +65,29 @@ static void a_new_estimator_knows_nothing(void) {
 static void the_disc_solves_from_the_eighth_image_on(void) {
     scene_make_cylinder(&scene);
     start();
-    CHECK_STATUS(GOE_COLLECTING, fly(0, WINDOW - 1));
+    CHECK_STATUS(GOE_CONVERGING, fly(0, WINDOW - 1));
     for (int k = WINDOW - 1; k < 40; k++) {
         CHECK_STATUS(GOE_OK, fly(k, k + 1));
         TEST_ASSERT_EQUAL_INT(GOE_MODEL_DISC, estimate.model);
         TEST_ASSERT_TRUE(estimate.fresh);
-        TEST_ASSERT_EQUAL_INT(WINDOW, estimate.points);
+        TEST_ASSERT_EQUAL_INT(WINDOW, estimate.images_used);
         TEST_ASSERT_EQUAL_HEX32(GOE_HAS_POSITION | GOE_HAS_HEIGHT | GOE_HAS_CENTER | GOE_HAS_WIDTH, estimate.valid);
     }
 }
 
-/* [GOE_MODEL_AUTO] GIVEN a box whose corners are seen only from the 5th image on WHEN flown in auto THEN the disc is reported from the 8th
- * image, and the line from the 8th line point, which is the 13th image. */
+/* [GOE_MODEL_AUTO] GIVEN a box whose corners are visible only from the 5th image on WHEN flown in auto THEN the disc is reported from the
+ * 8th image, and the line from the 8th line point, which is the 13th image. */
 static void the_line_takes_over_at_the_eighth_line_point(void) {
     start();
     for (int k = 0; k < 30; k++) {
         scene_image(&scene, k, &image, NULL);
         if (k < 5) {
-            image.base_left.seen = false;
-            image.base_near.seen = false;
-            image.base_right.seen = false;
+            image.base_left.visible = false;
+            image.base_near.visible = false;
+            image.base_right.visible = false;
         }
         const goe_status_t status = update();
-        CHECK_STATUS(k < 7 ? GOE_COLLECTING : GOE_OK, status);
+        CHECK_STATUS(k < 7 ? GOE_CONVERGING : GOE_OK, status);
         TEST_ASSERT_EQUAL_INT(k < 7 ? GOE_MODEL_NONE : k < 12 ? GOE_MODEL_DISC : GOE_MODEL_LINE, estimate.model);
         TEST_ASSERT_EQUAL_INT(k >= 12, (estimate.valid & GOE_HAS_LENGTH) != 0);
     }
@@ -107,10 +107,10 @@ static void the_number_of_line_points_is_a_setting(void) {
     TEST_ASSERT_EQUAL_INT(GOE_MODEL_NONE, estimate.model);
     (void)fly(7, 8);
     TEST_ASSERT_EQUAL_INT(GOE_MODEL_LINE, estimate.model);
-    start(); /* ... of line points, too: until it is, the disc is told */
+    start(); /* ... of line points, too: until it is, the disc is reported */
     for (int k = 0; k < 13; k++) {
         scene_image(&scene, k, &image, NULL);
-        image.base_left.seen = image.base_near.seen = image.base_right.seen = k >= 5;
+        image.base_left.visible = image.base_near.visible = image.base_right.visible = k >= 5;
         (void)update();
         TEST_ASSERT_EQUAL_INT(k < 7 ? GOE_MODEL_NONE : k < 12 ? GOE_MODEL_DISC : GOE_MODEL_LINE, estimate.model);
     }
@@ -121,9 +121,9 @@ static void the_window_is_a_setting(void) {
     settings.window.points = 3;
     settings.window.line_points = 3;
     start();
-    CHECK_STATUS(GOE_COLLECTING, fly(0, 2));
+    CHECK_STATUS(GOE_CONVERGING, fly(0, 2));
     CHECK_STATUS(GOE_OK, fly(2, 3));
-    TEST_ASSERT_EQUAL_INT(3, estimate.points);
+    TEST_ASSERT_EQUAL_INT(3, estimate.images_used);
 }
 
 static void a_forced_model_is_never_left(void) {
@@ -142,17 +142,17 @@ static void a_forced_model_is_never_left(void) {
     }
 }
 
-/* ------------------------------------------------------------------------------------ images that do not solve anew -- */
+/* ------------------------------------------------------------------------------------ images without a new solution - -- */
 
 /* [goe_estimate_t.x_m]
  * GIVEN a solution WHEN nothing is in view THEN the image's pose is followed, the answer ages, and nothing is at fault. */
-static void nothing_seen_is_no_fault(void) {
+static void no_detection_is_no_fault(void) {
     start();
     CHECK_STATUS(GOE_OK, fly(0, 16));
     const goe_estimate_t before = estimate;
     scene_image(&scene, 20, &image, NULL);
     hide_all(&image);
-    CHECK_STATUS(GOE_NOTHING_SEEN, update());
+    CHECK_STATUS(GOE_NO_DETECTION, update());
     TEST_ASSERT_FALSE(estimate.fresh);
     TEST_ASSERT_FLOAT_WITHIN(1.0e-6f, 0.625f, estimate.age_s); /* 5 images of 1/8 s */
     TEST_ASSERT_EQUAL_HEX32(before.valid, estimate.valid);
@@ -160,8 +160,8 @@ static void nothing_seen_is_no_fault(void) {
     CHECK_SAME(before.length_m, estimate.length_m);
     CHECK_SAME(before.sigma.z0_m, estimate.sigma.z0_m);
     TEST_ASSERT_FLOAT_WITHIN(1.0e-4f, before.z_m - 10.0f, estimate.z_m); /* 5 images of 2 m */
-    for (int i = 0; i < GOE_CAUSES; i++) {
-        TEST_ASSERT_EQUAL_UINT32(0u, estimator.causes[i]);
+    for (int i = 0; i < GOE_FAULT_COUNTS; i++) {
+        TEST_ASSERT_EQUAL_UINT32(0u, estimator.fault_counts[i]);
     }
     CHECK_STATUS(GOE_OK, fly(21, 22));
     TEST_ASSERT_TRUE(estimate.fresh);
@@ -169,15 +169,15 @@ static void nothing_seen_is_no_fault(void) {
 }
 
 /* [GOE_MODEL_AUTO, goe_window.c] GIVEN the line is reported WHEN an image shows the silhouette alone THEN the line's solution is held. */
-static void an_image_without_corners_holds_the_line(void) {
+static void an_image_without_corners_keeps_the_line(void) {
     start();
     CHECK_STATUS(GOE_OK, fly(0, 16));
     const goe_estimate_t before = estimate;
     scene_image(&scene, 16, &image, NULL);
-    image.base_left.seen = false;
-    image.base_near.seen = false;
-    image.base_right.seen = false;
-    CHECK_STATUS(GOE_HELD, update());
+    image.base_left.visible = false;
+    image.base_near.visible = false;
+    image.base_right.visible = false;
+    CHECK_STATUS(GOE_STALE, update());
     TEST_ASSERT_EQUAL_INT(GOE_MODEL_LINE, estimate.model);
     TEST_ASSERT_FALSE(estimate.fresh);
     TEST_ASSERT_FLOAT_WITHIN(1.0e-6f, 0.125f, estimate.age_s);
@@ -190,10 +190,10 @@ static void an_age_is_bounded(void) {
     CHECK_STATUS(GOE_OK, fly(0, 16));
     hide_all(&image);
     image.pose.time_us += 3999 * (int64_t)1000000;
-    CHECK_STATUS(GOE_NOTHING_SEEN, update());
+    CHECK_STATUS(GOE_NO_DETECTION, update());
     TEST_ASSERT_FLOAT_WITHIN(1.0e-3f, 3999.0f, estimate.age_s);
     image.pose.time_us = INT64_MAX;
-    CHECK_STATUS(GOE_NOTHING_SEEN, update());
+    CHECK_STATUS(GOE_NO_DETECTION, update());
     TEST_ASSERT_FLOAT_WITHIN(1.0e-3f, 4000.0f, estimate.age_s);
 }
 
@@ -219,11 +219,11 @@ static void times_may_start_anywhere(void) {
     for (int k = 0; k < 10; k++) {
         scene_image(&scene, k, &image, NULL);
         image.pose.time_us = INT64_MIN + 1 + k;
-        CHECK_STATUS(k < 7 ? GOE_COLLECTING : GOE_OK, update());
+        CHECK_STATUS(k < 7 ? GOE_CONVERGING : GOE_OK, update());
     }
     hide_all(&image);
     image.pose.time_us = INT64_MAX;
-    CHECK_STATUS(GOE_NOTHING_SEEN, update());
+    CHECK_STATUS(GOE_NO_DETECTION, update());
     TEST_ASSERT_FLOAT_WITHIN(1.0e-3f, 4000.0f, estimate.age_s);
 }
 
@@ -233,18 +233,18 @@ static void head_on_has_no_edge(void) {
     scene.x0_m = 0.0;
     start();
     CHECK_STATUS(GOE_NO_EDGE, fly(0, 20));
-    TEST_ASSERT_EQUAL_UINT32(20u, estimator.causes[-GOE_NO_EDGE]);
+    TEST_ASSERT_EQUAL_UINT32(20u, estimator.fault_counts[-GOE_NO_EDGE]);
     TEST_ASSERT_EQUAL_HEX32(0u, estimate.valid);
     settings.model = GOE_MODEL_AUTO; /* which has the disc */
     start();
     CHECK_STATUS(GOE_OK, fly(0, 20));
     TEST_ASSERT_EQUAL_INT(GOE_MODEL_DISC, estimate.model);
-    TEST_ASSERT_EQUAL_UINT32(0u, estimator.causes[-GOE_NO_EDGE]);
+    TEST_ASSERT_EQUAL_UINT32(0u, estimator.fault_counts[-GOE_NO_EDGE]);
 }
 
 /* --------------------------------------------------------------------------------- faults of an image that was taken -- */
 
-static void swapped_left_and_right_are_told(void) {
+static void swapped_left_and_right_are_reported(void) {
     scene_make_cylinder(&scene);
     start();
     CHECK_STATUS(GOE_OK, fly(0, 10));
@@ -254,14 +254,14 @@ static void swapped_left_and_right_are_told(void) {
     image.left = image.right;
     image.right = left;
     CHECK_STATUS(GOE_SWAPPED, update());
-    TEST_ASSERT_EQUAL_UINT32(1u, estimator.causes[-GOE_SWAPPED]);
+    TEST_ASSERT_EQUAL_UINT32(1u, estimator.fault_counts[-GOE_SWAPPED]);
     TEST_ASSERT_FALSE(estimate.fresh);
     CHECK_SAME(before.width_m, estimate.width_m);
     CHECK_STATUS(GOE_OK, fly(11, 12));
 }
 
-/* [A21, GOE_CAUSES, GOE_IMAGE_TAKEN, goe_update] The camera looks back: every ray is behind. */
-static void what_lies_behind_is_told(void) {
+/* [A21, GOE_FAULT_COUNTS, GOE_IMAGE_TAKEN, goe_update] The camera looks back: every ray is behind. */
+static void an_obstacle_behind_is_reported(void) {
     start();
     CHECK_STATUS(GOE_OK, fly(0, 10));
     scene_image(&scene, 10, &image, NULL);
@@ -270,13 +270,13 @@ static void what_lies_behind_is_told(void) {
     image.pose.attitude[2] = 0.0f;
     image.pose.attitude[3] = 1.0f;
     CHECK_STATUS(GOE_BEHIND_CAMERA, update());
-    TEST_ASSERT_EQUAL_UINT32(6u, estimator.causes[-GOE_BEHIND_CAMERA]);
+    TEST_ASSERT_EQUAL_UINT32(6u, estimator.fault_counts[-GOE_BEHIND_CAMERA]);
     TEST_ASSERT_FALSE(estimate.fresh);
     TEST_ASSERT_TRUE(estimate.valid & GOE_HAS_POSITION);
 }
 
 /* A fault of one feature does not lose the others. */
-static void a_fault_beside_a_solution_is_partial(void) {
+static void a_fault_next_to_a_solution_is_partial(void) {
     start();
     CHECK_STATUS(GOE_OK, fly(0, 10));
     scene_image(&scene, 10, &image, NULL);
@@ -284,13 +284,13 @@ static void a_fault_beside_a_solution_is_partial(void) {
     CHECK_STATUS(GOE_PARTIAL, update());
     TEST_ASSERT_TRUE(estimate.fresh);
     TEST_ASSERT_TRUE(estimate.valid & GOE_HAS_HEIGHT); /* that of the images before */
-    TEST_ASSERT_EQUAL_UINT32(1u, estimator.causes[-GOE_BAD_HEIGHT]);
+    TEST_ASSERT_EQUAL_UINT32(1u, estimator.fault_counts[-GOE_BAD_HEIGHT]);
     image.pose.time_us += 1;
     image.pose.height_m = -20.0f;
     CHECK_STATUS(GOE_PARTIAL, update());
-    TEST_ASSERT_EQUAL_UINT32(2u, estimator.causes[-GOE_BAD_HEIGHT]);
+    TEST_ASSERT_EQUAL_UINT32(2u, estimator.fault_counts[-GOE_BAD_HEIGHT]);
     scene_image(&scene, 11, &image, NULL);
-    const goe_pixel_t left = image.left; /* the disc is not what is reported */
+    const goe_pixel_t left = image.left; /* the disc is not reported */
     image.left = image.right;
     image.right = left;
     CHECK_STATUS(GOE_PARTIAL, update());
@@ -303,28 +303,28 @@ static void a_negative_height_all_along_gives_no_height(void) {
     for (int k = 0; k < 12; k++) {
         scene_image(&scene, k, &image, NULL);
         image.pose.height_m = -1.0f;
-        CHECK_STATUS(k < 7 ? GOE_COLLECTING : GOE_PARTIAL, update());
+        CHECK_STATUS(k < 7 ? GOE_CONVERGING : GOE_PARTIAL, update());
         TEST_ASSERT_FALSE(estimate.valid & GOE_HAS_HEIGHT);
         TEST_ASSERT_EQUAL_FLOAT(0.0f, estimate.height_m);
     }
 }
 
-/* GIVEN a top that lies below the ground THEN the mean of the heights is none, and is not told. */
+/* GIVEN a top below the ground THEN the mean of the heights is not valid, and is not reported. */
 static void a_height_that_is_not_positive_is_none(void) {
     scene_make_cylinder(&scene);
     start();
     for (int k = 0; k < 12; k++) {
         scene_image(&scene, k, &image, NULL);
         image.top.v_px += 800.0f;
-        CHECK_STATUS(k < 7 ? GOE_COLLECTING : GOE_OK, update());
+        CHECK_STATUS(k < 7 ? GOE_CONVERGING : GOE_OK, update());
         TEST_ASSERT_FALSE(estimate.valid & GOE_HAS_HEIGHT);
         TEST_ASSERT_EQUAL_FLOAT(0.0f, estimate.height_m);
         TEST_ASSERT_EQUAL_FLOAT(0.0f, estimate.sigma.height_m);
     }
 }
 
-/* [window.side_min_px] GIVEN a truck flown past so that its side points at the camera THEN lengths are skipped and it is told. */
-static void a_side_seen_edge_on_gives_no_length(void) {
+/* [window.side_min_px] GIVEN a truck flown past with its side pointing at the camera THEN lengths are skipped and the status reports it. */
+static void a_side_viewed_edge_on_gives_no_length(void) {
     scene.x0_m = -1.9; /* the plane of the right side passes 0.65 m from the camera */
     scene.z0_m = 80.0;
     start();
@@ -332,7 +332,7 @@ static void a_side_seen_edge_on_gives_no_length(void) {
     CHECK_STATUS(GOE_PARTIAL, fly(8, 9));
     TEST_ASSERT_EQUAL_INT(GOE_MODEL_LINE, estimate.model);
     TEST_ASSERT_FALSE(estimate.valid & (GOE_HAS_LENGTH | GOE_HAS_CENTER));
-    TEST_ASSERT_GREATER_THAN_UINT32(0u, estimator.causes[-GOE_EDGE_ON]);
+    TEST_ASSERT_GREATER_THAN_UINT32(0u, estimator.fault_counts[-GOE_EDGE_ON]);
 }
 
 /* ------------------------------------------------------------------------------------------- failures of the solution -- */
@@ -342,9 +342,9 @@ static void hovering_has_no_baseline(void) {
     scene_make_cylinder(&scene);
     scene.speed_mps = 0.0;
     start();
-    CHECK_STATUS(GOE_COLLECTING, fly(0, 7));
+    CHECK_STATUS(GOE_CONVERGING, fly(0, 7));
     CHECK_STATUS(GOE_NO_BASELINE, fly(7, 12));
-    TEST_ASSERT_EQUAL_UINT32(5u, estimator.causes[-GOE_NO_BASELINE]);
+    TEST_ASSERT_EQUAL_UINT32(5u, estimator.fault_counts[-GOE_NO_BASELINE]);
     TEST_ASSERT_EQUAL_HEX32(0u, estimate.valid);
 }
 
@@ -368,9 +368,9 @@ static void stopping_keeps_the_last_answer(void) {
 }
 
 /* [goe_update]
- * GIVEN base corners out of order in images that cannot be solved either THEN both are counted, and the solution's failure is told;
+ * GIVEN base corners out of order in images that cannot be solved either THEN both are counted, and the solution's failure is reported;
  * before there is one to solve, the feature's fault is. */
-static void a_failed_solution_is_told_before_a_feature_s_fault(void) {
+static void a_failed_solution_is_reported_before_a_feature_s_fault(void) {
     scene.speed_mps = 0.0;
     start();
     for (int k = 0; k < 12; k++) {
@@ -380,8 +380,8 @@ static void a_failed_solution_is_told_before_a_feature_s_fault(void) {
         image.base_right = left;
         CHECK_STATUS(k < WINDOW - 1 ? GOE_SWAPPED : GOE_NO_BASELINE, update());
     }
-    TEST_ASSERT_EQUAL_UINT32(12u, estimator.causes[-GOE_SWAPPED]);
-    TEST_ASSERT_EQUAL_UINT32(5u, estimator.causes[-GOE_NO_BASELINE]);
+    TEST_ASSERT_EQUAL_UINT32(12u, estimator.fault_counts[-GOE_SWAPPED]);
+    TEST_ASSERT_EQUAL_UINT32(5u, estimator.fault_counts[-GOE_NO_BASELINE]);
 }
 
 /* An obstacle that flies along ahead of us never grows. */
@@ -398,11 +398,11 @@ static void a_moving_obstacle_has_no_parallax(void) {
         status = update();
     }
     CHECK_STATUS(GOE_NO_PARALLAX, status);
-    TEST_ASSERT_EQUAL_UINT32(5u, estimator.causes[-GOE_NO_PARALLAX]);
+    TEST_ASSERT_EQUAL_UINT32(5u, estimator.fault_counts[-GOE_NO_PARALLAX]);
 }
 
 /* GIVEN an obstacle that grows faster than our own motion explains: the line through the window meets Z = 0 before its
- * end THEN it is told as passed, and no solution is made of it. */
+ * end THEN it is reported as passed, and no solution is made of it. */
 static void an_obstacle_that_is_said_to_lie_behind_is_passed(void) {
     scene_make_cylinder(&scene);
     start();
@@ -417,8 +417,8 @@ static void an_obstacle_that_is_said_to_lie_behind_is_passed(void) {
         }
         status = update();
     }
-    CHECK_STATUS(GOE_PASSED, status);
-    TEST_ASSERT_EQUAL_UINT32(1u, estimator.causes[-GOE_PASSED]);
+    CHECK_STATUS(GOE_ABEAM, status);
+    TEST_ASSERT_EQUAL_UINT32(1u, estimator.fault_counts[-GOE_ABEAM]);
     TEST_ASSERT_EQUAL_HEX32(0u, estimate.valid);
 }
 
@@ -427,23 +427,23 @@ static void an_obstacle_that_is_said_to_lie_behind_is_passed(void) {
 /* The estimator is as it was, but for one counter. */
 static void check_refused(goe_status_t expected) {
     static goe_estimator_t before;
-    const goe_estimate_t told = estimate;
+    const goe_estimate_t reported = estimate;
     memcpy(&before, &estimator, sizeof before);
     memset(&estimate, 0xA5, sizeof estimate);
     CHECK_STATUS(expected, update());
-    TEST_ASSERT_EQUAL_UINT32(before.causes[-expected] + 1u, estimator.causes[-expected]);
-    before.causes[-expected]++;
+    TEST_ASSERT_EQUAL_UINT32(before.fault_counts[-expected] + 1u, estimator.fault_counts[-expected]);
+    before.fault_counts[-expected]++;
     TEST_ASSERT_EQUAL_MEMORY(&before, &estimator, sizeof before);
     TEST_ASSERT_FALSE(estimate.fresh); /* always written */
-    TEST_ASSERT_EQUAL_HEX32(told.valid, estimate.valid);
-    TEST_ASSERT_EQUAL_INT(told.model, estimate.model);
-    CHECK_SAME(told.z0_m, estimate.z0_m);
-    CHECK_SAME(told.x_m, estimate.x_m);
-    CHECK_SAME(told.length_m, estimate.length_m);
-    CHECK_SAME(told.sigma.height_m, estimate.sigma.height_m);
+    TEST_ASSERT_EQUAL_HEX32(reported.valid, estimate.valid);
+    TEST_ASSERT_EQUAL_INT(reported.model, estimate.model);
+    CHECK_SAME(reported.z0_m, estimate.z0_m);
+    CHECK_SAME(reported.x_m, estimate.x_m);
+    CHECK_SAME(reported.length_m, estimate.length_m);
+    CHECK_SAME(reported.sigma.height_m, estimate.sigma.height_m);
 }
 
-/* [A17, A21, GOE_CAUSES, goe_intake.c] */
+/* [A17, A21, GOE_FAULT_COUNTS, goe_intake.c] */
 static void every_number_read_is_checked(void) {
     static const uint32_t patterns[] = {0x7F800000u, 0xFF800000u, 0x7FC00000u, 0xFFFFFFFFu, 0x7F800001u};
     goe_image_t good;
@@ -512,33 +512,34 @@ static void the_ends_of_ranges_are_within(void) {
 }
 
 /* [goe_estimator.c]
- * GIVEN a box and points, one of both bad THEN the image is refused, whichever it is: the checks of the one do not stand for those of the
+ * GIVEN a box and points, one of both bad THEN the image is refused, whichever it is: the checks of the one do not replace those of the
  * other. */
 static void points_and_boxes_are_both_checked(void) {
     goe_image_t good;
     start();
     CHECK_STATUS(GOE_OK, fly(0, 12));
     scene_image(&scene, 12, &good, NULL);
-    good.box = (goe_box_t){500.0f, 500.0f, 700.0f, 700.0f, GOE_SEES_BOX};
+    good.box = (goe_box_t){500.0f, 500.0f, 700.0f, 700.0f, GOE_SIDES_ALL};
     float *const numbers[] = {&image.base_near.u_px, &image.box.left_px, &image.box.top_px, &image.box.right_px,
                               &image.box.bottom_px};
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
         image = good;
-        image.base_near.seen = true;
+        image.base_near.visible = true;
         *numbers[i] = 2.0e5f;
         check_refused(GOE_OUT_OF_RANGE);
         *numbers[i] = check_from_bits(0x7F800000u);
         check_refused(GOE_NOT_FINITE);
-        image.box.seen = (uint8_t)(i == 0 ? 0 : GOE_SEES_BOX & ~(1u << (i - 1)));
-        image.base_near.seen = i != 0;
-        TEST_ASSERT_TRUE(update() != GOE_NOT_FINITE); /* not seen: not read */
+        image.box.sides = (uint8_t)(i == 0 ? 0 : GOE_SIDES_ALL & ~(1u << (i - 1)));
+        image.base_near.visible = i != 0;
+        TEST_ASSERT_TRUE(update() != GOE_NOT_FINITE); /* not visible: not read */
         image.pose.time_us += 1;
         good.pose.time_us = image.pose.time_us;
     }
 }
 
 /* [goe_estimator.c]
- * GIVEN a box whose left is not left of its right, or whose top not above its bottom THEN none of its sides counts, and that is told. */
+ * GIVEN a box whose left is not left of its right, or whose top not above its bottom THEN none of its sides counts, and that is reported.
+ * */
 static void a_box_out_of_order_does_not_count(void) {
     for (int n = 0; n < 2; n++) {
         start();
@@ -546,19 +547,19 @@ static void a_box_out_of_order_does_not_count(void) {
         const int before = estimator.window.disc.count;
         scene_image(&scene, 12, &image, NULL);
         scene_hide_points(&image);
-        image.box = (goe_box_t){500.0f, 500.0f, n == 0 ? 500.0f : 700.0f, n == 1 ? 500.0f : 700.0f, GOE_SEES_BOX};
+        image.box = (goe_box_t){500.0f, 500.0f, n == 0 ? 500.0f : 700.0f, n == 1 ? 500.0f : 700.0f, GOE_SIDES_ALL};
         (void)update();
-        TEST_ASSERT_EQUAL_UINT32(1u, estimator.causes[-GOE_SWAPPED]);
+        TEST_ASSERT_EQUAL_UINT32(1u, estimator.fault_counts[-GOE_SWAPPED]);
         TEST_ASSERT_EQUAL_INT(before, estimator.window.disc.count); /* no points were made of it */
     }
 }
 
-/* [goe_pixel_t.seen] */
-static void what_is_not_seen_is_not_read(void) {
+/* [goe_pixel_t.visible] */
+static void invisible_features_are_not_read(void) {
     start();
     CHECK_STATUS(GOE_OK, fly(0, 12));
     scene_image(&scene, 12, &image, NULL);
-    image.top.seen = false;
+    image.top.visible = false;
     image.top.u_px = check_from_bits(0x7FC00000u);
     image.top.v_px = 1.0e30f;
     CHECK_STATUS(GOE_OK, update());
@@ -585,8 +586,8 @@ static void time_must_run_on(void) {
 static void the_settings_are_copied_and_the_counters_zeroed(void) {
     memset(&estimator, 0xA5, sizeof estimator);
     start();
-    for (int i = 0; i < GOE_CAUSES; i++) {
-        TEST_ASSERT_EQUAL_UINT32(0u, estimator.causes[i]);
+    for (int i = 0; i < GOE_FAULT_COUNTS; i++) {
+        TEST_ASSERT_EQUAL_UINT32(0u, estimator.fault_counts[i]);
     }
     const goe_settings_t given = settings;
     memset(&settings, 0xFF, sizeof settings);
@@ -639,7 +640,7 @@ static void an_image_of_no_camera_is_refused(void) {
 }
 
 /* [goe_fault.c, goe_update] The order of the checks, each over the whole image. */
-static void the_first_fault_is_told(void) {
+static void the_first_fault_is_reported(void) {
     start();
     CHECK_STATUS(GOE_OK, fly(0, 12));
     for (int i = 0; i < 4; i++) {
@@ -652,13 +653,13 @@ static void the_first_fault_is_told(void) {
     check_refused(GOE_NOT_FINITE);
 }
 
-/* [GOE_CAUSES] Counters stop at their largest value. */
+/* [GOE_FAULT_COUNTS] Counters stop at their largest value. */
 static void counters_saturate(void) {
     start();
     CHECK_STATUS(GOE_OK, fly(0, 12));
-    estimator.causes[-GOE_BAD_TIME] = UINT32_MAX;
+    estimator.fault_counts[-GOE_BAD_TIME] = UINT32_MAX;
     CHECK_STATUS(GOE_BAD_TIME, update());
-    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, estimator.causes[-GOE_BAD_TIME]);
+    TEST_ASSERT_EQUAL_UINT32(UINT32_MAX, estimator.fault_counts[-GOE_BAD_TIME]);
 }
 
 /* [A18] */
@@ -679,7 +680,7 @@ static void null_pointers_are_refused(void) {
 }
 
 /* [goe_update] */
-static void an_estimator_must_be_initialised(void) {
+static void an_estimator_must_be_initialized(void) {
     static const int fills[] = {0x00, 0xFF, 0xA5};
     goe_estimate_t nothing;
     memset(&nothing, 0, sizeof nothing);
@@ -689,21 +690,21 @@ static void an_estimator_must_be_initialised(void) {
         memset(&estimator, fills[i], sizeof estimator);
         memset(&before, fills[i], sizeof before);
         memset(&estimate, 0x5A, sizeof estimate);
-        CHECK_STATUS(GOE_NOT_INITIALISED, update());
-        CHECK_STATUS(GOE_NOT_INITIALISED, goe_reset(&estimator));
+        CHECK_STATUS(GOE_NOT_INITIALIZED, update());
+        CHECK_STATUS(GOE_NOT_INITIALIZED, goe_reset(&estimator));
         TEST_ASSERT_EQUAL_MEMORY(&before, &estimator, sizeof before);
         TEST_ASSERT_EQUAL_MEMORY(&nothing, &estimate, sizeof estimate);
     }
 }
 
-/* Of the window's answer: the sigmas squared, and nothing beside the diagonal; all 0 without a position. */
+/* Of the window's answer: the sigmas squared, and nothing next to the diagonal; all 0 without a position. */
 static void the_covariance_is_the_sigmas_squared(void) {
     static const float nothing[GOE_QUANTITIES][GOE_QUANTITIES];
     float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
     start();
     (void)fly(0, 4);
     memset(covariance, 0xFF, sizeof covariance);
-    CHECK_STATUS(GOE_COLLECTING, goe_covariance(&estimator, covariance));
+    CHECK_STATUS(GOE_CONVERGING, goe_covariance(&estimator, covariance));
     TEST_ASSERT_EQUAL_MEMORY(nothing, covariance, sizeof covariance);
     CHECK_STATUS(GOE_OK, fly(4, 20));
     const goe_sigma_t *s = &estimate.sigma;
@@ -728,7 +729,7 @@ static void a_reset_forgets_the_track_and_keeps_the_counters(void) {
     CHECK_STATUS(GOE_OK, fly(0, 12));
     CHECK_STATUS(GOE_BAD_TIME, update());
     CHECK_STATUS(GOE_OK, goe_reset(&estimator));
-    TEST_ASSERT_EQUAL_UINT32(1u, estimator.causes[-GOE_BAD_TIME]);
+    TEST_ASSERT_EQUAL_UINT32(1u, estimator.fault_counts[-GOE_BAD_TIME]);
     settings.camera = scene.camera;
     CHECK_STATUS(GOE_OK, goe_init(&other, sizeof other, &settings, NULL));
     for (int k = 0; k < 20; k++) { /* an earlier time is no fault of a new track */
@@ -739,7 +740,7 @@ static void a_reset_forgets_the_track_and_keeps_the_counters(void) {
     }
 }
 
-/* [A11] GIVEN two obstacles in the same images WHEN two estimators take turns THEN each is what it is alone. */
+/* [A11] GIVEN two obstacles in the same images WHEN two estimators take turns THEN each gives the same result as alone. */
 static void estimators_share_nothing(void) {
     static goe_estimator_t second;
     static goe_estimate_t alone[24];
@@ -784,14 +785,14 @@ static void a_set_heading_turns_the_trajectory_frame(void) {
     settings.heading_deg = 10.0f;
     start();
     CHECK_STATUS(GOE_OK, fly(0, 20));
-    /* (X, Z) = (-12, 100) seen from a frame turned by 10 degrees to the right */
+    /* (X, Z) = (-12, 100) viewed from a frame turned by 10 degrees to the right */
     TEST_ASSERT_FLOAT_WITHIN(0.05f, -12.0f * 0.98480775f - 100.0f * 0.17364818f, estimate.x0_m);
     TEST_ASSERT_FLOAT_WITHIN(0.05f, 100.0f * 0.98480775f - 12.0f * 0.17364818f, estimate.z0_m);
     TEST_ASSERT_FLOAT_WITHIN(0.05f, -10.0f, estimate.orientation_deg);
 }
 
 /* [A5, goe_estimator.c]
- * GIVEN images without a feature, on another heading WHEN something is seen for the first time THEN the track begins there, with
+ * GIVEN images without a feature, on another heading WHEN something is detected for the first time THEN the track begins there, with
  * heading, origin and time of that image. */
 static void a_track_begins_at_first_sight(void) {
     start();
@@ -811,8 +812,8 @@ static void a_track_begins_at_first_sight(void) {
 }
 
 /* [A7]
- * GIVEN a track that began before a turn, and no position yet WHEN everything that is seen lies more than 60 degrees from Z and the nose
- * has turned by more than 45 THEN the track begins again; one feature nearer to Z is enough to go on. The image's faults count once. */
+ * GIVEN a track that began before a turn, and no position yet WHEN all visible features are more than 60 degrees from Z and the nose
+ * has turned by more than 45 THEN the track begins again; one feature nearer to Z is enough to continue. The image's faults count once. */
 static void a_track_begins_again_after_a_turn(void) {
     goe_pixel_t *const features[] = {&image.left,      &image.right,     &image.top,
                                      &image.base_left, &image.base_near, &image.base_right};
@@ -830,13 +831,14 @@ static void a_track_begins_again_after_a_turn(void) {
                 *features[i] = (goe_pixel_t){i == ahead ? 10.0f : 1270.0f, 640.0f, true};
             }
             image.right.u_px = 5.0f; /* out of order with left */
-            image.right.seen = ahead == -1 ? false : image.right.seen;
-            const uint32_t before = estimator.causes[-GOE_SWAPPED] + estimator.causes[-GOE_BEHIND_CAMERA];
+            image.right.visible = ahead == -1 ? false : image.right.visible;
+            const uint32_t before = estimator.fault_counts[-GOE_SWAPPED] + estimator.fault_counts[-GOE_BEHIND_CAMERA];
             (void)update();
             const bool again = turned == 1 && ahead == -1;
             CHECK_CLOSE(1.0e-3, again ? 75.0 : 0.0, estimate.trajectory_heading_deg);
             if (again) {
-                TEST_ASSERT_EQUAL_UINT32(before, estimator.causes[-GOE_SWAPPED] + estimator.causes[-GOE_BEHIND_CAMERA]);
+                TEST_ASSERT_EQUAL_UINT32(before, estimator.fault_counts[-GOE_SWAPPED] +
+                                                     estimator.fault_counts[-GOE_BEHIND_CAMERA]);
             }
         }
     }
@@ -865,7 +867,7 @@ static void a_vertical_nose_takes_north(void) {
     image.pose.attitude[2] = 0.5f;
     image.pose.attitude[3] = -0.5f;
     /* rotation of 120 degrees about (1, 1, -1): forward goes to -down, with no level part */
-    CHECK_STATUS(GOE_NOTHING_SEEN, update());
+    CHECK_STATUS(GOE_NO_DETECTION, update());
     TEST_ASSERT_EQUAL_FLOAT(1.0f, estimator.motion.heading_cos);
     TEST_ASSERT_EQUAL_FLOAT(0.0f, estimator.motion.heading_sin);
 }
@@ -878,37 +880,37 @@ int main(void) {
     RUN_TEST(the_number_of_line_points_is_a_setting);
     RUN_TEST(the_window_is_a_setting);
     RUN_TEST(a_forced_model_is_never_left);
-    RUN_TEST(nothing_seen_is_no_fault);
-    RUN_TEST(an_image_without_corners_holds_the_line);
+    RUN_TEST(no_detection_is_no_fault);
+    RUN_TEST(an_image_without_corners_keeps_the_line);
     RUN_TEST(an_age_is_bounded);
     RUN_TEST(an_estimate_grows_old_while_images_are_refused);
     RUN_TEST(times_may_start_anywhere);
     RUN_TEST(head_on_has_no_edge);
-    RUN_TEST(swapped_left_and_right_are_told);
-    RUN_TEST(what_lies_behind_is_told);
-    RUN_TEST(a_fault_beside_a_solution_is_partial);
+    RUN_TEST(swapped_left_and_right_are_reported);
+    RUN_TEST(an_obstacle_behind_is_reported);
+    RUN_TEST(a_fault_next_to_a_solution_is_partial);
     RUN_TEST(a_negative_height_all_along_gives_no_height);
     RUN_TEST(a_height_that_is_not_positive_is_none);
-    RUN_TEST(a_side_seen_edge_on_gives_no_length);
+    RUN_TEST(a_side_viewed_edge_on_gives_no_length);
     RUN_TEST(hovering_has_no_baseline);
     RUN_TEST(stopping_keeps_the_last_answer);
-    RUN_TEST(a_failed_solution_is_told_before_a_feature_s_fault);
+    RUN_TEST(a_failed_solution_is_reported_before_a_feature_s_fault);
     RUN_TEST(a_moving_obstacle_has_no_parallax);
     RUN_TEST(an_obstacle_that_is_said_to_lie_behind_is_passed);
     RUN_TEST(every_number_read_is_checked);
     RUN_TEST(the_ends_of_ranges_are_within);
     RUN_TEST(points_and_boxes_are_both_checked);
     RUN_TEST(a_box_out_of_order_does_not_count);
-    RUN_TEST(what_is_not_seen_is_not_read);
+    RUN_TEST(invisible_features_are_not_read);
     RUN_TEST(time_must_run_on);
     RUN_TEST(the_settings_are_copied_and_the_counters_zeroed);
     RUN_TEST(the_first_image_needs_a_time);
     RUN_TEST(a_quaternion_may_be_off_by_one_percent);
     RUN_TEST(an_image_of_no_camera_is_refused);
-    RUN_TEST(the_first_fault_is_told);
+    RUN_TEST(the_first_fault_is_reported);
     RUN_TEST(counters_saturate);
     RUN_TEST(null_pointers_are_refused);
-    RUN_TEST(an_estimator_must_be_initialised);
+    RUN_TEST(an_estimator_must_be_initialized);
     RUN_TEST(the_covariance_is_the_sigmas_squared);
     RUN_TEST(a_reset_forgets_the_track_and_keeps_the_counters);
     RUN_TEST(estimators_share_nothing);

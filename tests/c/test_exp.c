@@ -23,8 +23,8 @@ static double worst_share(double limit) {
     return worst;
 }
 
-/* [detector.correlation_s] */
-static void it_is_as_right_as_told(void) {
+/* [detector.box_correlation_time_s] */
+static void it_is_as_right_as_reported(void) {
     TEST_ASSERT_TRUE(worst_share(6.0) < 1.0e-5);
     TEST_ASSERT_TRUE(worst_share(LIMIT) < 1.0e-3);
 }
@@ -39,7 +39,7 @@ static void an_argument_beyond_the_limits_counts_as_the_limit(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(it_is_as_right_as_told);
+    RUN_TEST(it_is_as_right_as_reported);
     RUN_TEST(an_argument_beyond_the_limits_counts_as_the_limit);
     return UNITY_END();
 }

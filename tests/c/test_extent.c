@@ -31,7 +31,7 @@ static goe_span_t front_to(const goe_point_t *near, goe_turn_t turn) {
     return front;
 }
 
-/* A box with the middle of its front edge at (x, z), width w, length l, turned by b, all seen exactly. */
+/* A box with the middle of its front edge at (x, z), width w, length l, turned by b, without noise. */
 static goe_status_t measure(double x, double z, double w, double l, double b_deg, bool side_is_right) {
     const double s = sin(b_deg * RAD_PER_DEG);
     const double c = cos(b_deg * RAD_PER_DEG);
@@ -99,7 +99,7 @@ static void an_end_behind_the_turned_camera_has_no_length(void) {
     const goe_edge_t side = {&near, &far, true, true, 0.0f};
     const goe_faces_t faces = {true, &side, &side, true};
     const goe_estimate_t reference = solved(-10.0f, 80.0f, 2.5f);
-    const goe_turn_t turn = {0.707106781f, 0.707106781f}; /* bearing -63 seen from 45: 108 degrees aside */
+    const goe_turn_t turn = {0.707106781f, 0.707106781f}; /* bearing -63 viewed from 45: 108 degrees aside */
     const goe_span_t span = {-1.0f, -1.0f};
     CHECK_STATUS(GOE_EDGE_ON, goe_extent_length(&faces, &span, turn, &reference, MIN_X, &extent));
 }

@@ -46,7 +46,7 @@ static void exact_rows_are_solved_exactly(void) {
     TEST_ASSERT_FLOAT_WITHIN(1.0e-3f, 0.0f, fit.sigma.width_m);
 }
 
-/* [(5)] The slope is shared: motion aside alone tells the width as well as motion ahead. */
+/* [(5)] The slope is shared: lateral motion alone determines the width as well as motion ahead. */
 static void motion_aside_is_a_baseline_too(void) {
     for (int k = 0; k < LENGTH; k++) {
         add(30.0f, 100.0f, 6.0f, (float)k - 3.0f, 0.0f);
@@ -107,7 +107,7 @@ static void an_obstacle_abeam_or_behind_is_passed(void) {
     for (int k = 0; k < LENGTH; k++) { /* Z runs from 5 to -9 */
         add(20.0f, 5.0f, 4.0f, 0.0f, 2.0f * (float)k);
     }
-    check_failure(GOE_PASSED);
+    check_failure(GOE_ABEAM);
     setUp();
     for (int k = 0; k < LENGTH; k++) { /* still 1 m ahead at the last image */
         add(20.0f, 15.0f, 4.0f, 0.0f, 2.0f * (float)k);
@@ -116,7 +116,7 @@ static void an_obstacle_abeam_or_behind_is_passed(void) {
 }
 
 /* [window.min_baseline_m] */
-static void what_is_too_far_to_be_an_obstacle_is_no_parallax(void) {
+static void an_excessive_range_is_no_parallax(void) {
     for (int k = 0; k < LENGTH; k++) { /* W = 2e6 m, and the camera moves 1e6 m: above the rounding limit */
         goe_fit_add(&window, LENGTH, 0.0f, 1.0e6f * (float)k, (goe_row_t){0.0f, 10.0f - 0.5f * (float)k});
     }
@@ -140,7 +140,7 @@ static void the_oldest_rows_leave(void) {
     TEST_ASSERT_EQUAL_INT(13, window.count);
 }
 
-/* GIVEN a place in the ring that a flipped bit made none of it THEN nothing is written beside it, and the ring goes on. */
+/* GIVEN a place in the ring that a flipped bit made invalid THEN nothing is written outside of it, and the ring continues. */
 static void a_place_outside_the_ring_is_its_first(void) {
     static const int16_t places[] = {INT16_MIN, -1, LENGTH, INT16_MAX};
     for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
@@ -212,7 +212,7 @@ int main(void) {
     RUN_TEST(an_image_that_shrinks_is_no_parallax);
     RUN_TEST(growth_below_the_rounding_of_floats_is_no_parallax);
     RUN_TEST(an_obstacle_abeam_or_behind_is_passed);
-    RUN_TEST(what_is_too_far_to_be_an_obstacle_is_no_parallax);
+    RUN_TEST(an_excessive_range_is_no_parallax);
     RUN_TEST(the_oldest_rows_leave);
     RUN_TEST(a_place_outside_the_ring_is_its_first);
     RUN_TEST(the_count_of_points_saturates);

@@ -20,7 +20,7 @@ static goe_matrix_t matrix;
 static goe_rows_t rows;
 static goe_verdict_t verdict;
 
-/* A box as it is seen from some way off: six points, base corners as two rows each. The filter is sure of its state. */
+/* A box viewed from some way off: six points, base corners as two rows each. The filter is sure of its state. */
 static const double points[GOE_FEATURES][2] = {{-0.12, 0.02}, {0.03, 0.02},  {-0.04, -0.05},
                                                {-0.12, 0.15}, {-0.04, 0.17}, {0.03, 0.16}};
 
@@ -42,7 +42,7 @@ void setUp(void) {
         filter.inverse.element[goe_inverse_column(i) + i] = 1.0e-6f;
     }
     goe_rows_clear(&rows, &matrix);
-    rows.white_rad = settings.navigation.attitude_white_deg * GOE_RAD_PER_DEG;
+    rows.white_rad = settings.navigation.attitude_white_sd_deg * GOE_RAD_PER_DEG;
     for (size_t i = 0; i < GOE_FEATURES; i++) {
         if (i != GOE_POINT_TOP) {
             add_row(i, false);
@@ -132,7 +132,7 @@ static void a_shift_of_all_points_refuses_none(void) {
     for (int axis = 0; axis < 3; axis++) {
         for (int sigmas = -4; sigmas <= 4; sigmas += 2) {
             setUp();
-            const double angle = sigmas * (double)settings.navigation.attitude_white_deg * RAD_PER_DEG;
+            const double angle = sigmas * (double)settings.navigation.attitude_white_sd_deg * RAD_PER_DEG;
             turn(axis == 0 ? angle : 0.0, axis == 1 ? angle : 0.0, axis == 2 ? angle : 0.0);
             const goe_matrix_t before = matrix;
             apply();
@@ -157,7 +157,7 @@ static void an_outlier_is_found_in_a_shifted_image(void) {
     }
 }
 
-/* [refined.huber_sigma, (R16)]
+/* [filter.huber_sigma, (R16)]
  * GIVEN a point between Huber's limit and the gate THEN its weight is that of a residual on the limit, for both of its rows:
  * weight^2 = huber / residual. */
 static void a_suspicious_point_counts_less(void) {
@@ -179,14 +179,14 @@ static void a_suspicious_point_counts_less(void) {
 
 static void the_limits_are_settings(void) {
     rows.white_rad = 1.0e-4f * GOE_RAD_PER_DEG;
-    settings.refined.gate_sigma = 3.0f;
+    settings.filter.gate_sigma = 3.0f;
     *residual(0) = (float)(3.2 * sqrt(2.0) * SIGMA);
     apply();
     TEST_ASSERT_EQUAL_HEX32(1u << rows.feature[0], verdict.refused);
     setUp();
     rows.white_rad = 1.0e-4f * GOE_RAD_PER_DEG;
-    settings.refined.gate_sigma = 100.0f;
-    settings.refined.huber_sigma = 1.0f;
+    settings.filter.gate_sigma = 100.0f;
+    settings.filter.huber_sigma = 1.0f;
     *residual(0) = (float)(10.0 * sqrt(2.0) * SIGMA);
     const goe_matrix_t before = matrix;
     apply();
@@ -225,22 +225,22 @@ static void an_unsure_state_opens_the_gate(void) {
  * of their differences, and an outlier among them is found. */
 static void the_own_position_s_error_opens_the_gate(void) {
     for (int shared = 0; shared < 2; shared++) {
-        for (int told = 0; told < 2; told++) {
+        for (int reported = 0; reported < 2; reported++) {
             setUp();
             memset(rows.shift, 0, sizeof rows.shift);
-            rows.shifts = told != 0;
+            rows.shifts = reported != 0;
             rows.count = GOE_BOX_SIDES; /* so many of a box: along x, x, y, x */
             for (size_t i = 0; i < rows.count; i++) {
                 rows.shift[i][1] = shared || i == 0 ? 0.01f : 0.0f;
             }
             *residual(0) = (float)(15.0 / FOCAL_PX);
             apply();
-            TEST_ASSERT_EQUAL_HEX32(told && !shared ? 0u : 1u << rows.feature[0], verdict.refused);
+            TEST_ASSERT_EQUAL_HEX32(reported && !shared ? 0u : 1u << rows.feature[0], verdict.refused);
         }
     }
 }
 
-/* Normalised residual of the left point, 3 px off, as Huber's weight tells it, if each row has an error of the image's own position
+/* Normalized residual of the left point, 3 px off, as Huber's weight gives it, if each row has an error of the image's own position
  * in it, along one axis; the attitude's own is white_deg. */
 static double sigmas_of_left(double white_deg, size_t axis, double own_sigmas, double others_sigmas) {
     setUp();
@@ -255,8 +255,8 @@ static double sigmas_of_left(double white_deg, size_t axis, double own_sigmas, d
         matrix.row[i][i == 0 || i == 1 ? 0 : 1] = 1.0f; /* two along x, two along y */
         rows.shift[i][axis] = (float)(SIGMA * (i == 0 ? own_sigmas : others_sigmas));
     }
-    settings.refined.gate_sigma = 100.0f;
-    settings.refined.huber_sigma = 0.5f;
+    settings.filter.gate_sigma = 100.0f;
+    settings.filter.huber_sigma = 0.5f;
     *residual(0) = (float)(6.0 * SIGMA);
     const goe_matrix_t before = matrix;
     apply();
@@ -264,8 +264,8 @@ static double sigmas_of_left(double white_deg, size_t axis, double own_sigmas, d
     return 0.5 / (weight * weight);
 }
 
-/* GIVEN sides of a box and an image whose own position is off THEN it widens what a side may be off by, however well the attitude is
- * known; what it moves alike in both is not between them. */
+/* GIVEN sides of a box and an image with an own position error THEN it widens the possible error of a side, however well the attitude is
+ * known; an equal motion of both is not between them. */
 static void an_own_position_error_opens_the_gate(void) {
     for (size_t n = 0; n < 6; n++) {
         const double white_deg = n % 2 == 0 ? 1.0e-4 : 0.03;

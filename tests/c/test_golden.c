@@ -136,7 +136,7 @@ static void a_whole_flight_bit_by_bit(void) {
         float numbers[GOLDEN_CORNER_NUMBERS];
         CHECK_STATUS(g->status, goe_update(&estimator, &g->image, &estimate));
         TEST_ASSERT_EQUAL_INT(g->model, estimate.model);
-        TEST_ASSERT_EQUAL_INT(g->points, estimate.points);
+        TEST_ASSERT_EQUAL_INT(g->points, estimate.images_used);
         TEST_ASSERT_EQUAL_INT(g->fresh, estimate.fresh);
         TEST_ASSERT_EQUAL_HEX32(g->valid, estimate.valid);
         numbers_of(&estimate, numbers);

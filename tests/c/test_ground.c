@@ -1,5 +1,5 @@
-/* The height above the obstacle's ground: what its readings tell, and what stays told as the range becomes known, against the
- * same worked out at once in double. SPDX-License-Identifier: MIT */
+/* The height above the obstacle's ground: the information of its readings, and the part that stays as the range becomes known, against the
+ * same computed at once in double. SPDX-License-Identifier: MIT */
 /* tests: lib/refined/goe_ground.c */
 #include "refined/goe_ground.h"
 
@@ -31,7 +31,7 @@ static const float level[9] = {1.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 1
 void setUp(void) {
     any = check_random_start("ground");
     goe_settings_default(&settings);
-    settings.navigation.height_bias_m = CONSTANT_M;
+    settings.navigation.height_bias_sd_m = CONSTANT_M;
     memset(&image, 0, sizeof image);
     memset(&motion, 0, sizeof motion);
     memset(&view, 0, sizeof view);
@@ -46,7 +46,7 @@ void setUp(void) {
 }
 void tearDown(void) {}
 
-/* A filter at this range that was told this of the ground, and little else. */
+/* A filter at this range with this information on the ground, and little else. */
 static void start(float range_m, float height_sd_m) {
     memset(&filter.root, 0, sizeof filter.root);
     for (size_t i = 0; i < GOE_STATES; i++) {
@@ -61,17 +61,17 @@ static void start(float range_m, float height_sd_m) {
     goe_filter_invert(&filter);
 }
 
-/* Tells the filter what it is to hear, without any other row. Returns how many rows that were. */
-static int tell(void) {
+/* Gives the filter its height rows, without any other row. Returns how many rows that were. */
+static int give(void) {
     float change[GOE_UNKNOWNS];
     goe_rows_clear(&rows, &matrix);
     memset(&matrix, 0, sizeof matrix);
     rows.white_rad = 1.0e-3f;
-    const int told = goe_ground_tell(&filter, &obs, &rows);
-    TEST_ASSERT_EQUAL_INT(told, (int)rows.count);
+    const int reported = goe_ground_row(&filter, &obs, &rows);
+    TEST_ASSERT_EQUAL_INT(reported, (int)rows.count);
     (void)goe_model_update(&filter, 1.0f / rows.white_rad, &rows, change);
     goe_filter_invert(&filter);
-    return told;
+    return reported;
 }
 
 static double ground_sd_m(void) {
@@ -87,10 +87,10 @@ static void read_height(float height_m, float sunk_m) {
 }
 
 /* [goe_pose_t.height_m]
- * GIVEN heights with a constant and a white error, of a flight that sinks THEN their offset is told as the mean of all, with the
- * constant error counted once; a mean that moves is told as it stands. */
-static void readings_tell_the_mean_and_no_more(void) {
-    settings.navigation.height_white_m = WHITE_M;
+ * GIVEN heights with a constant and a white error, of a flight that sinks THEN the filter gets their offset as the mean of all, with the
+ * constant error counted once, and follows a mean that moves. */
+static void readings_give_the_mean_and_no_more(void) {
+    settings.navigation.height_white_sd_m = WHITE_M;
     for (int flight = 0; flight < FLIGHTS; flight++) {
         double sum = 0.0;
         double first_m = 0.0;
@@ -104,20 +104,20 @@ static void readings_tell_the_mean_and_no_more(void) {
             if (k == 0) {
                 start(RANGE_M, obs.height_sd_m);
             } else {
-                (void)tell();
+                (void)give();
             }
         }
-        const double told_sd = sqrt((double)(CONSTANT_M * CONSTANT_M) + (double)(WHITE_M * WHITE_M) / READINGS);
+        const double reported_sd = sqrt((double)(CONSTANT_M * CONSTANT_M) + (double)(WHITE_M * WHITE_M) / READINGS);
         const double offset_m = (double)filter.state[GOE_GROUND] / (double)filter.state[GOE_INVERSE_RANGE];
-        CHECK_CLOSE(0.01 * told_sd, told_sd, ground_sd_m());
-        CHECK_CLOSE(0.05 * told_sd, sum / READINGS, offset_m);
+        CHECK_CLOSE(0.01 * reported_sd, reported_sd, ground_sd_m());
+        CHECK_CLOSE(0.05 * reported_sd, sum / READINGS, offset_m);
     }
 }
 
-/* GIVEN a filter that was told the mean of its heights WHEN it starts again, as a track does that begins afresh at a place THEN it is
- * told the same mean once more, and nothing of what it was told before counts. */
-static void a_filter_that_starts_again_is_told_the_same_mean(void) {
-    settings.navigation.height_white_m = WHITE_M;
+/* GIVEN a filter that was given the mean of its heights WHEN it starts again, like a track that begins again at a place THEN it is
+ * given the same mean once more, and nothing of the earlier information counts. */
+static void a_filter_that_starts_again_receives_the_same_mean(void) {
+    settings.navigation.height_white_sd_m = WHITE_M;
     for (int flight = 0; flight < FLIGHTS; flight++) {
         goe_filter_clear(&filter);
         read_height(HEIGHT_M, 0.0f);
@@ -125,21 +125,21 @@ static void a_filter_that_starts_again_is_told_the_same_mean(void) {
         start(RANGE_M, first_sd_m);
         for (int k = 1; k < READINGS; k++) {
             read_height(HEIGHT_M + 5.0f + WHITE_M * (float)check_random_normal(&any), 0.0f);
-            (void)tell();
+            (void)give();
         }
-        const double told_m = (double)filter.state[GOE_GROUND] / (double)filter.state[GOE_INVERSE_RANGE];
-        const double told_sd_m = ground_sd_m();
+        const double reported_m = (double)filter.state[GOE_GROUND] / (double)filter.state[GOE_INVERSE_RANGE];
+        const double reported_sd_m = ground_sd_m();
         filter.state[GOE_GROUND] = 0.0f;
         start(RANGE_M, first_sd_m);
-        TEST_ASSERT_EQUAL_INT(1, tell());
-        CHECK_CLOSE(0.02 * told_sd_m, told_m, filter.state[GOE_GROUND] / filter.state[GOE_INVERSE_RANGE]);
-        CHECK_CLOSE(0.01 * told_sd_m, told_sd_m, ground_sd_m());
+        TEST_ASSERT_EQUAL_INT(1, give());
+        CHECK_CLOSE(0.02 * reported_sd_m, reported_m, filter.state[GOE_GROUND] / filter.state[GOE_INVERSE_RANGE]);
+        CHECK_CLOSE(0.01 * reported_sd_m, reported_sd_m, ground_sd_m());
     }
 }
 
-/* GIVEN more readings than are counted THEN the mean goes on as that of so many, and the count does not begin anew. */
+/* GIVEN more readings than are counted THEN the mean continues as that of so many, and the count does not begin again. */
 static void the_count_of_readings_saturates(void) {
-    settings.navigation.height_white_m = WHITE_M;
+    settings.navigation.height_white_sd_m = WHITE_M;
     read_height(HEIGHT_M, 0.0f);
     start(RANGE_M, obs.height_sd_m);
     filter.datum.readings = UINT16_MAX - 1u;
@@ -151,9 +151,9 @@ static void the_count_of_readings_saturates(void) {
     }
 }
 
-/* GIVEN an image whose rows are all taken THEN what the heights tell waits, and none of it is lost. */
-static void what_finds_no_room_is_told_later(void) {
-    settings.navigation.height_white_m = WHITE_M;
+/* GIVEN an image whose rows are all taken THEN the information of the heights waits, and none of it is lost. */
+static void an_overflow_is_reported_later(void) {
+    settings.navigation.height_white_sd_m = WHITE_M;
     read_height(HEIGHT_M, 0.0f);
     start(RANGE_M, obs.height_sd_m);
     for (int k = 1; k < READINGS; k++) {
@@ -161,32 +161,32 @@ static void what_finds_no_room_is_told_later(void) {
     }
     goe_rows_clear(&rows, &matrix);
     rows.count = GOE_ROWS_MAX;
-    TEST_ASSERT_EQUAL_INT(0, goe_ground_tell(&filter, &obs, &rows));
-    TEST_ASSERT_EQUAL_INT(1, tell());
-    TEST_ASSERT_EQUAL_INT(0, tell());
+    TEST_ASSERT_EQUAL_INT(0, goe_ground_row(&filter, &obs, &rows));
+    TEST_ASSERT_EQUAL_INT(1, give());
+    TEST_ASSERT_EQUAL_INT(0, give());
     CHECK_CLOSE(0.001, obs.height_sd_m, ground_sd_m());
     CHECK_CLOSE(0.05, 1.0 - 1.0 / READINGS, filter.state[GOE_GROUND] * RANGE_M);
 }
 
 /* GIVEN a filter that knows no position yet THEN what the heights say waits, as its range may be off by a factor; none of it is lost. */
 static void without_a_position_the_heights_wait(void) {
-    settings.navigation.height_white_m = WHITE_M;
+    settings.navigation.height_white_sd_m = WHITE_M;
     read_height(HEIGHT_M, 0.0f);
     start(RANGE_M, obs.height_sd_m);
     for (int k = 1; k < READINGS; k++) {
         read_height(HEIGHT_M + 1.0f, 0.0f);
     }
     filter.known = 0;
-    TEST_ASSERT_EQUAL_INT(0, tell());
+    TEST_ASSERT_EQUAL_INT(0, give());
     filter.known = GOE_HAS_POSITION;
-    TEST_ASSERT_EQUAL_INT(1, tell());
+    TEST_ASSERT_EQUAL_INT(1, give());
     CHECK_CLOSE(0.001, obs.height_sd_m, ground_sd_m());
 }
 
-/* [navigation.height_bias_m]
- * GIVEN a first guess of the range that proves wrong THEN the height is known as it was told, in metres: no better when the
- * obstacle is nearer, and no worse when it is farther. */
-static void a_wrong_first_range_leaves_the_height_as_told(void) {
+/* [navigation.height_bias_sd_m]
+ * GIVEN a first guess of the range that proves wrong THEN the uncertainty of the height is the configured one, in meters: no better when
+ * the obstacle is nearer, and no worse when it is farther. */
+static void a_wrong_first_range_leaves_the_height_as_given(void) {
     static const float factor[] = {0.2f, 0.5f, 0.9f, 1.0f, 1.2f, 2.0f, 5.0f};
     for (size_t i = 0; i < sizeof factor / sizeof factor[0]; i++) {
         start(RANGE_M, CONSTANT_M);
@@ -195,9 +195,9 @@ static void a_wrong_first_range_leaves_the_height_as_told(void) {
         goe_ground_follow(&filter, before);
         goe_ground_widen(&filter);
         goe_filter_invert(&filter);
-        const int told = tell();
-        check_report("sigma of the height over the one told", ground_sd_m() / (double)CONSTANT_M);
-        TEST_ASSERT_EQUAL_INT(factor[i] > 1.0f ? 1 : 0, told);
+        const int reported = give();
+        check_report("sigma of the height over the configured one", ground_sd_m() / (double)CONSTANT_M);
+        TEST_ASSERT_EQUAL_INT(factor[i] > 1.0f ? 1 : 0, reported);
         CHECK_CLOSE(0.02, 1.0, ground_sd_m() / (double)CONSTANT_M);
     }
 }
@@ -215,10 +215,10 @@ static double sum_sd(void) {
     return sqrt((double)goe_srif_variance(&filter.inverse, sum));
 }
 
-/* GIVEN ground that rises or falls below the altimeter WHEN a way was flown THEN the height above the obstacle's ground is off by
- * slope times way more, once for each metre however many images it took; the obstacle's own height is none the worse. */
+/* GIVEN ground that rises or falls below the altimeter WHEN the aircraft has flown a distance THEN the height above the obstacle's ground
+ * is off by slope times distance more, once for each meter however many images it took; the obstacle's own height is not affected. */
 static void the_slope_of_the_ground_adds_up_over_the_way(void) {
-    settings.navigation.slope = SLOPE;
+    settings.navigation.terrain_slope_sd = SLOPE;
     for (int steps = 1; steps <= 4; steps += 3) {
         start(RANGE_M, CONSTANT_M);
         const double height_sd = sum_sd();
@@ -236,11 +236,11 @@ static void the_slope_of_the_ground_adds_up_over_the_way(void) {
 /* GIVEN heights that are not taken as they come, but by those of all images or as of the first one THEN the way that was flown
  * is in none of them. */
 static void a_height_that_is_kept_has_no_slope(void) {
-    settings.navigation.slope = SLOPE;
+    settings.navigation.terrain_slope_sd = SLOPE;
     for (int kept = 0; kept < 2; kept++) {
         start(RANGE_M, CONSTANT_M);
         filter.phase = kept == 0 ? GOE_PHASE_PRISM : GOE_PHASE_DISC;
-        settings.navigation.height_white_m = kept == 0 ? 0.0f : WHITE_M;
+        settings.navigation.height_white_sd_m = kept == 0 ? 0.0f : WHITE_M;
         TEST_ASSERT_TRUE(goe_ground_is_steady(&filter, &settings.navigation));
         filter.flown_m = FLOWN_M;
         goe_ground_climb(&filter, &settings.navigation);
@@ -254,7 +254,7 @@ static void a_height_that_is_kept_has_no_slope(void) {
  * and nothing of that where the height is kept from the first image on. */
 static void sloping_ground_makes_the_height_uncertain(void) {
     static const size_t steps[] = {1, 5};
-    settings.navigation.slope = 0.05f;
+    settings.navigation.terrain_slope_sd = 0.05f;
     for (size_t n = 0; n < 2; n++) {
         goe_filter_clear(&filter);
         start(RANGE_M, CONSTANT_M);
@@ -269,7 +269,7 @@ static void sloping_ground_makes_the_height_uncertain(void) {
         const double before = 1.0 + 4.0 / (double)(RANGE_M * RANGE_M); /* of the top, and of the ground */
         CHECK_CLOSE(1.0e-4, before, goe_srif_variance(&filter.inverse, over_ground));
     }
-    settings.navigation.height_white_m = 1.0f;
+    settings.navigation.height_white_sd_m = 1.0f;
     start(RANGE_M, CONSTANT_M);
     filter.flown_m = 60.0f;
     goe_ground_climb(&filter, &settings.navigation);
@@ -279,11 +279,11 @@ static void sloping_ground_makes_the_height_uncertain(void) {
 
 /* GIVEN a first image that knows its own height's error THEN that is kept for the filter's start, of that image and no later one. */
 static void the_first_heights_own_error_is_kept(void) {
-    settings.navigation.height_white_m = WHITE_M;
-    image.noise.height_m = 0.7f;
+    settings.navigation.height_white_sd_m = WHITE_M;
+    image.noise.height_sd_m = 0.7f;
     read_height(HEIGHT_M, 0.0f);
     CHECK_SAME(0.7f, filter.datum.sd_m);
-    image.noise.height_m = 0.2f;
+    image.noise.height_sd_m = 0.2f;
     read_height(HEIGHT_M, 0.0f);
     CHECK_SAME(0.7f, filter.datum.sd_m);
 }
@@ -291,9 +291,9 @@ static void the_first_heights_own_error_is_kept(void) {
 /* GIVEN heights with a white error and a box in each image WHEN the height is not set THEN no reading counts and the ground's height is
  * unknown; the first height that is set is the first reading. */
 static void a_height_that_is_not_set_is_no_reading(void) {
-    settings.navigation.height_white_m = WHITE_M;
-    image.box.seen = GOE_SEES_BOX;
-    image.noise.height_m = 0.7f; /* of a height that is not there */
+    settings.navigation.height_white_sd_m = WHITE_M;
+    image.box.sides = GOE_SIDES_ALL;
+    image.noise.height_sd_m = 0.7f; /* of a height that is not there */
     read_height(0.0f, 0.0f);
     read_height(0.0f, 0.0f);
     TEST_ASSERT_EQUAL_UINT16(0u, filter.datum.readings);
@@ -309,11 +309,11 @@ static void a_height_that_is_not_set_is_no_reading(void) {
 static void the_arm_moves_the_camera_up_and_down(void) {
     const float turned[9] = {0.8f, 0.0f, 0.6f, -0.36f, 0.8f, 0.48f, -0.48f, -0.6f, 0.64f};
     const float mounted[9] = {0.0f, 0.0f, 1.0f, 1.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f}; /* looks ahead */
-    settings.navigation.height_white_m = WHITE_M;
+    settings.navigation.height_white_sd_m = WHITE_M;
     settings.camera.offset_m[0] = 3.0f;
     settings.camera.offset_m[1] = -1.0f;
     settings.camera.offset_m[2] = 0.5f;
-    settings.camera.width_px = 1280.0f; /* which stands behind the arm in memory */
+    settings.camera.width_px = 1280.0f; /* which is behind the arm in memory */
     view.camera_to_body = mounted;
     read_height(HEIGHT_M, 0.0f); /* level by the camera's axes: y is body's z */
     const double first_down = 0.5;
@@ -330,12 +330,12 @@ static void the_arm_moves_the_camera_up_and_down(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(readings_tell_the_mean_and_no_more);
-    RUN_TEST(a_filter_that_starts_again_is_told_the_same_mean);
+    RUN_TEST(readings_give_the_mean_and_no_more);
+    RUN_TEST(a_filter_that_starts_again_receives_the_same_mean);
     RUN_TEST(the_count_of_readings_saturates);
-    RUN_TEST(what_finds_no_room_is_told_later);
+    RUN_TEST(an_overflow_is_reported_later);
     RUN_TEST(without_a_position_the_heights_wait);
-    RUN_TEST(a_wrong_first_range_leaves_the_height_as_told);
+    RUN_TEST(a_wrong_first_range_leaves_the_height_as_given);
     RUN_TEST(the_slope_of_the_ground_adds_up_over_the_way);
     RUN_TEST(a_height_that_is_kept_has_no_slope);
     RUN_TEST(sloping_ground_makes_the_height_uncertain);

@@ -41,7 +41,7 @@ static void flip(void *at, size_t bit) { ((unsigned char *)at)[bit / 8u] ^= (uns
 
 static void check_corrupted(void) {
     static const goe_estimate_t nothing;
-    static const goe_plan_t plan = {{16.0f, 0.0f, 0.0f}, 10.0f, 10.0f, 0.0f, 0.0f};
+    static const goe_intent_t intent = {{16.0f, 0.0f, 0.0f}, 10.0f, 10.0f, 0.0f, 0.0f};
     const goe_estimator_t before = estimator;
     float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
     goe_hazard_t hazard;
@@ -49,8 +49,8 @@ static void check_corrupted(void) {
     CHECK_STATUS(GOE_CORRUPTED, goe_update(&estimator, &image, &estimate));
     TEST_ASSERT_EQUAL_MEMORY(&nothing, &estimate, sizeof estimate);
     CHECK_STATUS(GOE_CORRUPTED, goe_covariance(&estimator, covariance));
-    CHECK_STATUS(GOE_CORRUPTED, goe_hazard(&estimator, &plan, &hazard));
-    TEST_ASSERT_EQUAL_FLOAT(0.0f, hazard.violation);
+    CHECK_STATUS(GOE_CORRUPTED, goe_hazard(&estimator, &intent, &hazard));
+    TEST_ASSERT_EQUAL_FLOAT(0.0f, hazard.conflict_probability);
     CHECK_STATUS(GOE_CORRUPTED, goe_reset(&estimator));
     TEST_ASSERT_EQUAL_MEMORY(&before, &estimator, sizeof before);
 }
@@ -91,7 +91,7 @@ static void two_flips_are_found(void) {
 }
 
 /* [A19] GIVEN settings with anything between their fields THEN the same settings give the same memory. */
-static void what_lies_between_the_settings_counts_for_nothing(void) {
+static void padding_between_settings_counts_for_nothing(void) {
     goe_settings_t settings;
     static goe_estimator_t first;
     memset(&settings, 0xA5, sizeof settings);
@@ -100,8 +100,8 @@ static void what_lies_between_the_settings_counts_for_nothing(void) {
     CHECK_STATUS(GOE_OK, goe_init(&first, sizeof first, &settings, NULL));
     memset((unsigned char *)&settings + offsetof(goe_settings_t, heading_auto) + 1, 0xFF,
            offsetof(goe_settings_t, heading_deg) - offsetof(goe_settings_t, heading_auto) - 1);
-    memset((unsigned char *)&settings + offsetof(goe_settings_t, refined.top_is_highest) + 1, 0xFF,
-           sizeof settings - offsetof(goe_settings_t, refined.top_is_highest) - 1);
+    memset((unsigned char *)&settings + offsetof(goe_settings_t, filter.top_is_highest) + 1, 0xFF,
+           sizeof settings - offsetof(goe_settings_t, filter.top_is_highest) - 1);
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
     TEST_ASSERT_EQUAL_MEMORY(&first, &estimator, sizeof first);
 }
@@ -110,7 +110,7 @@ static void what_lies_between_the_settings_counts_for_nothing(void) {
 
 /* [A20] GIVEN any number of floats WHEN one of them is an infinity or a NaN THEN it is found, wherever it lies; the largest float is
  * none. */
-static void what_is_not_finite_is_found(void) {
+static void a_value_that_is_not_finite_is_found(void) {
     static const uint32_t bad[] = {0x7F800000u, 0xFF800000u, 0x7FC00000u, 0xFFFFFFFFu, 0x7F800001u};
     float x[11];
     for (size_t count = 0; count <= 11; count++) {
@@ -130,7 +130,7 @@ static void what_is_not_finite_is_found(void) {
 }
 
 /* [A20] GIVEN a good estimate WHEN a field of it is none that goe.h lists THEN that is found. */
-static void what_is_not_defined_is_found(void) {
+static void an_undefined_value_is_found(void) {
     start();
     TEST_ASSERT_TRUE(goe_guard_estimate(&estimate));
     for (size_t at = offsetof(goe_estimate_t, age_s); at < sizeof estimate; at += sizeof(float)) {
@@ -153,9 +153,9 @@ static void what_is_not_defined_is_found(void) {
     bad.valid |= 0x80u;
     TEST_ASSERT_FALSE(goe_guard_estimate(&bad));
     bad = estimate;
-    bad.points = -1;
+    bad.images_used = -1;
     TEST_ASSERT_FALSE(goe_guard_estimate(&bad));
-    bad.points = 32768; /* more than goe.h promises */
+    bad.images_used = 32768; /* more than goe.h promises */
     TEST_ASSERT_FALSE(goe_guard_estimate(&bad));
     bad = estimate;
     memset(&bad.fresh, 2, 1);
@@ -166,7 +166,7 @@ static void what_is_not_defined_is_found(void) {
 }
 
 /* [A22] GIVEN a stale answer that was flipped to none WHEN an image comes THEN nothing is handed out, and the next image begins a track. */
-static void a_corrupted_track_begins_anew(void) {
+static void a_corrupted_track_begins_again(void) {
     static const goe_estimate_t nothing;
     start();
     estimator.estimate.height_m = check_from_bits(0x7FC00000u);
@@ -182,16 +182,16 @@ static void a_corrupted_track_begins_anew(void) {
     TEST_ASSERT_TRUE((estimate.valid & GOE_HAS_POSITION) != 0u);
 }
 
-/* GIVEN a camera that is nowhere WHEN an image comes THEN the track begins anew, too. */
-static void a_track_that_is_nowhere_begins_anew(void) {
+/* GIVEN a camera at no valid place WHEN an image comes THEN the track begins again, too. */
+static void a_track_that_is_nowhere_begins_again(void) {
     start();
     estimator.motion.origin_ne_m[0] = check_from_bits(0xFF800000u);
     CHECK_STATUS(GOE_CORRUPTED, goe_update(&estimator, &image, &estimate));
     TEST_ASSERT_FALSE(estimator.motion.started);
 }
 
-/* ... also while there is no answer that would tell of it. */
-static void a_track_that_is_nowhere_and_knows_nothing_begins_anew(void) {
+/* ... also while there is no answer that would show it. */
+static void a_track_that_is_nowhere_and_knows_nothing_begins_again(void) {
     const goe_settings_t settings = scene_settings(&scene);
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
     fly(0, 1);
@@ -204,16 +204,16 @@ static void a_track_that_is_nowhere_and_knows_nothing_begins_anew(void) {
 }
 
 /* [A20] GIVEN covariance and hazard of an answer that is no number THEN they are none, either. */
-static void no_call_hands_out_what_is_no_number(void) {
-    static const goe_plan_t plan = {{16.0f, 0.0f, 0.0f}, 10.0f, 10.0f, 0.0f, 0.0f};
+static void no_call_returns_a_value_that_is_not_finite(void) {
+    static const goe_intent_t intent = {{16.0f, 0.0f, 0.0f}, 10.0f, 10.0f, 0.0f, 0.0f};
     float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
     goe_hazard_t hazard;
     start();
     estimator.filter.inverse.element[14] = check_from_bits(0x7FC00000u);
     CHECK_STATUS(GOE_CORRUPTED, goe_covariance(&estimator, covariance));
     TEST_ASSERT_EQUAL_FLOAT(0.0f, covariance[GOE_X0][GOE_X0]);
-    CHECK_STATUS(GOE_CORRUPTED, goe_hazard(&estimator, &plan, &hazard));
-    TEST_ASSERT_EQUAL_FLOAT(0.0f, hazard.time_s);
+    CHECK_STATUS(GOE_CORRUPTED, goe_hazard(&estimator, &intent, &hazard));
+    TEST_ASSERT_EQUAL_FLOAT(0.0f, hazard.tcpa_s);
 }
 
 /* [A19] GIVEN truth values of an image that are neither 0 nor 1 THEN they count as 1. */
@@ -229,8 +229,8 @@ static void any_truth_but_none_is_one(void) {
         goe_pixel_t *const points[] = {&odd.left,      &odd.right,     &odd.top,
                                        &odd.base_left, &odd.base_near, &odd.base_right};
         for (int i = 0; i < 6; i++) {
-            if (points[i]->seen) {
-                memset(&points[i]->seen, 0x40 + i, 1);
+            if (points[i]->visible) {
+                memset(&points[i]->visible, 0x40 + i, 1);
             }
         }
         (void)goe_update(&estimator, &odd, &estimate);
@@ -242,13 +242,13 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(every_flip_of_the_settings_is_found);
     RUN_TEST(two_flips_are_found);
-    RUN_TEST(what_lies_between_the_settings_counts_for_nothing);
-    RUN_TEST(what_is_not_finite_is_found);
-    RUN_TEST(what_is_not_defined_is_found);
-    RUN_TEST(a_corrupted_track_begins_anew);
-    RUN_TEST(a_track_that_is_nowhere_begins_anew);
-    RUN_TEST(a_track_that_is_nowhere_and_knows_nothing_begins_anew);
-    RUN_TEST(no_call_hands_out_what_is_no_number);
+    RUN_TEST(padding_between_settings_counts_for_nothing);
+    RUN_TEST(a_value_that_is_not_finite_is_found);
+    RUN_TEST(an_undefined_value_is_found);
+    RUN_TEST(a_corrupted_track_begins_again);
+    RUN_TEST(a_track_that_is_nowhere_begins_again);
+    RUN_TEST(a_track_that_is_nowhere_and_knows_nothing_begins_again);
+    RUN_TEST(no_call_returns_a_value_that_is_not_finite);
     RUN_TEST(any_truth_but_none_is_one);
     return UNITY_END();
 }

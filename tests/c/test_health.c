@@ -1,4 +1,4 @@
-/* How well images fit, and when the filter begins anew. SPDX-License-Identifier: MIT */
+/* How well images fit, and when the filter begins again. SPDX-License-Identifier: MIT */
 /* tests: lib/refined/goe_health.c */
 #include "refined/goe_health.h"
 
@@ -44,9 +44,9 @@ static bool judge(unsigned measured, unsigned refused) {
     return goe_health_judge(&filter, &settings, verdict_of(measured, refused));
 }
 
-/* GIVEN one point that is refused again and again, the others fitting THEN in the fourth image the state is taken to be captured, not
- * the point to be an outlier; an image in which it fits begins the count anew, one that does not show it does not. */
-static void a_point_that_is_always_refused_begins_anew(void) {
+/* GIVEN one point that is refused again and again, the others fitting THEN in the fourth image the state counts as captured, not
+ * the point as an outlier; an image in which it fits restarts the count, one without it does not. */
+static void a_point_that_is_always_refused_begins_again(void) {
     for (int i = 0; i < 3; i++) {
         TEST_ASSERT_FALSE(judge(ALL, LEFT));
     }
@@ -63,9 +63,9 @@ static void a_point_that_is_always_refused_begins_anew(void) {
     TEST_ASSERT_TRUE(judge(ALL, LEFT));
 }
 
-/* GIVEN images of which half the points are refused THEN the third in a row begins anew; less than half is none of these, and an
+/* GIVEN images with half of the points refused THEN the third in a row starts the filter again; less than half does not count, and an
  * image that fits ends the row. */
-static void images_of_which_half_is_refused_begin_anew(void) {
+static void images_of_which_half_is_refused_begin_again(void) {
     TEST_ASSERT_FALSE(judge(ALL, 0x07u));
     TEST_ASSERT_FALSE(judge(ALL, 0x38u));
     TEST_ASSERT_TRUE(judge(ALL, 0x15u));
@@ -79,8 +79,8 @@ static void images_of_which_half_is_refused_begin_anew(void) {
     }
 }
 
-/* GIVEN a chord, whose end may leave it THEN a point has twice as long to come back, and none begins anew while an end is leaving:
- * it becomes a box. */
+/* GIVEN a chord, whose end may leave it THEN a point has twice as long to come back, and the filter does not start again while an end is
+ * leaving: it becomes a box. */
 static void an_end_of_a_chord_has_longer(void) {
     filter.phase = GOE_PHASE_CHORD;
     for (int i = 0; i < 7; i++) {
@@ -98,7 +98,7 @@ static void an_end_of_a_chord_has_longer(void) {
 
 /* GIVEN the top alone refused for three images THEN it is free again, by twice the largest extent, as nothing else hangs on it; and
  * the others are as certain as they were. */
-static void a_refused_top_is_learnt_anew(void) {
+static void a_refused_top_is_learnt_again(void) {
     const double before = (double)goe_filter_variance(&filter, GOE_FRONT_X);
     for (int box = 0; box < 2; box++) {
         setUp();
@@ -127,8 +127,8 @@ static void fail(goe_phase_t phase) {
     filter.health.recent_nis = 1.0f;
 }
 
-/* GIVEN a box by base corners that proves wrong twice, not early in the track THEN they are none, and are left out; a disc, a box by
- * its outline, or one that was asked for, says nothing of the corners. */
+/* GIVEN a box by base corners that proves wrong twice, not early in the track THEN they are wrong, and are left out; a disc, a box by
+ * its outline, or one that was configured, is no evidence about the corners. */
 static void corners_that_prove_wrong_twice_are_left_out(void) {
     static const goe_phase_t others[] = {GOE_PHASE_DISC, GOE_PHASE_CHORD, GOE_PHASE_BOX_OUTLINE, GOE_PHASE_PRISM};
     fail(GOE_PHASE_BOX);
@@ -154,9 +154,9 @@ static void corners_that_prove_wrong_twice_are_left_out(void) {
     TEST_ASSERT_FALSE(filter.health.base_refused);
 }
 
-/* GIVEN two new starts within 24 images THEN what is given does not belong together; one is an outlier's, and so are two that lie
+/* GIVEN two new starts within 24 images THEN the inputs contradict each other; one is an outlier's, and so are two that are
  * farther apart. */
-static void two_starts_in_short_order_are_told(void) {
+static void two_starts_in_short_order_are_reported(void) {
     const goe_verdict_t good = verdict_of(ALL, 0u);
     for (int apart = 22; apart <= 24; apart++) {
         setUp();
@@ -189,8 +189,8 @@ static void a_state_that_is_none_is_not_kept(void) {
     }
 }
 
-/* GIVEN an image of which half is refused THEN it counts as the worst, as what is left fits by itself; and the means are those of the
- * header: over the latest 64, with eight images of none, and over all of the track. */
+/* GIVEN an image with half of its points refused THEN it counts as the worst, as the rest fits by itself; and the means are those of the
+ * header: over the latest 64, with eight images of prior, and over all of the track. */
 static void the_means_are_those_of_the_header(void) {
     goe_health_t *health = &filter.health;
     memset(health, 0, sizeof *health);
@@ -217,12 +217,12 @@ static void the_means_are_those_of_the_header(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(a_point_that_is_always_refused_begins_anew);
-    RUN_TEST(images_of_which_half_is_refused_begin_anew);
+    RUN_TEST(a_point_that_is_always_refused_begins_again);
+    RUN_TEST(images_of_which_half_is_refused_begin_again);
     RUN_TEST(an_end_of_a_chord_has_longer);
-    RUN_TEST(a_refused_top_is_learnt_anew);
+    RUN_TEST(a_refused_top_is_learnt_again);
     RUN_TEST(corners_that_prove_wrong_twice_are_left_out);
-    RUN_TEST(two_starts_in_short_order_are_told);
+    RUN_TEST(two_starts_in_short_order_are_reported);
     RUN_TEST(a_state_that_is_none_is_not_kept);
     RUN_TEST(the_means_are_those_of_the_header);
     return UNITY_END();

@@ -6,7 +6,7 @@
 #include "scene.h"
 
 #define IMAGES 56
-#define SEEN_DEG 32.0 /* off the axis of a camera: half of what it sees across */
+#define VISIBLE_DEG 32.0 /* off the axis of a camera: half of what it sees across */
 #define YAW_AHEAD_DEG (-25.0f)
 #define YAW_ASIDE_DEG (-75.0f)
 #define EXACT_M 0.02
@@ -75,7 +75,7 @@ static bool see(int k, goe_image_t *image) {
     look_through(by_aside ? &aside : &ahead);
     scene_image(&scene, k, image, NULL);
     image->camera = by_aside ? 1 : 0;
-    return fabs(bearing - (double)scene.camera.mount_yaw_deg) < SEEN_DEG;
+    return fabs(bearing - (double)scene.camera.mount_yaw_deg) < VISIBLE_DEG;
 }
 
 static void start(void) { CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL)); }
@@ -83,7 +83,7 @@ static void start(void) { CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estim
 typedef struct {
     int by[2];                /* images of each camera that were solved */
     int solved_after;         /* images after the change until the first that was solved */
-    double before_m, after_m; /* sigma of the centre at the end of each camera */
+    double before_m, after_m; /* sigma of the center at the end of each camera */
     int points;
 } passage_t;
 
@@ -91,7 +91,7 @@ static double center_sd_m(void) {
     return hypot((double)estimate.sigma.center_north_m, (double)estimate.sigma.center_east_m);
 }
 
-/* Flies past. Every image in which the obstacle is seen must go on with the track. */
+/* Flies past. Every image with the obstacle visible must continue the track. */
 static passage_t fly(double noise_px) {
     passage_t passage = {{0, 0}, 0, 0.0, 0.0, 0};
     start();
@@ -108,7 +108,7 @@ static passage_t fly(double noise_px) {
         passage.solved_after += image.camera == 1 && passage.by[1] == 0 ? 1 : 0;
         *(image.camera == 0 ? &passage.before_m : &passage.after_m) = center_sd_m();
     }
-    passage.points = estimate.points;
+    passage.points = estimate.images_used;
     return passage;
 }
 
@@ -133,14 +133,14 @@ static void a_track_passes_from_one_camera_to_the_other(void) {
             settings = method == 0 ? scene_settings(&scene) : scene_window_settings(&scene);
             settings.more_cameras[0] = aside;
             if (method == 0) {
-                scene_tell_no_noise(&settings);
+                scene_clear_noise(&settings);
             }
             const passage_t passage = fly(0.0);
             TEST_ASSERT_TRUE(passage.by[0] > 5 && passage.by[1] > 5);
             TEST_ASSERT_TRUE(passage.solved_after <= 1);
             TEST_ASSERT_TRUE(estimate.valid & GOE_HAS_CENTER);
             if (method == 0 || sight == SEES_CORNERS) { /* (2) of a cylinder far aside is not exact */
-                check_report("centre off, m", center_off_m());
+                check_report("center off, m", center_off_m());
                 TEST_ASSERT_TRUE(center_off_m() < EXACT_M);
             }
         }
@@ -148,15 +148,15 @@ static void a_track_passes_from_one_camera_to_the_other(void) {
 }
 
 /* [GOE_CAMERAS_MAX]
- * GIVEN noise THEN the second camera makes the answer better, and the sigma tells so; the error stays within three of it. */
+ * GIVEN noise THEN the second camera improves the answer and reduces the sigma; the error stays within three of it. */
 static void the_second_camera_adds_to_the_first(void) {
     for (int sight = 0; sight < SIGHTS; sight++) {
         setUp();
         make((sight_t)sight);
         const passage_t passage = fly(NOISE_PX);
-        check_report("sigma of the centre by the first, m", passage.before_m);
+        check_report("sigma of the center by the first, m", passage.before_m);
         check_report("... and by the second", passage.after_m);
-        check_report("centre off, m", center_off_m());
+        check_report("center off, m", center_off_m());
         if (sight != SEES_POINTS) { /* a disc may be taken for a chord, whose middle is less certain */
             TEST_ASSERT_TRUE(passage.after_m < passage.before_m);
         }
@@ -179,14 +179,14 @@ static void a_camera_that_is_not_there_is_refused(void) {
         before = estimator;
         image.camera = (uint8_t)number;
         CHECK_STATUS(GOE_OUT_OF_RANGE, goe_update(&estimator, &image, &estimate));
-        before.causes[-GOE_OUT_OF_RANGE]++;
+        before.fault_counts[-GOE_OUT_OF_RANGE]++;
         TEST_ASSERT_EQUAL_MEMORY(&before, &estimator, sizeof estimator);
     }
     image.camera = 0;
     TEST_ASSERT_TRUE(goe_update(&estimator, &image, &estimate) >= GOE_OK);
 }
 
-/* [GOE_CAMERAS_MAX] GIVEN a second camera with a bad setting THEN it is named; GIVEN none THEN nothing of it is asked. */
+/* [GOE_CAMERAS_MAX] GIVEN a second camera with a bad setting THEN it is named; GIVEN none THEN its settings are not read. */
 static void a_bad_second_camera_is_named(void) {
     const char *bad = NULL;
     settings.more_cameras[0].mount_pitch_deg = 400.0f;
@@ -199,7 +199,7 @@ static void a_bad_second_camera_is_named(void) {
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, &bad));
     goe_settings_default(&settings);
     TEST_ASSERT_EQUAL_FLOAT(0.0f, settings.more_cameras[0].fx_px);
-    TEST_ASSERT_EQUAL_FLOAT(settings.camera.border_share, settings.more_cameras[0].border_share);
+    TEST_ASSERT_EQUAL_FLOAT(settings.camera.border_rel, settings.more_cameras[0].border_rel);
 }
 
 int main(void) {

@@ -19,37 +19,37 @@ static void give(frame_value_t name, double value) {
     frame.given[name] = true;
 }
 
-/* One side after the other, so that no side can stand for another. */
-static void each_side_given_is_seen(void) {
+/* One side after the other, so that no side can replace another. */
+static void each_side_given_is_visible(void) {
     static const struct {
         frame_value_t name;
         unsigned bit;
         size_t at;
-    } sides[] = {{FRAME_BOX_LEFT_PX, GOE_SEES_LEFT, offsetof(goe_box_t, left_px)},
-                 {FRAME_BOX_TOP_PX, GOE_SEES_TOP, offsetof(goe_box_t, top_px)},
-                 {FRAME_BOX_RIGHT_PX, GOE_SEES_RIGHT, offsetof(goe_box_t, right_px)},
-                 {FRAME_BOX_BOTTOM_PX, GOE_SEES_BOTTOM, offsetof(goe_box_t, bottom_px)}};
+    } sides[] = {{FRAME_BOX_LEFT_PX, GOE_SIDE_LEFT, offsetof(goe_box_t, left_px)},
+                 {FRAME_BOX_TOP_PX, GOE_SIDE_TOP, offsetof(goe_box_t, top_px)},
+                 {FRAME_BOX_RIGHT_PX, GOE_SIDE_RIGHT, offsetof(goe_box_t, right_px)},
+                 {FRAME_BOX_BOTTOM_PX, GOE_SIDE_BOTTOM, offsetof(goe_box_t, bottom_px)}};
     unsigned seen = 0;
     frame_to_image(&frame, &image);
-    TEST_ASSERT_EQUAL_HEX8(0u, image.box.seen);
+    TEST_ASSERT_EQUAL_HEX8(0u, image.box.sides);
     for (size_t i = 0; i < sizeof sides / sizeof sides[0]; i++) {
         float side_px;
         give(sides[i].name, 100.5 + (double)i);
         seen |= sides[i].bit;
         frame_to_image(&frame, &image);
-        TEST_ASSERT_EQUAL_HEX8(seen, image.box.seen);
+        TEST_ASSERT_EQUAL_HEX8(seen, image.box.sides);
         (void)memcpy(&side_px, (const char *)&image.box + sides[i].at, sizeof side_px);
         CHECK_SAME(100.5f + (float)i, side_px);
     }
-    TEST_ASSERT_EQUAL_HEX8(GOE_SEES_BOX, image.box.seen);
-    TEST_ASSERT_FALSE(image.left.seen || image.right.seen || image.top.seen);
+    TEST_ASSERT_EQUAL_HEX8(GOE_SIDES_ALL, image.box.sides);
+    TEST_ASSERT_FALSE(image.left.visible || image.right.visible || image.top.visible);
 }
 
-/* As of a point: what is no number is for the library to refuse, not for the reader to hide. */
+/* As of a point: the library must refuse NaN, and the reader must not hide it. */
 static void a_side_that_is_no_number_is_shown(void) {
     give(FRAME_BOX_TOP_PX, (double)NAN);
     frame_to_image(&frame, &image);
-    TEST_ASSERT_EQUAL_HEX8(GOE_SEES_TOP, image.box.seen);
+    TEST_ASSERT_EQUAL_HEX8(GOE_SIDE_TOP, image.box.sides);
     TEST_ASSERT_TRUE(isnan(image.box.top_px));
 }
 
@@ -93,7 +93,7 @@ static void the_camera_s_number_is_shown_as_it_is(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(each_side_given_is_seen);
+    RUN_TEST(each_side_given_is_visible);
     RUN_TEST(a_side_that_is_no_number_is_shown);
     RUN_TEST(a_jump_is_known_by_all_three_numbers);
     RUN_TEST(a_wider_counter_goes_on_in_eight_bits);

@@ -34,7 +34,7 @@ void tearDown(void) {}
 
 static void hide_all(void) {
     scene_hide_points(&image);
-    image.box.seen = 0;
+    image.box.sides = 0;
 }
 
 /* Image k of the scene as a detector of that kind gives it, with noise. */
@@ -48,25 +48,25 @@ static void look(kind_t kind, int k) {
     scene_add_noise(&image, &any, 0.5);
     if (kind == BY_BOXES || kind == BY_BOXES_AND_CORNERS) {
         image.box = box;
-        image.left.seen = image.right.seen = image.top.seen = false;
+        image.left.visible = image.right.visible = image.top.visible = false;
     }
     if (kind != BY_CORNERS && kind != BY_BOXES_AND_CORNERS) {
-        image.base_left.seen = image.base_near.seen = image.base_right.seen = false;
+        image.base_left.visible = image.base_near.visible = image.base_right.visible = false;
     }
     if (kind == BY_OUTLINE) {
-        image.top.seen = false;
+        image.top.visible = false;
     }
 }
 
-static goe_plan_t plan_of(double since_s) {
-    const goe_plan_t plan = {
+static goe_intent_t intent_of(double since_s) {
+    const goe_intent_t intent = {
         {(float)scene.speed_mps, 0.0f, 0.0f}, (float)MARGIN_M, (float)CLEARANCE_M, (float)since_s, 0.0f};
-    return plan;
+    return intent;
 }
 
 static goe_status_t ask(double since_s) {
-    const goe_plan_t plan = plan_of(since_s);
-    return goe_hazard(&estimator, &plan, &hazard);
+    const goe_intent_t intent = intent_of(since_s);
+    return goe_hazard(&estimator, &intent, &hazard);
 }
 
 static void start(void) {
@@ -74,7 +74,7 @@ static void start(void) {
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
 }
 
-/* Any obstacle near the course, from a mast to a wall, seen by any features. */
+/* Any obstacle near the course, from a mast to a wall, observed by any features. */
 static kind_t draw(int flight) {
     const kind_t kind = (kind_t)(flight % KINDS);
     scene_default(&scene);
@@ -97,8 +97,9 @@ static kind_t draw(int flight) {
 }
 
 /* [A34]
- * GIVEN random flights by any features, and an answer WHEN the next image shows nothing THEN the hazard is that which was predicted for that
- * moment: its probability falls by no more than the time explains, and distance and time are the same; ten such images in a row, too. */
+ * GIVEN random flights by any features, and an answer WHEN the next image shows nothing THEN the hazard is that which was predicted for
+ * that moment: its probability falls by no more than the time explains, and distance and time are the same; ten such images in a row, too.
+ * */
 static void an_image_without_a_detection_takes_no_warning_back(void) {
     static goe_estimator_t kept;
     double lost = 0.0;
@@ -120,13 +121,13 @@ static void an_image_without_a_detection_takes_no_warning_back(void) {
                 const goe_hazard_t predicted = hazard;
                 look(kind, k + missed);
                 hide_all();
-                CHECK_STATUS(GOE_NOTHING_SEEN, goe_update(&estimator, &image, &estimate));
+                CHECK_STATUS(GOE_NO_DETECTION, goe_update(&estimator, &image, &estimate));
                 CHECK_STATUS(GOE_OK, ask(0.0));
-                lost = fmax(lost, (double)predicted.violation - (double)hazard.violation);
-                moved_sigma = fmax(moved_sigma, fabs((double)predicted.miss_m - (double)hazard.miss_m) /
-                                                    ((double)predicted.miss_sd_m + 0.05));
+                lost = fmax(lost, (double)predicted.conflict_probability - (double)hazard.conflict_probability);
+                moved_sigma = fmax(moved_sigma, fabs((double)predicted.dcpa_m - (double)hazard.dcpa_m) /
+                                                    ((double)predicted.dcpa_sd_m + 0.05));
                 compared++;
-                warned += predicted.violation > 0.5f ? 1 : 0;
+                warned += predicted.conflict_probability > 0.5f ? 1 : 0;
             }
             estimator = kept;
         }
@@ -141,8 +142,8 @@ static void an_image_without_a_detection_takes_no_warning_back(void) {
 }
 
 /* [A34]
- * GIVEN a warning WHEN the filter starts again, whatever comes next THEN the warning stays for as long as the truth is a violation: position
- * and size are kept until an answer replaces them that is better or says otherwise. */
+ * GIVEN a warning WHEN the filter starts again, whatever comes next THEN the warning stays for as long as the truth is a violation:
+ * position and size are kept until an answer replaces them that is better or says otherwise. */
 static void a_new_start_of_the_filter_takes_no_warning_back(void) {
     int warned = 0;
     double least = 1.0;
@@ -155,7 +156,7 @@ static void a_new_start_of_the_filter_takes_no_warning_back(void) {
             look(kind, k);
             (void)goe_update(&estimator, &image, &estimate);
         }
-        if (ask(0.0) != GOE_OK || hazard.violation < 0.99f || estimate.suspect) {
+        if (ask(0.0) != GOE_OK || hazard.conflict_probability < 0.99f || estimate.suspect) {
             continue;
         }
         goe_filter_enter(&estimator.filter, GOE_PHASE_NONE);
@@ -166,7 +167,7 @@ static void a_new_start_of_the_filter_takes_no_warning_back(void) {
             }
             (void)goe_update(&estimator, &image, &estimate);
             CHECK_STATUS(GOE_OK, ask(0.0));
-            least = fmin(least, (double)hazard.violation);
+            least = fmin(least, (double)hazard.conflict_probability);
         }
         warned++;
     }
@@ -199,14 +200,14 @@ static void a_wide_building_stays_wide(void) {
         (void)goe_update(&estimator, &image, &estimate);
         if (k > 8) {
             CHECK_STATUS(GOE_OK, ask(0.0));
-            TEST_ASSERT_TRUE(hazard.violation > 0.95f);
+            TEST_ASSERT_TRUE(hazard.conflict_probability > 0.95f);
             missed += estimate.fresh ? 0 : 1;
         }
     }
     TEST_ASSERT_TRUE(missed >= 4);
 }
 
-/* Half of what is seen of the obstacle, by the filter's state. */
+/* Half of the visible extent of the obstacle, by the filter's state. */
 static double reach_by_state(void) {
     const float *x = estimator.filter.state;
     const double q = (double)x[GOE_INVERSE_RANGE];
@@ -230,7 +231,7 @@ static void the_reach_is_that_of_the_state(void) {
             look(kind, k);
             (void)goe_update(&estimator, &image, &estimate);
             const goe_answer_t *answer = &estimator.filter.answer;
-            if (estimate.fresh && estimate.method == GOE_METHOD_REFINED) {
+            if (estimate.fresh && estimate.method == GOE_METHOD_FILTER) {
                 const double reach_m = reach_by_state();
                 phases |= 1u << estimator.filter.phase;
                 CHECK_CLOSE(1.0e-4 * reach_m, fmax(reach_m, (double)answer->least_m), goe_latest_reach(&estimator));
@@ -307,18 +308,18 @@ static void a_turn_before_first_sight_costs_nothing(void) {
     CHECK_CLOSE(1.0e-3, 0.0, estimate.trajectory_heading_deg);
 }
 
-/* GIVEN box.seen = true, which marks the left side alone THEN every image says so, and counts it; a whole box does not. */
+/* GIVEN box.sides = true, which marks the left side alone THEN every image says so, and counts it; a whole box does not. */
 static void a_box_of_one_side_is_reported(void) {
     start();
     for (int k = 0; k < 8; k++) {
         look(BY_BOXES, k);
-        image.box.seen = true;
+        image.box.sides = true;
         CHECK_STATUS(GOE_BOX_INCOMPLETE, goe_update(&estimator, &image, &estimate));
     }
-    TEST_ASSERT_EQUAL_UINT32(8u, estimator.causes[-GOE_BOX_INCOMPLETE]);
+    TEST_ASSERT_EQUAL_UINT32(8u, estimator.fault_counts[-GOE_BOX_INCOMPLETE]);
     look(BY_BOXES, 8);
     TEST_ASSERT_TRUE(goe_update(&estimator, &image, &estimate) != GOE_BOX_INCOMPLETE);
-    TEST_ASSERT_EQUAL_UINT32(8u, estimator.causes[-GOE_BOX_INCOMPLETE]);
+    TEST_ASSERT_EQUAL_UINT32(8u, estimator.fault_counts[-GOE_BOX_INCOMPLETE]);
 }
 
 /* GIVEN a height of 0 with a box THEN it is counted as not set and nothing rests on it: range and clearance come from the growth of the
@@ -332,7 +333,7 @@ static void a_height_that_was_not_set_is_reported(void) {
         image.pose.height_m = k % 2 == 0 ? 0.0f : -0.0f;
         (void)goe_update(&estimator, &image, &estimate);
     }
-    TEST_ASSERT_EQUAL_UINT32(50u, estimator.causes[-GOE_NO_HEIGHT]);
+    TEST_ASSERT_EQUAL_UINT32(50u, estimator.fault_counts[-GOE_NO_HEIGHT]);
     if (estimate.valid & GOE_HAS_POSITION) {
         scene_truth_t truth;
         scene_image(&scene, 49, &image, &truth);
@@ -346,7 +347,7 @@ static void a_height_that_was_not_set_is_reported(void) {
     look(BY_POINTS, 0);
     image.pose.height_m = 0.0f;
     (void)goe_update(&estimator, &image, &estimate);
-    TEST_ASSERT_EQUAL_UINT32(0u, estimator.causes[-GOE_NO_HEIGHT]);
+    TEST_ASSERT_EQUAL_UINT32(0u, estimator.fault_counts[-GOE_NO_HEIGHT]);
 }
 
 int main(void) {

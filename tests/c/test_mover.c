@@ -33,7 +33,7 @@ void setUp(void) {
 }
 void tearDown(void) {}
 
-/* ------------------------------------------------------------------------------------------------- beside the state -- */
+/* ------------------------------------------------------------------------------------------------- augmented states --------- */
 
 typedef struct {
     double information[UNKNOWNS][UNKNOWNS];
@@ -65,9 +65,9 @@ static void add_rows(const goe_matrix_t *matrix, normal_t *n) {
     }
 }
 
-/* [(R35)] GIVEN any triangle, with what is beside the state, and any rows WHEN some of it is estimated THEN information and right-hand
- * side are those of the normal equations, and what is estimated solves these with the others as they are. */
-static void what_is_beside_the_state_is_solved_with_it(void) {
+/* [(R35)] GIVEN any triangle, with augmented states, and any rows WHEN some of these are estimated THEN information and right-hand
+ * side are those of the normal equations, and the estimated ones solve these with the others as they are. */
+static void augmented_states_are_solved_with_the_state(void) {
     for (unsigned c = 0; c < CASES; c++) {
         goe_triangle_t root;
         goe_matrix_t matrix;
@@ -89,8 +89,8 @@ static void what_is_beside_the_state_is_solved_with_it(void) {
                 matrix.row[r][i] = (float)check_random_normal(&any);
             }
         }
-        root.estimated = (uint8_t)(c % (GOE_BESIDE + 1));
-        for (size_t i = root.estimated; i < GOE_BESIDE; i++) {
+        root.estimated = (uint8_t)(c % (GOE_AUGMENTED + 1));
+        for (size_t i = root.estimated; i < GOE_AUGMENTED; i++) {
             root.right[i] = (float)check_random_normal(&any);
         }
         add_triangle(&root, &expected);
@@ -113,8 +113,8 @@ static void what_is_beside_the_state_is_solved_with_it(void) {
     }
 }
 
-/* [(R21)] GIVEN a latency that is about to be estimated WHEN the states change by a substitution THEN what it is to move by is kept. */
-static void a_change_of_states_keeps_what_is_beside_them(void) {
+/* [(R21)] GIVEN a latency that is about to be estimated WHEN the states change by a substitution THEN its pending change is kept. */
+static void a_change_of_states_keeps_augmented_states(void) {
     goe_triangle_t root;
     goe_matrix_t rows;
     goe_substitution_t same;
@@ -135,9 +135,9 @@ static void a_change_of_states_keeps_what_is_beside_them(void) {
     CHECK_CLOSE(1.0e-6, 0.5 * 2.0, *goe_srif_at(&root, GOE_TOP, GOE_STATES) * *goe_srif_at(&root, GOE_TOP, GOE_TOP));
 }
 
-/* [(R35), (R37)] GIVEN an estimate with something beside it THEN the variance of a quantity, on which the attitude's bias has
+/* [(R35), (R37)] GIVEN an estimate with augmented states THEN the variance of a quantity, on which the attitude's bias has
  * no part, is that of the whole inverse. */
-static void the_variance_holds_what_is_beside_the_state(void) {
+static void the_variance_includes_augmented_states(void) {
     goe_triangle_t root;
     goe_inverse_t inverse;
     memset(&root, 0, sizeof root);
@@ -148,12 +148,12 @@ static void the_variance_holds_what_is_beside_the_state(void) {
         }
         *goe_srif_at(&root, i, i) = 3.0f;
     }
-    root.estimated = GOE_BESIDE;
+    root.estimated = GOE_AUGMENTED;
     goe_srif_invert(&root, &inverse);
     for (int c = 0; c < CASES; c++) {
         float weight[GOE_STATES];
-        float direct[GOE_BESIDE];
-        float part[GOE_BESIDE];
+        float direct[GOE_AUGMENTED];
+        float part[GOE_AUGMENTED];
         double v[UNKNOWNS];
         for (size_t i = 0; i < UNKNOWNS; i++) { /* R'v = w: the variance is v'v */
             const float w = i < GOE_UNWEIGHTED ? 0.0f : (float)check_random_normal(&any);
@@ -168,9 +168,9 @@ static void the_variance_holds_what_is_beside_the_state(void) {
         for (size_t i = 0; i < UNKNOWNS; i++) {
             expected += v[i] * v[i];
         }
-        goe_srif_beside(&inverse, weight, direct, part);
+        goe_srif_augmented(&inverse, weight, direct, part);
         double sum = (double)goe_srif_variance(&inverse, weight);
-        for (size_t i = 0; i < GOE_BESIDE; i++) {
+        for (size_t i = 0; i < GOE_AUGMENTED; i++) {
             sum += (double)part[i] * (double)part[i];
         }
         CHECK_CLOSE(1.0e-5 * expected, expected, sum);
@@ -214,21 +214,21 @@ static void check_columns(model_t model) {
     rows_of(model, &s);
     TEST_ASSERT_TRUE(s.rows.count >= 2);
     goe_mover_columns(&s.sight, &s.rows);
-    for (size_t i = 0; i < GOE_BESIDE; i++) {
-        const double step = i == GOE_BESIDE_LATENCY ? 0.02 : 0.2;
+    for (size_t i = 0; i < GOE_AUGMENTED; i++) {
+        const double step = i == GOE_AUGMENTED_LATENCY ? 0.02 : 0.2;
         double residual[2][GOE_ROWS_MAX];
         for (int way = 0; way < 2; way++) {
             const double by = way == 0 ? -step : step;
             moved = s;
             moved.sight.state = moved.state;
             moved.sight.settings = &moved.settings;
-            if (i == GOE_BESIDE_LATENCY) {
+            if (i == GOE_AUGMENTED_LATENCY) {
                 moved.sight.latency_s = (float)by;
                 moved.sight.camera_m.x += (float)by * s.sight.gained_m_s.x;
                 moved.sight.camera_m.z += (float)by * s.sight.gained_m_s.z;
             } else { /* the state's axes are turned out of T by that angle */
-                const double x = i == GOE_BESIDE_VELOCITY_X ? 0.8 : -0.6;
-                const double z = i == GOE_BESIDE_VELOCITY_X ? 0.6 : 0.8;
+                const double x = i == GOE_AUGMENTED_VELOCITY_X ? 0.8 : -0.6;
+                const double z = i == GOE_AUGMENTED_VELOCITY_X ? 0.6 : 0.8;
                 moved.sight.camera_m.x -= (float)(by * 3.0 * x);
                 moved.sight.camera_m.z -= (float)(by * 3.0 * z);
             }
@@ -239,7 +239,7 @@ static void check_columns(model_t model) {
         }
         for (size_t r = 0; r < s.rows.count; r++) {
             const double expected = (residual[0][r] - residual[1][r]) / (2.0 * step);
-            const double column = (double)s.matrix.row[r][GOE_BESIDE_COLUMN + i];
+            const double column = (double)s.matrix.row[r][GOE_AUGMENTED_COLUMN + i];
             CHECK_CLOSE(0.003 + 0.03 * fabs(expected), expected, column);
         }
     }
@@ -255,27 +255,27 @@ static void the_columns_are_derivatives(void) {
 
 /* ----------------------------------------------------------------------------------------------------------- followed -- */
 
-/* One image after an obstacle began to be followed, by what is known of it then. */
+/* One image after the start of following an obstacle, by its state at that time. */
 static goe_mover_t judge_followed(float latency_s, float velocity_m_s, float velocity_sd_m_s) {
-    const float sd[GOE_BESIDE] = {0.01f, velocity_sd_m_s, velocity_sd_m_s};
+    const float sd[GOE_AUGMENTED] = {0.01f, velocity_sd_m_s, velocity_sd_m_s};
     const float change[GOE_UNKNOWNS] = {0.0f};
     goe_filter_t filter;
     sighting_t s;
     sighting_start(&s, &any);
     goe_filter_clear(&filter);
     filter.mover.followed = true;
-    filter.mover.beside[GOE_BESIDE_LATENCY] = latency_s;
-    filter.mover.beside[GOE_BESIDE_VELOCITY_X] = velocity_m_s;
-    filter.root.estimated = GOE_BESIDE;
-    filter.inverse.estimated = GOE_BESIDE;
-    for (size_t i = 0; i < GOE_BESIDE; i++) {
+    filter.mover.augmented[GOE_AUGMENTED_LATENCY] = latency_s;
+    filter.mover.augmented[GOE_AUGMENTED_VELOCITY_X] = velocity_m_s;
+    filter.root.estimated = GOE_AUGMENTED;
+    filter.inverse.estimated = GOE_AUGMENTED;
+    for (size_t i = 0; i < GOE_AUGMENTED; i++) {
         filter.inverse.element[goe_inverse_column(GOE_STATES + i) + GOE_STATES + i] = sd[i];
     }
     TEST_ASSERT_FALSE(goe_mover_judge(&filter, &s.sight, change, 0.1f));
     return filter.mover;
 }
 
-/* GIVEN an obstacle that is followed THEN it moves, unless the poses have proved late meanwhile: then only what is fast, and
+/* GIVEN an obstacle that is followed THEN it moves, unless the poses have proved late meanwhile: then only a fast one, and
  * surely so, as late poses of a turn look like a motion. */
 static void late_poses_end_a_motion_that_is_none(void) {
     const goe_mover_t in_time = judge_followed(0.0f, 0.5f, 0.1f);
@@ -294,11 +294,11 @@ static goe_filter_t judged;
 static goe_settings_t judging;
 static goe_observation_t seen;
 static goe_sides_t seen_sides;
-static const double told[3][3] = {{30.0, 2.0, 1.0}, {0.0, 6.0, 1.5}, {0.0, 0.0, 5.0}}; /* of latency and velocity */
+static const double reported[3][3] = {{30.0, 2.0, 1.0}, {0.0, 6.0, 1.5}, {0.0, 0.0, 5.0}}; /* of latency and velocity */
 
-/* A box by its corners, long in flight, of which the images say this: T (latency, velocity) = z, with residuals of twice the told
+/* A box by its corners, long in flight, whose images give T (latency, velocity) = z, with residuals of twice the configured
  * variance, the latency so far being 30 ms. */
-static void hear(const double z[3]) {
+static void give_rows(const double z[3]) {
     goe_settings_default(&judging);
     memset(&seen, 0, sizeof seen);
     memset(&seen_sides, 0, sizeof seen_sides);
@@ -310,13 +310,13 @@ static void hear(const double z[3]) {
     judged.phase = GOE_PHASE_BOX;
     for (size_t i = 0; i < 3; i++) {
         for (size_t j = i; j < 3; j++) {
-            *goe_srif_at(&judged.root, GOE_STATES + i, GOE_STATES + j) = (float)told[i][j];
+            *goe_srif_at(&judged.root, GOE_STATES + i, GOE_STATES + j) = (float)reported[i][j];
         }
         judged.root.right[i] = (float)z[i];
     }
-    judged.mover.beside[0] = 0.03f;
-    judged.root.right[0] -= (float)(told[0][0] * 0.03);
-    judged.mover.heard_s = 3.0f;
+    judged.mover.augmented[0] = 0.03f;
+    judged.root.right[0] -= (float)(reported[0][0] * 0.03);
+    judged.mover.observed_s = 3.0f;
     judged.mover.rows = 100.0f;
     judged.mover.nis = (float)(200.0 + z[0] * z[0] + z[1] * z[1] + z[2] * z[2]);
     judged.health.nis = 18.0f;
@@ -330,33 +330,34 @@ static bool judge_image(void) {
 
 static void by_velocity(double x, double z, double to[3]) {
     for (size_t i = 0; i < 3; i++) {
-        to[i] = told[i][1] * x + told[i][2] * z;
+        to[i] = reported[i][1] * x + reported[i][2] * z;
     }
 }
 
-/* GIVEN images that tell of a velocity, one after the other THEN in the third the obstacle begins to be followed with just that
+/* GIVEN images with evidence of a velocity, one after the other THEN in the third the obstacle begins to be followed with just that
  * velocity, twice as uncertain as the residuals say and the own motion allows; the latency, which it may have been taken for, is open
  * again. */
-static void what_begins_to_be_followed_is_what_the_images_told(void) {
+static void a_newly_followed_target_starts_from_the_images(void) {
     double z[3];
     by_velocity(4.0, -3.0, z);
-    hear(z);
-    judging.navigation.velocity_bias_m_s = 0.3f;
-    judging.navigation.position_walk_m = 0.2f;
+    give_rows(z);
+    judging.navigation.velocity_bias_sd_m_s = 0.3f;
+    judging.navigation.position_walk_sd_m = 0.2f;
     TEST_ASSERT_FALSE(judge_image());
     TEST_ASSERT_FALSE(judge_image());
     TEST_ASSERT_FALSE(judged.mover.followed);
     TEST_ASSERT_TRUE(judge_image());
     TEST_ASSERT_TRUE(judged.mover.followed && judged.mover.moves && !judged.mover.late);
-    CHECK_SAME(0.0f, judged.mover.beside[0]);
-    CHECK_CLOSE(1.0e-4, 4.0, judged.mover.beside[1]);
-    CHECK_CLOSE(1.0e-4, -3.0, judged.mover.beside[2]);
-    TEST_ASSERT_EQUAL_UINT8(GOE_BESIDE, judged.root.estimated);
+    CHECK_SAME(0.0f, judged.mover.augmented[0]);
+    CHECK_CLOSE(1.0e-4, 4.0, judged.mover.augmented[1]);
+    CHECK_CLOSE(1.0e-4, -3.0, judged.mover.augmented[2]);
+    TEST_ASSERT_EQUAL_UINT8(GOE_AUGMENTED, judged.root.estimated);
     CHECK_CLOSE(1.0e-3, 20.0, *goe_srif_at(&judged.root, GOE_STATES, GOE_STATES));
     /* the covariance of the velocity, from T'T of its two columns */
-    const double xx = told[0][1] * told[0][1] + told[1][1] * told[1][1];
-    const double xz = told[0][1] * told[0][2] + told[1][1] * told[1][2];
-    const double zz = told[0][2] * told[0][2] + told[1][2] * told[1][2] + told[2][2] * told[2][2];
+    const double xx = reported[0][1] * reported[0][1] + reported[1][1] * reported[1][1];
+    const double xz = reported[0][1] * reported[0][2] + reported[1][1] * reported[1][2];
+    const double zz =
+        reported[0][2] * reported[0][2] + reported[1][2] * reported[1][2] + reported[2][2] * reported[2][2];
     const double d = xx * zz - xz * xz;
     const double own = 0.09 + 0.04 / 4.0;
     const double c[3] = {4.0 * (2.0 * zz / d + own), -4.0 * 2.0 * xz / d, 4.0 * (2.0 * xx / d + own)};
@@ -370,26 +371,26 @@ static void what_begins_to_be_followed_is_what_the_images_told(void) {
     CHECK_CLOSE(1.0e-3 * c[2], c[2], information[0] / determinant);
 }
 
-/* GIVEN the same of an obstacle whose foot no image shows THEN it is not followed, as its velocity may be another range; it is told to
- * move only if the images do not fit. */
-static void what_has_no_scale_is_not_followed(void) {
+/* GIVEN the same of an obstacle whose foot no image shows THEN it is not followed, as its velocity may be another range; it is reported as
+ * moving only if the images do not fit. */
+static void a_target_without_scale_is_not_followed(void) {
     double z[3];
     by_velocity(4.0, -3.0, z);
-    for (int misfit = 0; misfit < 2; misfit++) {
-        hear(z);
+    for (int nis_ratio = 0; nis_ratio < 2; nis_ratio++) {
+        give_rows(z);
         seen.base = false;
-        judged.health.mean_nis = misfit == 1 ? 3.0f : 1.0f;
+        judged.health.mean_nis = nis_ratio == 1 ? 3.0f : 1.0f;
         for (int i = 0; i < 5; i++) {
             TEST_ASSERT_FALSE(judge_image());
         }
         TEST_ASSERT_FALSE(judged.mover.followed);
-        TEST_ASSERT_EQUAL_INT(misfit, judged.mover.moves ? 1 : 0);
+        TEST_ASSERT_EQUAL_INT(nis_ratio, judged.mover.moves ? 1 : 0);
     }
-    hear(z); /* of a box its bottom */
+    give_rows(z); /* of a box its bottom */
     judged.phase = GOE_PHASE_PRISM;
     seen.base = false;
-    seen_sides.usable = GOE_SEES_BOTTOM;
-    judged.mover.nis -= 100.0f; /* of which more is asked */
+    seen_sides.usable = GOE_SIDE_BOTTOM;
+    judged.mover.nis -= 100.0f; /* more is required */
     (void)judge_image();
     (void)judge_image();
     TEST_ASSERT_TRUE(judge_image());
@@ -397,18 +398,18 @@ static void what_has_no_scale_is_not_followed(void) {
 
 /* GIVEN a velocity that is slow, or as large as chance makes it, or that a latency explains as well, or a track that has hardly begun
  * THEN nothing is followed. */
-static void what_may_be_chance_is_not_followed(void) {
+static void chance_motion_is_not_followed(void) {
     double z[3];
     for (int n = 0; n < 4; n++) {
         by_velocity(n == 0 ? 0.9 : 4.0, n == 0 ? 0.0 : -3.0, z);
         if (n == 1) {
-            z[0] += 30.0; /* what no velocity explains */
+            z[0] += 30.0; /* a part that no velocity explains */
         }
-        hear(z);
+        give_rows(z);
         if (n == 2) {
-            judging.navigation.velocity_bias_m_s = 1.1f; /* five of these in both together are not it */
+            judging.navigation.velocity_bias_sd_m_s = 1.1f; /* five of these in both together are not it */
         } else if (n == 3) {
-            judged.mover.heard_s = 0.0f;
+            judged.mover.observed_s = 0.0f;
         }
         for (int i = 0; i < 4; i++) {
             TEST_ASSERT_FALSE(judge_image());
@@ -417,22 +418,22 @@ static void what_may_be_chance_is_not_followed(void) {
     }
 }
 
-/* GIVEN images that tell of a latency that no velocity explains THEN it is estimated from then on, and told; the same that a velocity
- * explains as well is not. */
+/* GIVEN images with evidence of a latency that no velocity explains THEN it is estimated from then on, and reported; if a velocity
+ * explains it as well, it is not. */
 static void a_latency_that_no_velocity_explains_is_estimated(void) {
     double z[3];
     const double late[3] = {30.0 * 0.4, 0.5, -0.5}; /* 0.4 s */
-    hear(late);
+    give_rows(late);
     TEST_ASSERT_FALSE(judge_image());
     TEST_ASSERT_EQUAL_UINT8(1, judged.root.estimated);
     TEST_ASSERT_TRUE(judged.mover.late);
     by_velocity(4.0, -3.0, z);
-    hear(z);
+    give_rows(z);
     TEST_ASSERT_FALSE(judge_image());
     TEST_ASSERT_EQUAL_UINT8(0, judged.root.estimated);
     TEST_ASSERT_FALSE(judged.mover.late);
     const double little[3] = {30.0 * 0.1, 0.5, -0.5}; /* 3 of 2.7 sigma, times the root of two */
-    hear(little);
+    give_rows(little);
     TEST_ASSERT_FALSE(judge_image());
     TEST_ASSERT_FALSE(judged.mover.late);
 }
@@ -440,13 +441,13 @@ static void a_latency_that_no_velocity_explains_is_estimated(void) {
 /* An obstacle that is followed, with a velocity and a latency of these sigmas. */
 static void be_followed(float x_m_s, float z_m_s, float sd_m_s, float latency_s, float sd_s) {
     const double nothing[3] = {0.0, 0.0, 0.0};
-    hear(nothing);
+    give_rows(nothing);
     judged.mover.followed = true;
     judged.mover.moves = true;
-    judged.mover.beside[0] = latency_s;
-    judged.mover.beside[1] = x_m_s;
-    judged.mover.beside[2] = z_m_s;
-    judged.root.estimated = judged.inverse.estimated = GOE_BESIDE;
+    judged.mover.augmented[0] = latency_s;
+    judged.mover.augmented[1] = x_m_s;
+    judged.mover.augmented[2] = z_m_s;
+    judged.root.estimated = judged.inverse.estimated = GOE_AUGMENTED;
     const float sigma[3] = {sd_s, sd_m_s, sd_m_s};
     for (size_t i = 0; i < 3; i++) {
         judged.inverse.element[goe_inverse_column(GOE_STATES + i) + GOE_STATES + i] = sigma[i];
@@ -454,8 +455,8 @@ static void be_followed(float x_m_s, float z_m_s, float sd_m_s, float latency_s,
 }
 
 /* GIVEN an obstacle that is followed WHEN the poses prove late THEN it moves only as far as its velocity is still more than three
- * sigma and a metre a second; when they are in time it does. Late poses in a turn look like a motion at first. */
-static void what_is_followed_may_prove_to_be_late_poses(void) {
+ * sigma and a meter a second; when they are in time it does. Late poses in a turn look like a motion at first. */
+static void a_followed_target_may_prove_to_be_late_poses(void) {
     static const struct {
         float x, z, sd, latency, sd_s;
         bool late, moves;
@@ -490,7 +491,7 @@ static void a_velocitys_variance_is_that_of_both_parts(void) {
 static void another_model_forgets_the_velocity_alone(void) {
     for (int followed = 0; followed < 2; followed++) {
         const double z[3] = {5.0, 6.0, 7.0};
-        hear(z);
+        give_rows(z);
         judged.mover.followed = followed == 1;
         judged.mover.unlike_s = 0.3f;
         judged.mover.images = 2;
@@ -500,7 +501,7 @@ static void another_model_forgets_the_velocity_alone(void) {
             const bool forgotten = i > 0 && followed == 0;
             CHECK_SAME(forgotten ? 0.0f : before.right[i], judged.root.right[i]);
             for (size_t j = i; j < 3; j++) {
-                CHECK_SAME(forgotten ? 0.0f : (float)told[i][j],
+                CHECK_SAME(forgotten ? 0.0f : (float)reported[i][j],
                            *goe_srif_at(&judged.root, GOE_STATES + i, GOE_STATES + j));
             }
         }
@@ -509,15 +510,16 @@ static void another_model_forgets_the_velocity_alone(void) {
     }
 }
 
-/* GIVEN numbers that are none of a flight THEN all beside the state begins anew, and with it the filter, if its axes moved along. */
-static void what_is_none_of_a_flight_is_forgotten(void) {
+/* GIVEN numbers that are impossible in a flight THEN all augmented states begin again, and with them the filter, if its axes moved along.
+ * */
+static void values_outside_any_flight_are_forgotten(void) {
     for (int followed = 0; followed < 2; followed++) {
         be_followed(3.0f, 4.0f, 0.5f, 0.0f, 0.01f);
         judged.mover.followed = followed == 1;
-        judged.mover.beside[2] = 2.0e9f;
+        judged.mover.augmented[2] = 2.0e9f;
         TEST_ASSERT_EQUAL_INT(followed, judge_image());
         TEST_ASSERT_TRUE(judged.mover.moves && !judged.mover.followed); /* the warning stays */
-        CHECK_SAME(0.0f, judged.mover.beside[2]);
+        CHECK_SAME(0.0f, judged.mover.augmented[2]);
         TEST_ASSERT_EQUAL_UINT8(0, judged.root.estimated);
     }
 }
@@ -555,8 +557,8 @@ static flight_t fly(int late, double north_m_s, double east_m_s) {
     return flight;
 }
 
-/* GIVEN a turn of constant rate WHEN images come seldom or often THEN rate and velocity are the turn's; poses nearer than 45 ms tell
- * their noise and are waited for, and farther than 0.6 s a mean, which says nothing. */
+/* GIVEN a turn of constant rate WHEN images come seldom or often THEN rate and velocity are the turn's; poses nearer than 45 ms give only
+ * noise and are waited for, and farther than 0.6 s a mean, which is useless. */
 static void rate_and_velocity_are_those_of_the_flight(void) {
     static const double rates_hz[] = {80.0, 40.0, 20.0, 8.0, 2.0, 1.25};
     for (size_t i = 0; i < sizeof rates_hz / sizeof rates_hz[0]; i++) {
@@ -599,10 +601,10 @@ static void nothing_moves_that_does_not(void) {
     }
 }
 
-/* [GOE_WITH_MOVERS, goe_ego_motion.c, (R36)]
- * GIVEN poses of a tenth of a second before, of an aircraft that sways THEN they are told as late, by about as much, and nothing
+/* [GOE_WITH_TARGET_MOTION, goe_ego_motion.c, (R36)]
+ * GIVEN poses of a tenth of a second before, of an aircraft that sways THEN they are reported as late, by about as much, and nothing
  * moves. */
-static void late_poses_are_told_and_taken_off(void) {
+static void late_poses_are_reported_and_taken_off(void) {
     double worst = 0.0;
     for (int n = 0; n < FLIGHTS; n++) {
         const flight_t flight = fly((int)(0.1 * FINE_HZ), 0.0, 0.0);
@@ -614,7 +616,7 @@ static void late_poses_are_told_and_taken_off(void) {
     TEST_ASSERT_TRUE(worst < 0.03);
 }
 
-/* [GOE_WITH_MOVERS, (R36), (R37)] GIVEN an obstacle that moves THEN that is told, and its velocity, within four sigma. */
+/* [GOE_WITH_TARGET_MOTION, (R36), (R37)] GIVEN an obstacle that moves THEN that is reported, and its velocity, within four sigma. */
 static void an_obstacle_that_moves_is_followed(void) {
     static const double velocity[][2] = {{0.0, 5.0}, {3.0, -4.0}, {-12.0, 0.0}, {0.0, -10.0}};
     for (size_t i = 0; i < sizeof velocity / sizeof velocity[0]; i++) {
@@ -634,8 +636,8 @@ static void an_obstacle_that_moves_is_followed(void) {
     }
 }
 
-/* GIVEN poses that are ahead of the images THEN the latency is told as negative. */
-static void early_poses_are_told_as_early(void) {
+/* GIVEN poses that are ahead of the images THEN the latency is reported as negative. */
+static void early_poses_are_reported_as_early(void) {
     const flight_t flight = fly(-(int)(0.1 * FINE_HZ), 0.0, 0.0);
     check_report("latency of -0.1 s", (double)flight.estimate.latency_s);
     TEST_ASSERT_EQUAL_INT(GOE_REASON_LATE, flight.estimate.reason);
@@ -643,7 +645,7 @@ static void early_poses_are_told_as_early(void) {
     TEST_ASSERT_TRUE(flight.estimate.sigma.latency_s > 0.0f && flight.estimate.sigma.latency_s < 0.03f);
 }
 
-/* GIVEN an obstacle that is followed WHEN it is not seen for a while THEN its place relative to the camera moves on with both, and
+/* GIVEN an obstacle that is followed WHEN it is not visible for a while THEN its place relative to the camera moves on with both, and
  * is known less well. */
 static void an_old_place_moves_on(void) {
     const flight_t flight = fly(0, -12.0, 0.0);
@@ -652,9 +654,9 @@ static void an_old_place_moves_on(void) {
     TEST_ASSERT_TRUE(flight.estimate.valid & GOE_HAS_VELOCITY);
     scene_image(&scene, 20 + STEP * (IMAGES - 1), &image, NULL);
     image.pose.position_ned_m[0] += (float)(-12.0 * (20 + STEP * (IMAGES - 1)) / FINE_HZ);
-    image.pose.time_us += 2000000; /* the camera stands, the obstacle comes */
+    image.pose.time_us += 2000000; /* the camera is at rest, the obstacle comes */
     scene_hide_points(&image);
-    CHECK_STATUS(GOE_NOTHING_SEEN, goe_update(&estimator, &image, &old));
+    CHECK_STATUS(GOE_NO_DETECTION, goe_update(&estimator, &image, &old));
     const double heading = (double)old.trajectory_heading_deg * 0.017453292519943295;
     const double north_m = 2.0 * (double)flight.estimate.velocity_north_m_s;
     const double east_m = 2.0 * (double)flight.estimate.velocity_east_m_s;
@@ -684,9 +686,9 @@ static void an_outline_that_moves_is_not_followed(void) {
     check_report("images in which it is suspect", suspect);
 }
 
-/* GIVEN an obstacle that is followed WHEN it is not seen for two seconds THEN it has gone on with its velocity, relative to the camera
- * that has, too, and its place has become uncertain by what the velocity is. */
-static void what_is_followed_goes_on_unseen(void) {
+/* GIVEN an obstacle that is followed WHEN it is not visible for two seconds THEN it has gone on with its velocity, relative to the camera
+ * that has, too, and its place has become uncertain by the uncertainty of the velocity. */
+static void a_followed_target_continues_without_detections(void) {
     const flight_t flight = fly(0, 3.0, -4.0);
     const goe_estimate_t *before = &flight.estimate;
     goe_image_t image;
@@ -701,7 +703,7 @@ static void what_is_followed_goes_on_unseen(void) {
     scene_hide_points(&image);
     const double dx = (double)estimator.motion.dx_m;
     const double dz = (double)estimator.motion.dz_m;
-    CHECK_STATUS(GOE_NOTHING_SEEN, goe_update(&estimator, &image, &now));
+    CHECK_STATUS(GOE_NO_DETECTION, goe_update(&estimator, &image, &now));
     const double c = (double)estimator.motion.heading_cos;
     const double s = (double)estimator.motion.heading_sin;
     const double north = 2.0 * (double)before->velocity_north_m_s;
@@ -710,7 +712,8 @@ static void what_is_followed_goes_on_unseen(void) {
     CHECK_CLOSE(2.0e-3, (double)before->z_m + c * north + s * east - ((double)estimator.motion.dz_m - dz), now.z_m);
     const double larger = fmax((double)before->sigma.velocity_north_m_s, (double)before->sigma.velocity_east_m_s);
     const goe_navigation_t *own = &estimator.settings.navigation;
-    const double own_m2 = 4.0 * pow((double)own->velocity_bias_m_s, 2.0) + 2.0 * pow((double)own->position_walk_m, 2.0);
+    const double own_m2 =
+        4.0 * pow((double)own->velocity_bias_sd_m_s, 2.0) + 2.0 * pow((double)own->position_walk_sd_m, 2.0);
     const double grown_m = sqrt(4.0 * larger * larger + own_m2);
     CHECK_CLOSE(1.0e-3, hypot((double)before->sigma.x0_m, grown_m), now.sigma.x_m);
     CHECK_CLOSE(1.0e-3, hypot((double)before->sigma.z0_m, grown_m), now.sigma.z_m);
@@ -722,19 +725,19 @@ static void what_is_followed_goes_on_unseen(void) {
 /* [GOE_REASON_MOVES, (R37)]
  * GIVEN traffic on the own course, oncoming or slower WHEN it has been warned of THEN no image takes the warning back, also not when
  * it begins to be followed. */
-static void what_begins_to_be_followed_is_warned_of(void) {
+static void a_newly_followed_target_causes_a_warning(void) {
     static const double north_m_s[] = {-12.0, 8.0};
     for (size_t i = 0; i < sizeof north_m_s / sizeof north_m_s[0]; i++) {
         goe_settings_t of_scene = scene_settings(&scene);
-        goe_plan_t plan;
+        goe_intent_t intent;
         goe_hazard_t hazard;
         double least = 1.0;
         bool warned = false;
         bool followed = false;
-        memset(&plan, 0, sizeof plan);
-        plan.velocity_ned_m_s[0] = (float)(scene.speed_mps + north_m_s[i]);
-        plan.margin_m = 25.0f;
-        plan.clearance_m = 1000.0f;
+        memset(&intent, 0, sizeof intent);
+        intent.velocity_ned_m_s[0] = (float)(scene.speed_mps + north_m_s[i]);
+        intent.margin_m = 25.0f;
+        intent.clearance_m = 1000.0f;
         scene.x0_m = 0.0;
         scene.z0_m = 200.0;
         CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &of_scene, NULL));
@@ -746,9 +749,10 @@ static void what_begins_to_be_followed_is_warned_of(void) {
             scene_add_noise(&image, &any, NOISE_PX);
             (void)goe_update(&estimator, &image, &estimate);
             followed = followed || (estimate.valid & GOE_HAS_VELOCITY) != 0u;
-            if (goe_hazard(&estimator, &plan, &hazard) == GOE_OK) {
-                warned = warned || hazard.violation > 0.9f;
-                least = warned && (double)hazard.violation < least ? (double)hazard.violation : least;
+            if (goe_hazard(&estimator, &intent, &hazard) == GOE_OK) {
+                warned = warned || hazard.conflict_probability > 0.9f;
+                least =
+                    warned && (double)hazard.conflict_probability < least ? (double)hazard.conflict_probability : least;
             }
         }
         check_report("least violation after the first warning", least);
@@ -760,47 +764,47 @@ static void what_begins_to_be_followed_is_warned_of(void) {
 /* [GOE_REASON_MOVES] GIVEN oncoming traffic WHEN it is followed THEN the time to it is that of both, not of the aircraft alone. */
 static void the_hazard_counts_with_both_velocities(void) {
     const flight_t flight = fly(0, -12.0, 0.0);
-    goe_plan_t plan;
+    goe_intent_t intent;
     goe_hazard_t hazard;
-    memset(&plan, 0, sizeof plan);
-    plan.velocity_ned_m_s[0] =
-        (float)scene.speed_mps - 12.0f; /* as it was told: what it saw come nearer is the obstacle's part */
-    plan.margin_m = 20.0f;
-    CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &plan, &hazard));
+    memset(&intent, 0, sizeof intent);
+    intent.velocity_ned_m_s[0] =
+        (float)scene.speed_mps - 12.0f; /* as configured: the rest of the approach is the obstacle's part */
+    intent.margin_m = 20.0f;
+    CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &intent, &hazard));
     const double apart_m = (double)flight.estimate.z_m;
-    const double closing = (double)plan.velocity_ned_m_s[0] - (double)flight.estimate.velocity_north_m_s;
-    check_report("time to go, s", (double)hazard.time_s);
-    TEST_ASSERT_TRUE(hazard.time_s > 0.0f);
-    TEST_ASSERT_TRUE((double)hazard.time_s < 1.2 * apart_m / closing &&
-                     (double)hazard.time_s > 0.5 * apart_m / closing);
+    const double closing = (double)intent.velocity_ned_m_s[0] - (double)flight.estimate.velocity_north_m_s;
+    check_report("time to go, s", (double)hazard.tcpa_s);
+    TEST_ASSERT_TRUE(hazard.tcpa_s > 0.0f);
+    TEST_ASSERT_TRUE((double)hazard.tcpa_s < 1.2 * apart_m / closing &&
+                     (double)hazard.tcpa_s > 0.5 * apart_m / closing);
 }
 #endif
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(what_is_beside_the_state_is_solved_with_it);
-    RUN_TEST(the_variance_holds_what_is_beside_the_state);
-    RUN_TEST(a_change_of_states_keeps_what_is_beside_them);
+    RUN_TEST(augmented_states_are_solved_with_the_state);
+    RUN_TEST(the_variance_includes_augmented_states);
+    RUN_TEST(a_change_of_states_keeps_augmented_states);
     RUN_TEST(the_columns_are_derivatives);
     RUN_TEST(late_poses_end_a_motion_that_is_none);
     RUN_TEST(rate_and_velocity_are_those_of_the_flight);
     RUN_TEST(nothing_moves_that_does_not);
-    RUN_TEST(late_poses_are_told_and_taken_off);
+    RUN_TEST(late_poses_are_reported_and_taken_off);
     RUN_TEST(an_obstacle_that_moves_is_followed);
-    RUN_TEST(early_poses_are_told_as_early);
+    RUN_TEST(early_poses_are_reported_as_early);
     RUN_TEST(an_old_place_moves_on);
     RUN_TEST(an_outline_that_moves_is_not_followed);
-    RUN_TEST(what_begins_to_be_followed_is_what_the_images_told);
-    RUN_TEST(what_has_no_scale_is_not_followed);
-    RUN_TEST(what_may_be_chance_is_not_followed);
+    RUN_TEST(a_newly_followed_target_starts_from_the_images);
+    RUN_TEST(a_target_without_scale_is_not_followed);
+    RUN_TEST(chance_motion_is_not_followed);
     RUN_TEST(a_latency_that_no_velocity_explains_is_estimated);
-    RUN_TEST(what_is_followed_may_prove_to_be_late_poses);
+    RUN_TEST(a_followed_target_may_prove_to_be_late_poses);
     RUN_TEST(a_velocitys_variance_is_that_of_both_parts);
     RUN_TEST(another_model_forgets_the_velocity_alone);
-    RUN_TEST(what_is_none_of_a_flight_is_forgotten);
-    RUN_TEST(what_is_followed_goes_on_unseen);
+    RUN_TEST(values_outside_any_flight_are_forgotten);
+    RUN_TEST(a_followed_target_continues_without_detections);
 #if GOE_WITH_HAZARD
-    RUN_TEST(what_begins_to_be_followed_is_warned_of);
+    RUN_TEST(a_newly_followed_target_causes_a_warning);
     RUN_TEST(the_hazard_counts_with_both_velocities);
 #endif
     return UNITY_END();

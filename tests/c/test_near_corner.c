@@ -12,7 +12,7 @@
 #define NOISE_PX 0.5
 #define SIGMAS_MAX 5.0
 
-typedef bool (*shows_t)(int k); /* whether the near corner is marked in image k where it is to be seen */
+typedef bool (*shows_t)(int k); /* whether the near corner is marked in image k where it is visible */
 
 static check_random_t any;
 static scene_t scene;
@@ -68,18 +68,18 @@ static void check_estimate(void) {
 
 static void fly(shows_t shows, bool highest) {
     settings = scene_settings(&scene);
-    settings.refined.top_is_highest = highest;
+    settings.filter.top_is_highest = highest;
     scene.top_nearest = !highest;
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
     for (int k = 0; k < IMAGES; k++) {
         goe_image_t image;
         scene_image(&scene, k, &image, NULL);
         scene_add_noise(&image, &any, NOISE_PX);
-        image.base_near.seen = image.base_near.seen && shows(k);
+        image.base_near.visible = image.base_near.visible && shows(k);
         (void)goe_update(&estimator, &image, &estimate);
         faces += estimator.filter.phase == GOE_PHASE_BOX_FACE;
         boxes += estimator.filter.phase == GOE_PHASE_BOX;
-        if (estimate.method == GOE_METHOD_REFINED) {
+        if (estimate.method == GOE_METHOD_FILTER) {
             check_estimate();
         }
     }
@@ -109,7 +109,7 @@ static void stand_askew(void) {
 }
 
 /* [goe_image_t.base_near]
- * GIVEN two faces WHEN the corner between them is seen in every sixth image alone THEN they are never taken for one. */
+ * GIVEN two faces WHEN the corner between them is visible in every sixth image alone THEN they are never taken for one. */
 static void a_missed_corner_makes_no_face_of_two(void) {
     start("now and then");
     for (int n = 0; n < FLIGHTS; n++) {
@@ -122,8 +122,8 @@ static void a_missed_corner_makes_no_face_of_two(void) {
 }
 
 /* [(R42)]
- * GIVEN two faces WHEN the corner between them is never seen THEN their ends are taken for a face only where one could stand, across the
- * line of sight; and what is reported then has that in its sigmas. */
+ * GIVEN two faces WHEN the corner between them is never visible THEN their ends are taken for a face only where one is possible, across the
+ * line of sight; and the reported sigmas then include that. */
 static void two_ends_are_no_sure_face(void) {
     start("never");
     for (int n = 0; n < FLIGHTS; n++) {
@@ -157,13 +157,13 @@ static void a_second_face_comes_late_in_a_turn(void) {
     worst = most;
     report();
     TEST_ASSERT_TRUE(faces > FLIGHTS && boxes > FLIGHTS);
-    TEST_ASSERT_TRUE(beyond <= FLIGHTS / 20); /* a length that is first seen at a grazing angle */
+    TEST_ASSERT_TRUE(beyond <= FLIGHTS / 20); /* a length that is first viewed at a grazing angle */
 }
 
 /* [(R42)]
- * GIVEN a truck that is met end on, seen from above WHEN its top is the highest point of the roof in the image, which is over the far end
- * THEN the height is uncertain by the length that no image shows. */
-static void a_truck_seen_end_on_hides_its_length(void) {
+ * GIVEN a truck ahead, end on, viewed from above WHEN its top is the highest point of the roof in the image, which is over the far end
+ * THEN the height is uncertain by the unobserved length. */
+static void a_truck_viewed_end_on_hides_its_length(void) {
     start("truck");
     for (int n = 0; n < FLIGHTS; n++) {
         scene.width_m = 2.5;
@@ -184,6 +184,6 @@ int main(void) {
     RUN_TEST(a_missed_corner_makes_no_face_of_two);
     RUN_TEST(two_ends_are_no_sure_face);
     RUN_TEST(a_second_face_comes_late_in_a_turn);
-    RUN_TEST(a_truck_seen_end_on_hides_its_length);
+    RUN_TEST(a_truck_viewed_end_on_hides_its_length);
     return UNITY_END();
 }

@@ -1,4 +1,4 @@
-/* What is reported in north and east: T's heading, both axes, the centre and how it is uncertain.
+/* Reports in north and east: T's heading, both axes, the center and its uncertainty.
  * SPDX-License-Identifier: MIT */
 #include <math.h>
 #include <string.h>
@@ -33,7 +33,7 @@ static goe_estimate_t fly_after(double before_deg, bool blind, double course_deg
         scene_image(&scene, k, &image, NULL);
         if (k == 0 && blind) {
             scene_hide_points(&image);
-            image.box.seen = 0;
+            image.box.sides = 0;
         }
         scene.course_deg = course_deg;
         (void)goe_update(&estimator, &image, &estimate);
@@ -50,8 +50,8 @@ static goe_estimate_t fly_after_turn(double before_deg, double after_deg) {
 /* Angle of b from a, folded into -180 to 180. */
 static double between_deg(double a, double b) { return remainder(b - a, 360.0); }
 
-/* [heading_auto] GIVEN a course WHEN an image was taken THEN T's heading is told, also while nothing else is known. */
-static void the_heading_is_told_from_the_first_image_on(void) {
+/* [heading_auto] GIVEN a course WHEN an image was taken THEN T's heading is reported, also while nothing else is known. */
+static void the_heading_is_reported_from_the_first_image_on(void) {
     for (double course = -170.0; course <= 180.0; course += 25.0) {
         goe_estimate_t estimate;
         goe_image_t image;
@@ -67,8 +67,8 @@ static void the_heading_is_told_from_the_first_image_on(void) {
     }
 }
 
-/* GIVEN a heading that is set, in any turn THEN it is told between -180 and 180. */
-static void a_set_heading_is_told(void) {
+/* GIVEN a heading that is set, in any turn THEN it is reported between -180 and 180. */
+static void a_set_heading_is_reported(void) {
     settings.heading_auto = false;
     for (double heading = -360.0; heading <= 360.0; heading += 45.0) {
         settings.heading_deg = (float)heading;
@@ -91,8 +91,8 @@ static void check_axes(const goe_estimate_t *e) {
  * GIVEN a box on any course, by either method THEN its axes in north and east are the heading and the orientation together. */
 static void the_axes_point_north_and_east(void) {
     for (double course = -180.0; course < 180.0; course += 40.0) {
-        const goe_estimate_t refined = fly(course);
-        check_axes(&refined);
+        const goe_estimate_t filter = fly(course);
+        check_axes(&filter);
     }
 #if GOE_WITH_WINDOW
     settings = scene_window_settings(&scene);
@@ -105,8 +105,8 @@ static void the_axes_point_north_and_east(void) {
 
 /* GIVEN a box by either method THEN the axes in T are unit vectors of the orientation, and the other side is square to it. */
 static void the_axes_agree_with_the_orientation(void) {
-    int told = 0;
-    for (int method = GOE_METHOD_WINDOW; method <= GOE_METHOD_REFINED; method++) {
+    int reported = 0;
+    for (int method = GOE_METHOD_WINDOW; method <= GOE_METHOD_FILTER; method++) {
 #if !GOE_WITH_WINDOW
         if (method == GOE_METHOD_WINDOW) {
             continue;
@@ -122,16 +122,16 @@ static void the_axes_agree_with_the_orientation(void) {
             if (!(e.valid & GOE_HAS_ORIENTATION)) {
                 continue;
             }
-            told++;
+            reported++;
             CHECK_CLOSE(1.0e-5, sin(rad), e.length_axis[0]);
             CHECK_CLOSE(1.0e-5, cos(rad), e.length_axis[1]);
             CHECK_CLOSE(1.0e-5, cos(rad), e.width_axis[0]);
             CHECK_CLOSE(1.0e-5, -sin(rad), e.width_axis[1]);
-            CHECK_CLOSE(1.0e-4, 90.0, fabs((double)e.other_side_deg - (double)e.orientation_deg));
-            TEST_ASSERT_TRUE(e.other_side_deg > -90.0f && e.other_side_deg <= 90.0f);
+            CHECK_CLOSE(1.0e-4, 90.0, fabs((double)e.front_orientation_deg - (double)e.orientation_deg));
+            TEST_ASSERT_TRUE(e.front_orientation_deg > -90.0f && e.front_orientation_deg <= 90.0f);
         }
     }
-    TEST_ASSERT_TRUE(told >= (GOE_WITH_WINDOW ? 12 : 6));
+    TEST_ASSERT_TRUE(reported >= (GOE_WITH_WINDOW ? 12 : 6));
 }
 
 #if GOE_WITH_WINDOW
@@ -160,7 +160,7 @@ static void the_raw_orientation_is_that_of_the_latest_image(void) {
 }
 #endif
 
-/* Covariance of the centre along and across the course, and of the two. */
+/* Covariance of the center along and across the course, and of the two. */
 typedef struct {
     double along, across, both;
 } spread_t;
@@ -178,7 +178,7 @@ static spread_t spread_of(const goe_estimate_t *e, double course_deg) {
     return spread;
 }
 
-/* GIVEN one flight on two courses THEN the centre is as uncertain along and across the course, and the two go together alike. */
+/* GIVEN one flight on two courses THEN the center is as uncertain along and across the course, with the same correlation. */
 static void check_spread_turns(void) {
     const goe_estimate_t reference = fly(0.0);
     const spread_t expected = spread_of(&reference, 0.0);
@@ -194,7 +194,7 @@ static void check_spread_turns(void) {
 }
 
 /* [goe_estimate_t.center_ne_m2] */
-static void the_spread_of_the_centre_turns_with_the_course(void) {
+static void the_spread_of_the_center_turns_with_the_course(void) {
     check_spread_turns();
     scene_make_cylinder(&scene);
     check_spread_turns();
@@ -210,7 +210,7 @@ static void the_spread_of_the_centre_turns_with_the_course(void) {
 /* [A5, A7]
  * GIVEN a first image without a feature, before a turn THEN T is that of the first image with one, by points and by boxes; with a heading
  * that is set, T has that. */
-static void a_track_that_began_before_a_turn_sees_what_is_ahead(void) {
+static void a_track_that_began_before_a_turn_faces_forward(void) {
     for (int boxes = 0; boxes < 2; boxes++) {
         scene.boxes = boxes == 1;
         const goe_estimate_t turned = fly_after_turn(20.0, 150.0);
@@ -222,19 +222,19 @@ static void a_track_that_began_before_a_turn_sees_what_is_ahead(void) {
     }
     settings.heading_auto = false;
     settings.heading_deg = 20.0f;
-    const goe_estimate_t told = fly_after_turn(20.0, 150.0);
-    TEST_ASSERT_EQUAL_HEX(0, told.valid);
-    CHECK_CLOSE(1.0e-3, 20.0, told.trajectory_heading_deg);
+    const goe_estimate_t reported = fly_after_turn(20.0, 150.0);
+    TEST_ASSERT_EQUAL_HEX(0, reported.valid);
+    CHECK_CLOSE(1.0e-3, 20.0, reported.trajectory_heading_deg);
 }
 
 /* [goe_quantities.c]
- * GIVEN a place known in X and in Z to 800 km each, the two errors alike WHEN the course leads to the north-east THEN that makes
- * more than 1000 km along one of north and east, and no centre is told, whichever it is; the place is. */
-static void a_centre_that_is_nowhere_is_not_told(void) {
-    static const float errors_alike[] = {1.0f, -1.0f};
+ * GIVEN a place known in X and in Z to 800 km each, the two errors equal WHEN the course leads to the north-east THEN that makes
+ * more than 1000 km along one of north and east, and no center is reported, whichever it is; the place is. */
+static void a_center_that_is_nowhere_is_not_reported(void) {
+    static const float errors_correlated[] = {1.0f, -1.0f};
     const float range_m = 4.0e5f;
     const float spread = 2.0f; /* of X and of Z, over the range */
-    settings.refined.range_share = 10.0f;
+    settings.filter.range_sd_rel_max = 10.0f;
     for (int i = 0; i < 3; i++) {
         goe_filter_t filter;
         goe_motion_t motion;
@@ -249,7 +249,7 @@ static void a_centre_that_is_nowhere_is_not_told(void) {
         filter.state[GOE_PRISM_HALF] = 1.0e-3f;
         filter.inverse.element[goe_inverse_column(GOE_INVERSE_RANGE) + GOE_BEARING] = spread;
         filter.inverse.element[goe_inverse_column(GOE_INVERSE_RANGE) + GOE_INVERSE_RANGE] =
-            (i < 2 ? errors_alike[i] : 1.0f) * spread / range_m;
+            (i < 2 ? errors_correlated[i] : 1.0f) * spread / range_m;
         goe_quantities_find(&filter, &settings, &motion, &quantities);
         CHECK_CLOSE(1.0e3, spread * range_m, quantities.sigma[GOE_X0]);
         CHECK_CLOSE(1.0e3, spread * range_m, quantities.sigma[GOE_Z0]);
@@ -259,15 +259,15 @@ static void a_centre_that_is_nowhere_is_not_told(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(the_heading_is_told_from_the_first_image_on);
-    RUN_TEST(a_set_heading_is_told);
+    RUN_TEST(the_heading_is_reported_from_the_first_image_on);
+    RUN_TEST(a_set_heading_is_reported);
     RUN_TEST(the_axes_point_north_and_east);
     RUN_TEST(the_axes_agree_with_the_orientation);
 #if GOE_WITH_WINDOW
     RUN_TEST(the_raw_orientation_is_that_of_the_latest_image);
 #endif
-    RUN_TEST(a_track_that_began_before_a_turn_sees_what_is_ahead);
-    RUN_TEST(the_spread_of_the_centre_turns_with_the_course);
-    RUN_TEST(a_centre_that_is_nowhere_is_not_told);
+    RUN_TEST(a_track_that_began_before_a_turn_faces_forward);
+    RUN_TEST(the_spread_of_the_center_turns_with_the_course);
+    RUN_TEST(a_center_that_is_nowhere_is_not_reported);
     return UNITY_END();
 }

@@ -86,23 +86,23 @@ static void a_point_is_freed_of_the_bias(void) {
     }
 }
 
-/* [navigation.attitude_bias_deg, (R3)] */
+/* [navigation.attitude_bias_sd_deg, (R3)] */
 static void the_bias_is_turned_from_body_axes(void) {
     any = check_random_start("bias");
     for (int n = 0; n < CASES; n++) {
         sighting_start(&sighting, &any);
-        const float told[3] = {sighting.sight.ex, sighting.sight.ey, sighting.sight.ez};
+        const float reported[3] = {sighting.sight.ex, sighting.sight.ey, sighting.sight.ez};
         for (int i = 0; i < 3; i++) {
             double expected = 0.0;
             for (int j = 0; j < 3; j++) {
                 expected += (double)sighting.sight.body_to_axes[3 * i + j] * (double)sighting.state[j];
             }
-            CHECK_CLOSE(1.0e-7, expected, told[i]);
+            CHECK_CLOSE(1.0e-7, expected, reported[i]);
         }
     }
 }
 
-/* [(R3)] GIVEN a point beside or behind the camera THEN everything stays finite. */
+/* [(R3)] GIVEN a point next to or behind the camera THEN everything stays finite. */
 static void points_behind_the_camera_stay_finite(void) {
     static const float z[] = {1.0e-5f, 0.0f, -1.0e-5f, -1.0f, -1.0e6f};
     any = check_random_start("behind");
@@ -145,7 +145,7 @@ static void differentiate(const sighting_t *s, double u_px, double v_px, double 
     by_v[1] = (up[1] - down[1]) / (2.0 * step);
 }
 
-/* [detector.point_px, (R4)]
+/* [detector.point_noise_px, (R4)]
  * GIVEN a pixel anywhere in the image of a turned camera THEN the spread of its aligned point is the pixel's variance through
  * the derivative of the alignment. */
 static void the_spread_is_that_of_the_alignment(void) {
@@ -165,14 +165,14 @@ static void the_spread_is_that_of_the_alignment(void) {
         const double xx = variance * (by_u[0] * by_u[0] + by_v[0] * by_v[0]);
         const double xy = variance * (by_u[0] * by_u[1] + by_v[0] * by_v[1]);
         const double yy = variance * (by_u[1] * by_u[1] + by_v[1] * by_v[1]);
-        const goe_spread_t told = goe_observation_spread(&sighting.sight, GOE_POINT_TOP);
-        CHECK_CLOSE(1.0e-5 * xx, xx, told.xx);
-        CHECK_CLOSE(1.0e-5 * sqrt(xx * yy), xy, told.xy);
-        CHECK_CLOSE(1.0e-5 * yy, yy, told.yy);
+        const goe_spread_t reported = goe_observation_spread(&sighting.sight, GOE_POINT_TOP);
+        CHECK_CLOSE(1.0e-5 * xx, xx, reported.xx);
+        CHECK_CLOSE(1.0e-5 * sqrt(xx * yy), xy, reported.xy);
+        CHECK_CLOSE(1.0e-5 * yy, yy, reported.yy);
     }
 }
 
-/* [detector.point_share] */
+/* [detector.point_noise_rel] */
 static void size_noise_is_a_share_of_the_width(void) {
     any = check_random_start("size");
     sighting_start(&sighting, &any);
@@ -180,7 +180,7 @@ static void size_noise_is_a_share_of_the_width(void) {
     sighting.sight.point[GOE_POINT_LEFT] = (goe_point_t){-0.1f, 0.0f, true};
     sighting.sight.point[GOE_POINT_RIGHT] = (goe_point_t){0.1f, 0.0f, true};
     CHECK_CLOSE(1.0e-10, 3.6e-5, goe_observation_size_variance(&sighting.sight));
-    sighting.sight.point[GOE_POINT_RIGHT].usable = false; /* no width is seen */
+    sighting.sight.point[GOE_POINT_RIGHT].usable = false; /* no width is visible */
     CHECK_SAME(0.0f, goe_observation_size_variance(&sighting.sight));
 }
 
@@ -220,11 +220,11 @@ static void the_body_is_where_the_mounting_puts_it(void) {
     }
 }
 
-#if GOE_BESIDE
+#if GOE_AUGMENTED
 /* [GOE_REASON_LATE]
- * GIVEN poses that are late WHEN an image is linearised THEN the attitude is that of the exposure: what the body turned by since is
- * taken off the bias. */
-static void what_the_poses_are_late_by_is_taken_off(void) {
+ * GIVEN poses that are late WHEN an image is linearized THEN the attitude is that of the exposure: the turn of the body since then is
+ * removed from the bias. */
+static void pose_latency_is_corrected(void) {
     any = check_random_start("late");
     for (int n = 0; n < CASES; n++) {
         sighting_start(&sighting, &any);
@@ -279,17 +279,17 @@ static void an_edge_takes_two_base_corners(void) {
     TEST_ASSERT_TRUE(sight.edge);
 }
 
-/* GIVEN an image that knows its own errors THEN they stand in for the settings; 0 leaves these. */
+/* GIVEN an image with its own errors THEN they replace the settings; 0 leaves these. */
 static void an_image_may_know_its_own_errors(void) {
     goe_observation_t sight;
     start();
     TEST_ASSERT_EQUAL_UINT(0u, goe_observation_open(&sight, &estimator.settings, &estimator.filter, &view));
-    CHECK_CLOSE(1.0e-9, (double)estimator.settings.navigation.attitude_white_deg * (double)GOE_RAD_PER_DEG,
+    CHECK_CLOSE(1.0e-9, (double)estimator.settings.navigation.attitude_white_sd_deg * (double)GOE_RAD_PER_DEG,
                 sight.white_rad);
-    TEST_ASSERT_EQUAL_FLOAT(estimator.settings.detector.point_px, sight.point_px);
-    TEST_ASSERT_EQUAL_FLOAT(estimator.settings.detector.box_px, sight.side_px);
-    image.noise.attitude_deg = 2.0f;
-    image.noise.pixel_px = 7.0f;
+    TEST_ASSERT_EQUAL_FLOAT(estimator.settings.detector.point_noise_px, sight.point_px);
+    TEST_ASSERT_EQUAL_FLOAT(estimator.settings.detector.box_noise_px, sight.side_px);
+    image.noise.attitude_sd_deg = 2.0f;
+    image.noise.pixel_sd_px = 7.0f;
     TEST_ASSERT_EQUAL_UINT(0u, goe_observation_open(&sight, &estimator.settings, &estimator.filter, &view));
     CHECK_CLOSE(1.0e-6, 2.0 * (double)GOE_RAD_PER_DEG, sight.white_rad);
     TEST_ASSERT_EQUAL_FLOAT(7.0f, sight.point_px);
@@ -300,8 +300,8 @@ static void an_image_may_know_its_own_errors(void) {
 static void less_than_the_least_counts_as_that(void) {
     goe_observation_t sight;
     start();
-    image.noise.attitude_deg = 1.0e-6f;
-    image.noise.pixel_px = 1.0e-6f;
+    image.noise.attitude_sd_deg = 1.0e-6f;
+    image.noise.pixel_sd_px = 1.0e-6f;
     estimator.filter.datum.sd_m = 1.0e-6f;
     TEST_ASSERT_EQUAL_UINT(0u, goe_observation_open(&sight, &estimator.settings, &estimator.filter, &view));
     CHECK_CLOSE(1.0e-10, 1.0e-4 * (double)GOE_RAD_PER_DEG, sight.white_rad);
@@ -315,14 +315,14 @@ static void less_than_the_least_counts_as_that(void) {
 static void a_noisy_height_is_that_of_all_readings(void) {
     goe_observation_t sight;
     start();
-    estimator.settings.navigation.height_bias_m = 3.0f;
+    estimator.settings.navigation.height_bias_sd_m = 3.0f;
     estimator.motion.height_m = 20.0f;
     estimator.filter.datum.height_m = 24.0f;
     estimator.filter.datum.readings = 4;
     TEST_ASSERT_EQUAL_UINT(0u, goe_observation_open(&sight, &estimator.settings, &estimator.filter, &view));
     TEST_ASSERT_EQUAL_FLOAT(20.0f, sight.height_m);
     TEST_ASSERT_EQUAL_FLOAT(3.0f, sight.height_sd_m);
-    estimator.settings.navigation.height_white_m = 8.0f;
+    estimator.settings.navigation.height_white_sd_m = 8.0f;
     TEST_ASSERT_EQUAL_UINT(0u, goe_observation_open(&sight, &estimator.settings, &estimator.filter, &view));
     TEST_ASSERT_EQUAL_FLOAT(24.0f, sight.height_m);
     CHECK_CLOSE(1.0e-5, sqrt(9.0 + 64.0 / 4.0), sight.height_sd_m);
@@ -333,7 +333,7 @@ static void a_noisy_height_is_that_of_all_readings(void) {
 static void a_height_without_a_reading_has_the_noise_of_one(void) {
     goe_observation_t sight;
     start();
-    estimator.settings.navigation.height_white_m = 8.0f;
+    estimator.settings.navigation.height_white_sd_m = 8.0f;
     estimator.filter.datum.sd_m = 6.0f;
     estimator.filter.datum.readings = 0;
     TEST_ASSERT_EQUAL_UINT(0u, goe_observation_open(&sight, &estimator.settings, &estimator.filter, &view));
@@ -349,8 +349,8 @@ int main(void) {
     RUN_TEST(the_spread_is_that_of_the_alignment);
     RUN_TEST(size_noise_is_a_share_of_the_width);
     RUN_TEST(the_body_is_where_the_mounting_puts_it);
-#if GOE_BESIDE
-    RUN_TEST(what_the_poses_are_late_by_is_taken_off);
+#if GOE_AUGMENTED
+    RUN_TEST(pose_latency_is_corrected);
 #endif
     RUN_TEST(points_out_of_order_do_not_count);
     RUN_TEST(an_edge_takes_two_base_corners);

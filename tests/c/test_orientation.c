@@ -66,7 +66,7 @@ static void the_side_is_the_edge_nearer_to_the_flight_direction(void) {
 }
 
 /* GIVEN a count or an angle that no image can have left THEN the next measurement is the first. */
-static void what_no_image_left_begins_anew(void) {
+static void a_track_without_images_begins_again(void) {
     static const struct {
         int count;
         uint32_t filtered;
@@ -84,7 +84,7 @@ static void what_no_image_left_begins_anew(void) {
 }
 
 /* [W1] */
-static void the_front_tells_the_orientation_if_the_side_cannot(void) {
+static void the_front_gives_the_orientation_if_the_side_cannot(void) {
     (void)see_two(70.0f, none);
     TEST_ASSERT_EQUAL_FLOAT(-20.0f, orientation.raw_deg);
     TEST_ASSERT_EQUAL_PTR(&edges.edge[1], see_two(70.0f, none).side);
@@ -127,7 +127,7 @@ static void no_heading_leaves_everything_as_it_is(void) {
 }
 
 /* [W1] GIVEN a box at 44 degrees and noise of 3 degrees, which often makes the other edge's angle the smaller one
- * WHEN 500 images are seen THEN front and side never change places and the filtered angle stays near 44. */
+ * WHEN 500 images come THEN front and side never change places and the filtered angle stays near 44. */
 static void noise_near_45_degrees_does_not_swap_the_faces(void) {
     check_random_t random = check_random_start("near 45 degrees");
     int would_swap = 0;
@@ -213,8 +213,8 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(no_measurement_has_no_sigma);
     RUN_TEST(the_side_is_the_edge_nearer_to_the_flight_direction);
-    RUN_TEST(what_no_image_left_begins_anew);
-    RUN_TEST(the_front_tells_the_orientation_if_the_side_cannot);
+    RUN_TEST(a_track_without_images_begins_again);
+    RUN_TEST(the_front_gives_the_orientation_if_the_side_cannot);
     RUN_TEST(a_single_edge_is_a_front_beyond_45_degrees);
     RUN_TEST(no_heading_leaves_everything_as_it_is);
     RUN_TEST(noise_near_45_degrees_does_not_swap_the_faces);

@@ -97,7 +97,7 @@ static double value_at(const obstacle_t *obstacle, const question_t *question, a
     return (double)at.value;
 }
 
-/* Where the value has a corner the differences to both sides are not alike, and neither is the derivative. */
+/* Where the value has a corner the differences to both sides differ, and so does the derivative. */
 static void check_derivatives(const obstacle_t *obstacle, const question_t *question, answer_t answer) {
     const goe_outline_t o = outline_of(obstacle);
     goe_affine_t at;
@@ -139,7 +139,7 @@ static void end(const goe_outline_t *o, const question_t *question, goe_affine_t
 
 /* GIVEN any outline and direction THEN reach and distance, and the place along a course, move with each quantity as their
  * derivatives say. */
-static void what_is_reached_moves_as_its_derivatives_say(void) {
+static void the_support_point_moves_as_its_derivatives_say(void) {
     any = check_random_start("reach");
     for (int n = 0; n < CASES; n++) {
         obstacle_t obstacle;
@@ -201,8 +201,8 @@ static void a_crossing_ends_on_the_outline(void) {
     }
 }
 
-/* GIVEN a camera beside, before or in an outline THEN the way from it is a unit vector; outside, straight away from the nearest
- * point, and so far from the outline as that point is; inside, never out through what lies behind. */
+/* GIVEN a camera next to, before or in an outline THEN the way from it is a unit vector; outside, straight away from the nearest
+ * point, and so far from the outline as that point is; inside, never out through the part behind. */
 static void the_way_from_an_outline_is_the_shortest(void) {
     any = check_random_start("way");
     for (int k = 0; k < DIRECTIONS; k++) {
@@ -244,7 +244,7 @@ static void the_way_from_an_outline_is_the_shortest(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(what_is_reached_moves_as_its_derivatives_say);
+    RUN_TEST(the_support_point_moves_as_its_derivatives_say);
     RUN_TEST(a_crossing_moves_as_its_derivatives_say);
     RUN_TEST(a_crossing_ends_on_the_outline);
     RUN_TEST(the_way_from_an_outline_is_the_shortest);

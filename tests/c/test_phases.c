@@ -1,6 +1,6 @@
 /* The phases of the filter: every transition by its name, and that there are no others. SPDX-License-Identifier: MIT
  *
- * The diagram stands above goe_phase_t in refined/goe_filter.h. */
+ * The diagram is above goe_phase_t in refined/goe_filter.h. */
 /* tests: lib/refined/goe_filter.c */
 #include <math.h>
 #include <string.h>
@@ -41,7 +41,7 @@ void setUp(void) {
     scene_default(&scene);
     scene.top_nearest = true;
     settings = scene_settings(&scene);
-    scene_tell_no_noise(&settings);
+    scene_clear_noise(&settings);
     memset(happened, 0, sizeof happened);
     learnt_anew = false;
     exchanged = false;
@@ -69,7 +69,7 @@ static void update(const goe_image_t *image) {
 }
 
 static void hide_base(goe_image_t *image) {
-    image->base_left.seen = image->base_near.seen = image->base_right.seen = false;
+    image->base_left.visible = image->base_near.visible = image->base_right.visible = false;
 }
 
 /* A scene from image to image. SEE_LEAPS: from the middle on every third of the points lies elsewhere. */
@@ -90,8 +90,8 @@ static void fly(sight_t sight, int images) {
     }
 }
 
-/* A box of which the front and the right face are seen until the front turns away. */
-static void make_box_beside(double alpha_deg) {
+/* A box of which the front and the right face are visible until the front turns away. */
+static void make_box_next_to(double alpha_deg) {
     scene.width_m = 5.0;
     scene.length_m = 9.0;
     scene.height_m = 6.0;
@@ -117,8 +117,8 @@ static void make_wall_ahead(void) {
 
 /* ------------------------------------------------------------------------------------------------------- transitions -- */
 
-/* GIVEN a filter that enters a phase THEN what was counted in the one before counts no more: neither what it knew, nor what was
- * refused, nor who agreed on a box. */
+/* GIVEN a filter that enters a phase THEN counters of the phase before count no more: neither known quantities, nor refused
+ * points, nor votes for a box. */
 static void a_phase_begins_with_nothing_counted(void) {
     start();
     goe_filter_t *filter = &estimator.filter;
@@ -140,7 +140,7 @@ static void a_width_starts_a_disc(void) {
     goe_image_t image;
     start();
     scene_image(&scene, 0, &image, NULL);
-    image.right.seen = false;
+    image.right.visible = false;
     hide_base(&image);
     update(&image);
     TEST_ASSERT_EQUAL_INT(GOE_PHASE_NONE, phase());
@@ -154,7 +154,7 @@ static void base_corners_alone_start_a_disc(void) {
     goe_image_t image;
     start();
     scene_image(&scene, 0, &image, NULL);
-    image.left.seen = image.right.seen = image.top.seen = false;
+    image.left.visible = image.right.visible = image.top.visible = false;
     update(&image);
     TEST_ASSERT_EQUAL_INT(GOE_PHASE_DISC, phase());
     CHECK_CLOSE(0.1 * scene.z0_m, scene.z0_m, 1.0 / (double)estimator.filter.state[GOE_INVERSE_RANGE]);
@@ -183,26 +183,26 @@ static void a_second_face_frees_the_length(void) {
 }
 
 static void a_skewed_outline_makes_a_chord_of_a_disc(void) {
-    make_box_beside(44.0);
+    make_box_next_to(44.0);
     fly(SEE_OUTLINE, IMAGES);
     TEST_ASSERT_TRUE(happened[GOE_PHASE_DISC][GOE_PHASE_CHORD]);
 }
 
 /* [A30] */
 static void a_face_that_turns_away_makes_a_box_of_a_chord(void) {
-    make_box_beside(44.0);
+    make_box_next_to(44.0);
     fly(SEE_OUTLINE, IMAGES);
     TEST_ASSERT_TRUE(happened[GOE_PHASE_CHORD][GOE_PHASE_BOX_OUTLINE]);
 }
 
 static void base_corners_make_a_box_of_a_chord(void) {
-    make_box_beside(44.0);
+    make_box_next_to(44.0);
     fly(SEE_OUTLINE_FIRST, 160);
     TEST_ASSERT_TRUE(happened[GOE_PHASE_DISC][GOE_PHASE_CHORD]);
     TEST_ASSERT_TRUE(happened[GOE_PHASE_CHORD][GOE_PHASE_BOX]);
 }
 
-static void a_chord_learns_an_end_anew_when_a_face_comes_into_view(void) {
+static void a_chord_learns_an_end_again_when_a_face_comes_into_view(void) {
     scene.width_m = 7.7;
     scene.length_m = 10.4;
     scene.height_m = 3.0;
@@ -233,7 +233,7 @@ static void a_side_that_lies_across_takes_the_name_of_the_front(void) {
 }
 
 /* [T1] */
-static void what_does_not_fit_starts_the_filter_anew(void) {
+static void misfitting_images_start_the_filter_again(void) {
     scene_make_cylinder(&scene);
     fly(SEE_LEAPS, 60);
     TEST_ASSERT_TRUE(happened[GOE_PHASE_DISC][GOE_PHASE_NONE]);
@@ -248,7 +248,7 @@ static void what_does_not_fit_starts_the_filter_anew(void) {
 }
 
 /* GIVEN a phase that has no model to change, or a number that is no phase THEN nothing of the filter changes. */
-static void what_is_no_phase_changes_nothing(void) {
+static void an_invalid_phase_changes_nothing(void) {
     static const uint8_t none[] = {GOE_PHASE_NONE, PHASES, UINT8_MAX};
     goe_observation_t sight;
     memset(&sight, 0, sizeof sight);
@@ -265,7 +265,7 @@ static void what_is_no_phase_changes_nothing(void) {
 }
 
 /* GIVEN a number that a flipped bit made no phase WHEN an image comes THEN the filter starts with it, as at a track's begin. */
-static void what_is_no_phase_starts_the_filter_anew(void) {
+static void an_invalid_phase_starts_the_filter_again(void) {
     for (int number = PHASES; number <= UINT8_MAX; number += 62) {
         goe_image_t image;
         fly(SEE_ALL, 20);
@@ -277,9 +277,9 @@ static void what_is_no_phase_starts_the_filter_anew(void) {
     }
 }
 
-/* GIVEN a state or a root that no images lead to, one element of it at a time THEN the filter starts anew, and nothing of it
+/* GIVEN a state or a root that no images lead to, one element of it at a time THEN the filter starts again, and nothing of it
  * reaches an answer. */
-static void what_is_not_finite_starts_the_filter_anew(void) {
+static void a_state_that_is_not_finite_starts_the_filter_again(void) {
     const goe_verdict_t good = {1u, 0u, 1, GOE_FEATURES, 0.0f, false};
     for (size_t i = 0; i <= 2 * GOE_STATES; i++) {
         fly(SEE_ALL, 20);
@@ -302,54 +302,54 @@ static void what_is_not_finite_starts_the_filter_anew(void) {
 /* A box by its corners, whose filter has just stopped; the next image. */
 static goe_image_t stop(void) {
     goe_image_t image;
-    make_box_beside(55.0);
+    make_box_next_to(55.0);
     fly(SEE_ALL, 60);
-    TEST_ASSERT_EQUAL_INT(GOE_METHOD_REFINED, estimate.method);
+    TEST_ASSERT_EQUAL_INT(GOE_METHOD_FILTER, estimate.method);
     TEST_ASSERT_TRUE(estimate.fresh && estimate.nis_rows > 0);
     goe_filter_enter(&estimator.filter, GOE_PHASE_NONE);
     scene_image(&scene, 60, &image, NULL);
     return image;
 }
 
-/* GIVEN a filter that has stopped WHEN an image shows nothing THEN its last answer stands, as an old one: it follows the motion, and
+/* GIVEN a filter that has stopped WHEN an image shows nothing THEN its last answer stays, as an old one: it follows the motion, and
  * reports no innovation, as the image gave none. */
-static void a_stopped_filters_answer_stands_while_nothing_else_is_known(void) {
+static void a_stopped_filters_answer_stays_while_nothing_else_is_known(void) {
     goe_image_t image = stop();
     const goe_estimate_t before = estimate;
     hide_base(&image);
-    image.left.seen = image.right.seen = image.top.seen = false;
+    image.left.visible = image.right.visible = image.top.visible = false;
     update(&image);
-    TEST_ASSERT_EQUAL_INT(GOE_METHOD_REFINED, estimate.method);
+    TEST_ASSERT_EQUAL_INT(GOE_METHOD_FILTER, estimate.method);
     TEST_ASSERT_EQUAL_HEX32(before.valid, estimate.valid);
     TEST_ASSERT_FALSE(estimate.fresh);
     CHECK_SAME(before.z0_m, estimate.z0_m);
     CHECK_CLOSE(0.05, (double)before.z_m - scene.speed_mps / scene.image_rate_hz, estimate.z_m);
     TEST_ASSERT_EQUAL_INT(0, estimate.nis_rows);
     CHECK_SAME(0.0f, estimate.nis);
-    TEST_ASSERT_EQUAL_INT(before.points, estimate.points);
+    TEST_ASSERT_EQUAL_INT(before.images_used, estimate.images_used);
 }
 
-/* GIVEN a filter that has stopped WHEN it cannot start from an image, as its first guess of the range is none THEN its last answer
- * stands. */
-static void an_answer_stands_while_the_filter_cannot_start(void) {
-    settings.refined.typical_size_m = 0.1f;
+/* GIVEN a filter that has stopped WHEN it cannot start from an image, as its first guess of the range is invalid THEN its last answer
+ * stays. */
+static void an_answer_stays_while_the_filter_cannot_start(void) {
+    settings.filter.prior_width_m = 0.1f;
     goe_image_t image = stop();
     const goe_estimate_t before = estimate;
     hide_base(&image);
     update(&image);
     TEST_ASSERT_EQUAL_INT(GOE_PHASE_NONE, phase());
-    TEST_ASSERT_EQUAL_INT(GOE_METHOD_REFINED, estimate.method);
+    TEST_ASSERT_EQUAL_INT(GOE_METHOD_FILTER, estimate.method);
     TEST_ASSERT_FALSE(estimate.fresh);
     TEST_ASSERT_EQUAL_HEX32(before.valid, estimate.valid);
     CHECK_SAME(before.width_m, estimate.width_m);
 }
 
 /* GIVEN a filter that has stopped WHEN it starts again THEN its older answer is kept. */
-static void a_filter_that_starts_anew_keeps_its_older_answer(void) {
+static void a_filter_that_starts_again_keeps_its_older_answer(void) {
     goe_image_t image = stop();
     update(&image);
     TEST_ASSERT_EQUAL_INT(GOE_PHASE_DISC, phase());
-    TEST_ASSERT_EQUAL_INT(GOE_METHOD_REFINED, estimate.method);
+    TEST_ASSERT_EQUAL_INT(GOE_METHOD_FILTER, estimate.method);
     TEST_ASSERT_TRUE(estimate.valid & GOE_HAS_POSITION);
 }
 
@@ -400,15 +400,15 @@ int main(void) {
     RUN_TEST(a_skewed_outline_makes_a_chord_of_a_disc);
     RUN_TEST(a_face_that_turns_away_makes_a_box_of_a_chord);
     RUN_TEST(base_corners_make_a_box_of_a_chord);
-    RUN_TEST(a_chord_learns_an_end_anew_when_a_face_comes_into_view);
+    RUN_TEST(a_chord_learns_an_end_again_when_a_face_comes_into_view);
     RUN_TEST(a_side_that_lies_across_takes_the_name_of_the_front);
-    RUN_TEST(what_does_not_fit_starts_the_filter_anew);
-    RUN_TEST(what_is_no_phase_changes_nothing);
-    RUN_TEST(what_is_no_phase_starts_the_filter_anew);
-    RUN_TEST(what_is_not_finite_starts_the_filter_anew);
-    RUN_TEST(a_stopped_filters_answer_stands_while_nothing_else_is_known);
-    RUN_TEST(an_answer_stands_while_the_filter_cannot_start);
-    RUN_TEST(a_filter_that_starts_anew_keeps_its_older_answer);
+    RUN_TEST(misfitting_images_start_the_filter_again);
+    RUN_TEST(an_invalid_phase_changes_nothing);
+    RUN_TEST(an_invalid_phase_starts_the_filter_again);
+    RUN_TEST(a_state_that_is_not_finite_starts_the_filter_again);
+    RUN_TEST(a_stopped_filters_answer_stays_while_nothing_else_is_known);
+    RUN_TEST(an_answer_stays_while_the_filter_cannot_start);
+    RUN_TEST(a_filter_that_starts_again_keeps_its_older_answer);
     RUN_TEST(no_other_transition_happens);
     return UNITY_END();
 }

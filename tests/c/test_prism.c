@@ -33,7 +33,7 @@ static void rim_point(const double state[GOE_STATES], size_t side, double at, bo
     const double q = state[GOE_INVERSE_RANGE];
     const double h = (double)sighting.sight.steady_height_m;
     const double half = state[GOE_PRISM_HALF];
-    const double depth = half * exp(state[GOE_PRISM_DEPTH] + state[GOE_PRISM_UNSEEN]);
+    const double depth = half * exp(state[GOE_PRISM_DEPTH] + state[GOE_PRISM_UNOBSERVED]);
     (void)side;
     point[0] = state[GOE_BEARING] - (double)sighting.sight.camera_m.x * q + half * sin(at);
     point[1] = foot ? h * q + state[GOE_GROUND] : h * q - state[GOE_PRISM_TOP];
@@ -100,7 +100,7 @@ static bool is_within_lens(void) {
 }
 
 /* [goe_image_t.box, (R28)]
- * GIVEN a wide lens (k1 = -0.3) THEN a straight side of the raw image, linearised where it touches, is off by less than a
+ * GIVEN a wide lens (k1 = -0.3) THEN a straight side of the raw image, linearized where it touches, is off by less than a
  * tenth of a pixel at 914 px in 98 of 100 sides, and by less than one in all. */
 static void a_lens_is_linearised_where_a_side_touches(void) {
     double truth[GOE_STATES];
@@ -135,14 +135,14 @@ static void a_missing_side_gives_no_row(void) {
     upright_measure(&ellipse, truth, &sides);
     make_rows();
     const float right = sighting.matrix.row[GOE_BOX_RIGHT][GOE_STATE_COLUMN + GOE_BEARING];
-    sides.usable = GOE_SEES_RIGHT;
+    sides.usable = GOE_SIDE_RIGHT;
     make_rows();
     TEST_ASSERT_EQUAL_size_t(1, sighting.rows.count);
     TEST_ASSERT_EQUAL_FLOAT(right, sighting.matrix.row[0][GOE_STATE_COLUMN + GOE_BEARING]);
 }
 
-/* GIVEN an image whose own position is off THEN each row is moved by it as by a camera that stands elsewhere: by the same derivatives
- * that the place has, the other way, and in metres. */
+/* GIVEN an image with an own position error THEN each row moves as by a camera at another place: by the same derivatives
+ * as the place's, in the opposite direction, and in meters. */
 static void an_own_position_error_moves_all_rows(void) {
     double truth[GOE_STATES];
     any = check_random_start("own position");
@@ -266,7 +266,7 @@ static void each_side_has_its_own_memory(void) {
     CHECK_SAME(-2.0f, filter.state[GOE_PRISM_DEPTH]);
 }
 
-/* GIVEN a side whose opposite one is not seen THEN its error, a share of the box's size, is that of the box as it is predicted; and
+/* GIVEN a side whose opposite one is not visible THEN its error, a share of the box's size, is that of the box as it is predicted; and
  * that of a box which the border cuts is larger by the setting. */
 static void a_sides_error_is_a_share_of_the_box(void) {
     double truth[GOE_STATES];
@@ -285,10 +285,10 @@ static void a_sides_error_is_a_share_of_the_box(void) {
             const double seen = ((double)sides.px[first + 2u] - (double)sides.px[first]) / focal;
             for (int alone = 0; alone < 2; alone++) {
                 const double size = alone == 1 ? predicted[first] : seen;
-                sides.usable = (uint8_t)(alone == 1 ? 1u << side : GOE_SEES_BOX);
+                sides.usable = (uint8_t)(alone == 1 ? 1u << side : GOE_SIDES_ALL);
                 for (int cut = 0; cut < 2; cut++) {
                     sides.cut = cut == 1;
-                    sighting.settings.detector.cut_noise = 0.8f;
+                    sighting.settings.detector.truncation_noise_rel = 0.8f;
                     make_rows();
                     const double expected = pixel * pixel + (1.0e-4 + (cut == 1 ? 0.64 : 0.0)) * size * size;
                     CHECK_CLOSE(1.0e-4 * expected, expected, sighting.rows.variance[alone == 1 ? 0 : side]);
@@ -310,32 +310,32 @@ static void see_box(float left, float top, float right, float bottom) {
     sighting.sight.steady_height_m = 20.0f;
     sighting.sight.height_sd_m = 0.5f;
     sighting.sight.sides = &sides;
-    sighting.settings.camera.cx_px = 700.0f; /* not alike along x and y */
+    sighting.settings.camera.cx_px = 700.0f; /* different along x and y */
     sighting.settings.camera.cy_px = 400.0f;
     for (size_t side = 0; side < GOE_BOX_SIDES; side++) {
         sides.px[side] = at[side] * ((side & 1u) != 0u ? camera->fy_px : camera->fx_px) +
                          ((side & 1u) != 0u ? camera->cy_px : camera->cx_px);
     }
-    sides.usable = GOE_SEES_BOX;
+    sides.usable = GOE_SIDES_ALL;
     sides.cut = false;
 }
 
 /* GIVEN a first box THEN the filter starts with the range that its foot gives over flat ground, its near side being nearer than its
  * middle by half the width; or, where that foot is hidden or lies so near to the horizon that errors may have put it there, with
  * the typical size's; with the size and the top that the box shows there; and no state is more certain than that. */
-static void a_start_is_what_one_box_shows(void) {
+static void a_start_matches_one_box(void) {
     goe_triangle_t root;
     float x[GOE_STATES];
     any = check_random_start("start");
     see_box(-0.05f, -0.1f, 0.05f, 0.25f);
-    sighting.settings.navigation.velocity_bias_m_s = 0.1f;
+    sighting.settings.navigation.velocity_bias_sd_m_s = 0.1f;
     memset(x, 0xA5, sizeof x); /* whatever was there before */
     TEST_ASSERT_TRUE(goe_prism_start(&sighting.sight, x, &root));
     for (size_t i = 0; i < 3; i++) {
         CHECK_SAME(0.0f, x[i]);
     }
     CHECK_SAME(0.0f, x[GOE_PRISM_DEPTH]);
-    CHECK_SAME(0.0f, x[GOE_PRISM_UNSEEN]);
+    CHECK_SAME(0.0f, x[GOE_PRISM_UNOBSERVED]);
     const double q = 1.0 / (80.0 * 1.05);
     const double bias = 0.5 * 0.017453292519943295;
     CHECK_CLOSE(1.0e-6, q, x[GOE_INVERSE_RANGE]);
@@ -359,9 +359,9 @@ static void a_start_is_what_one_box_shows(void) {
     sighting.settings.model = GOE_MODEL_DISC; /* which is as deep as wide */
     TEST_ASSERT_TRUE(goe_prism_start(&sighting.sight, x, &root));
     CHECK_CLOSE(1.0, 1000.0, *goe_srif_at(&root, GOE_PRISM_DEPTH, GOE_PRISM_DEPTH));
-    CHECK_CLOSE(1.0, 1000.0, *goe_srif_at(&root, GOE_PRISM_UNSEEN, GOE_PRISM_UNSEEN));
+    CHECK_CLOSE(1.0, 1000.0, *goe_srif_at(&root, GOE_PRISM_UNOBSERVED, GOE_PRISM_UNOBSERVED));
     see_box(-0.05f, -0.1f, 0.05f, 0.25f);
-    sides.usable = GOE_SEES_LEFT | GOE_SEES_RIGHT; /* no foot, no head */
+    sides.usable = GOE_SIDE_LEFT | GOE_SIDE_RIGHT; /* no foot, no head */
     TEST_ASSERT_TRUE(goe_prism_start(&sighting.sight, x, &root));
     CHECK_CLOSE(1.0e-6, 0.1 / 6.0, x[GOE_INVERSE_RANGE]); /* 6 m under 0.1 */
     CHECK_CLOSE(1.0e-6, 20.0 * 0.1 / 6.0, x[GOE_PRISM_TOP]);
@@ -375,7 +375,7 @@ static void a_start_is_what_one_box_shows(void) {
 }
 
 /* GIVEN a box off the axis THEN the state's axes are turned towards its middle, at the middle of its height, or at the horizon where
- * that is not seen; and a box without both of its upright sides turns nothing. */
+ * that is not visible; and a box without both of its upright sides turns nothing. */
 static void the_axes_turn_towards_the_box(void) {
     static const float rolled[9] = {0.8f, -0.6f, 0.0f, 0.6f, 0.8f, 0.0f, 0.0f, 0.0f, 1.0f};
     goe_filter_t filter;
@@ -388,9 +388,9 @@ static void the_axes_turn_towards_the_box(void) {
         view.camera = &sighting.settings.camera;
         memcpy(view.camera_to_trajectory, rolled, sizeof rolled);
         view.sides = sides;
-        view.sides.usable = n == 0   ? GOE_SEES_BOX
-                            : n == 1 ? GOE_SEES_LEFT | GOE_SEES_RIGHT
-                                     : GOE_SEES_LEFT | GOE_SEES_TOP;
+        view.sides.usable = n == 0   ? GOE_SIDES_ALL
+                            : n == 1 ? GOE_SIDE_LEFT | GOE_SIDE_RIGHT
+                                     : GOE_SIDE_LEFT | GOE_SIDE_TOP;
         TEST_ASSERT_EQUAL_INT(n < 2, goe_prism_face(&filter, &view));
         const double x = 0.8 * 0.4 - 0.6 * (n == 0 ? 0.1 : 0.0);
         if (n < 2) {
@@ -400,7 +400,7 @@ static void the_axes_turn_towards_the_box(void) {
     }
 }
 
-/* A flight past a truck whose base corners are seen, by its box, too. Returns the error of Z0 in sigmas; model: what is told. */
+/* A flight past a truck with visible base corners, by its box, too. Returns the error of Z0 in sigmas; model: the reported one. */
 static double fly_with_corners(bool corners, double roll_deg, goe_model_t *model) {
     scene_t scene;
     goe_estimator_t estimator;
@@ -420,7 +420,7 @@ static double fly_with_corners(bool corners, double roll_deg, goe_model_t *model
         image.box = boxed.box;
         image.left.u_px = image.right.u_px = image.top.v_px = 0.0f; /* not read */
         if (!corners) {
-            image.base_left.seen = image.base_near.seen = image.base_right.seen = false;
+            image.base_left.visible = image.base_near.visible = image.base_right.visible = false;
         }
         (void)goe_update(&estimator, &image, &estimate);
     }
@@ -429,8 +429,8 @@ static double fly_with_corners(bool corners, double roll_deg, goe_model_t *model
     return fabs((double)estimate.z0_m - scene.z0_m) / (double)estimate.sigma.z0_m;
 }
 
-/* [A1, goe_box_t.seen, goe_image_t.box, goe_model.c]
- * GIVEN a box and base corners THEN the box stands for left, right and top, and the corners make a box of it; without corners
+/* [A1, goe_box_t.sides, goe_image_t.box, goe_model.c]
+ * GIVEN a box and base corners THEN the box replaces left, right and top, and the corners make a box of it; without corners
  * it is a prism. */
 static void a_box_goes_with_base_corners(void) {
     goe_model_t model;
@@ -442,7 +442,7 @@ static void a_box_goes_with_base_corners(void) {
     TEST_ASSERT_EQUAL_INT(GOE_MODEL_PRISM, model);
 }
 
-/* GIVEN boxes image after image THEN what each side was off by is remembered, and known ever better: it is alike in the next. */
+/* GIVEN boxes image after image THEN the error of each side is estimated, ever better: it is correlated with the next. */
 static void sides_are_remembered_in_flight(void) {
     scene_t scene;
     goe_estimator_t estimator;
@@ -452,8 +452,8 @@ static void sides_are_remembered_in_flight(void) {
     scene.boxes = true;
     scene.image_rate_hz = 5.0;
     goe_settings_t settings = scene_settings(&scene);
-    settings.detector.box_share = 0.07f;
-    settings.detector.correlation_s = 5.0f;
+    settings.detector.box_noise_rel = 0.07f;
+    settings.detector.box_correlation_time_s = 5.0f;
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
     for (int k = 0; k < 20; k++) {
         scene_image(&scene, k, &boxed, NULL);
@@ -536,7 +536,7 @@ static void show_tower(void) {
     goe_camera_t *camera = &sighting.settings.camera;
     memset(camera, 0, sizeof *camera);
     camera->fx_px = camera->fy_px = 1000.0f;
-    sighting.settings.navigation.ground_m = 0.1f;
+    sighting.settings.navigation.terrain_height_sd_m = 0.1f;
     memcpy(sighting.sight.camera_to_axes, level, sizeof level);
     sighting.sight.steady_height_m = 20.0f;
     sighting.sight.height_sd_m = 0.1f;
@@ -545,7 +545,7 @@ static void show_tower(void) {
     sides.px[GOE_BOX_RIGHT] = 30.0f;
     sides.px[GOE_BOX_TOP] = -100.0f;
     sides.px[GOE_BOX_BOTTOM] = 200.0f;
-    sides.usable = GOE_SEES_BOX;
+    sides.usable = GOE_SIDES_ALL;
 }
 
 static bool starts(void) { return goe_prism_start(&sighting.sight, first, &first_root); }
@@ -558,39 +558,39 @@ static double first_range_m(void) {
 static double first_sd(size_t state) { return 1.0 / (double)first_root.element[goe_srif_row(state) + state]; }
 
 /* GIVEN a foot clearly below the horizon THEN the range is that of flat ground, to the middle; width and top follow from it. */
-static void the_ground_tells_the_first_range(void) {
+static void the_ground_gives_the_first_range(void) {
     show_tower();
     CHECK_CLOSE(0.1, 103.0, first_range_m());
     CHECK_CLOSE(1.0e-6, 0.03, first[GOE_PRISM_HALF]);
     CHECK_CLOSE(1.0e-3, 30.3, (double)first[GOE_PRISM_TOP] * first_range_m());
     CHECK_SAME(0.0f, first[GOE_GROUND]);
     CHECK_SAME(0.0f, first[GOE_BEARING]);
-    sides.usable &= (uint8_t)~GOE_SEES_TOP; /* then it is taken to reach as high as the camera */
+    sides.usable &= (uint8_t)~GOE_SIDE_TOP; /* then it is taken to reach as high as the camera */
     CHECK_CLOSE(0.1, 103.0, first_range_m());
     CHECK_CLOSE(1.0e-4, 20.0, (double)first[GOE_PRISM_TOP] / (double)first[GOE_INVERSE_RANGE]);
 }
 
-/* GIVEN a foot that is not seen, or lies too near to the horizon, or a height that says nothing THEN the range is that of the typical
- * size. */
-static void the_typical_size_tells_it_otherwise(void) {
+/* GIVEN an invisible foot, or one too near to the horizon, or a height without information THEN the range is that of the prior
+ * width. */
+static void the_typical_size_gives_another_range(void) {
     show_tower();
-    sighting.settings.refined.typical_size_m = 12.0f;
-    sides.usable &= (uint8_t)~GOE_SEES_BOTTOM;
+    sighting.settings.filter.prior_width_m = 12.0f;
+    sides.usable &= (uint8_t)~GOE_SIDE_BOTTOM;
     CHECK_CLOSE(0.01, 200.0, first_range_m());
     show_tower();
-    sighting.settings.refined.typical_size_m = 12.0f;
+    sighting.settings.filter.prior_width_m = 12.0f;
     sides.px[GOE_BOX_BOTTOM] = 20.0f;
     CHECK_CLOSE(0.01, 200.0, first_range_m());
     show_tower();
-    sighting.settings.refined.typical_size_m = 12.0f;
+    sighting.settings.filter.prior_width_m = 12.0f;
     sighting.sight.steady_height_m = 0.4f;
     CHECK_CLOSE(0.01, 200.0, first_range_m());
     show_tower();
-    sighting.settings.refined.typical_size_m = 12.0f;
+    sighting.settings.filter.prior_width_m = 12.0f;
     sighting.settings.camera.k1 = -100.0f; /* a lens that no ray gives the foot in */
     CHECK_CLOSE(0.01, 200.0, first_range_m());
     show_tower();
-    sighting.settings.refined.typical_size_m = 12.0f;
+    sighting.settings.filter.prior_width_m = 12.0f;
     sighting.settings.camera.k1 = 1.0e-6f; /* ... and one that changes next to nothing */
     CHECK_CLOSE(0.1, 103.0, first_range_m());
 }
@@ -598,47 +598,47 @@ static void the_typical_size_tells_it_otherwise(void) {
 /* GIVEN a first range beyond any obstacle's, or within the camera THEN the filter does not start. */
 static void no_range_is_no_start(void) {
     show_tower();
-    sides.usable &= (uint8_t)~GOE_SEES_BOTTOM;
-    sighting.settings.refined.typical_size_m = 1000.0f;
+    sides.usable &= (uint8_t)~GOE_SIDE_BOTTOM;
+    sighting.settings.filter.prior_width_m = 1000.0f;
     sides.px[GOE_BOX_LEFT] = -0.6f;
     sides.px[GOE_BOX_RIGHT] = 0.6f;
     TEST_ASSERT_TRUE(starts());
     sides.px[GOE_BOX_LEFT] = -0.4f;
     sides.px[GOE_BOX_RIGHT] = 0.4f;
     TEST_ASSERT_FALSE(starts());
-    sighting.settings.refined.typical_size_m = 0.1f;
+    sighting.settings.filter.prior_width_m = 0.1f;
     sides.px[GOE_BOX_LEFT] = -100.0f;
     sides.px[GOE_BOX_RIGHT] = 100.0f;
     TEST_ASSERT_FALSE(starts());
 }
 
-/* GIVEN a height that is as good as not known THEN the first box's foot sets it, if it is seen. */
-static void without_an_altimeter_the_foot_tells_the_height(void) {
+/* GIVEN a height that is as good as not known THEN the first box's foot sets it, if visible. */
+static void without_an_altimeter_the_foot_gives_the_height(void) {
     show_tower();
     sighting.sight.height_sd_m = 100.0f;
-    sighting.settings.refined.typical_size_m = 12.0f;
+    sighting.settings.filter.prior_width_m = 12.0f;
     CHECK_CLOSE(0.01, 200.0, first_range_m());
     CHECK_CLOSE(1.0e-5, 0.2 - 20.0 / 200.0, first[GOE_GROUND]); /* 40 m above the ground, by that range */
-    sides.usable &= (uint8_t)~GOE_SEES_BOTTOM;
+    sides.usable &= (uint8_t)~GOE_SIDE_BOTTOM;
     TEST_ASSERT_TRUE(starts());
     CHECK_SAME(0.0f, first[GOE_GROUND]);
 }
 
-/* GIVEN a disc that was asked for THEN it is as deep as wide, and stays so. */
+/* GIVEN a disc that was configured THEN it is as deep as wide, and stays so. */
 static void a_disc_by_force_has_no_depth_of_its_own(void) {
     show_tower();
     TEST_ASSERT_TRUE(starts());
-    TEST_ASSERT_TRUE(first_sd(GOE_PRISM_DEPTH) > 0.1 && first_sd(GOE_PRISM_UNSEEN) > 1.0);
+    TEST_ASSERT_TRUE(first_sd(GOE_PRISM_DEPTH) > 0.1 && first_sd(GOE_PRISM_UNOBSERVED) > 1.0);
     sighting.settings.model = GOE_MODEL_DISC;
     TEST_ASSERT_TRUE(starts());
-    TEST_ASSERT_TRUE(first_sd(GOE_PRISM_DEPTH) < 0.01 && first_sd(GOE_PRISM_UNSEEN) < 0.01);
+    TEST_ASSERT_TRUE(first_sd(GOE_PRISM_DEPTH) < 0.01 && first_sd(GOE_PRISM_UNOBSERVED) < 0.01);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ errors -- */
 
 /* GIVEN rows of unit noise to which the image's own position error adds one that they share WHEN they are freed of it THEN they are
  * the old ones times the inverse of a Cholesky root of their covariance: none shares anything any more. */
-static void rows_are_freed_of_what_they_share(void) {
+static void rows_are_whitened(void) {
     any = check_random_start("shared shifts");
     for (int n = 0; n < CASES; n++) {
         goe_filter_t filter;
@@ -785,32 +785,32 @@ static void errors_of_an_image_are_checked(void) {
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
     scene_image(&scene, 0, &image, NULL);
     for (int i = 0; i < 3; i++) {
-        image.noise.attitude_deg = bad[i];
+        image.noise.attitude_sd_deg = bad[i];
         CHECK_STATUS(GOE_OUT_OF_RANGE, goe_update(&estimator, &image, &estimate));
     }
-    image.noise.attitude_deg = 0.0f;
+    image.noise.attitude_sd_deg = 0.0f;
     static const float bad_m[] = {-1.0f, 1001.0f};
     static const float bad_px[] = {-1.0f, 101.0f};
     for (int i = 0; i < 2; i++) {
-        image.noise.height_m = bad_m[i];
+        image.noise.height_sd_m = bad_m[i];
         CHECK_STATUS(GOE_OUT_OF_RANGE, goe_update(&estimator, &image, &estimate));
-        image.noise.height_m = 0.0f;
-        image.noise.pixel_px = bad_px[i];
+        image.noise.height_sd_m = 0.0f;
+        image.noise.pixel_sd_px = bad_px[i];
         CHECK_STATUS(GOE_OUT_OF_RANGE, goe_update(&estimator, &image, &estimate));
-        image.noise.pixel_px = 0.0f;
+        image.noise.pixel_sd_px = 0.0f;
     }
-    image.noise.height_m = check_from_bits(0x7FC00000u);
+    image.noise.height_sd_m = check_from_bits(0x7FC00000u);
     CHECK_STATUS(GOE_NOT_FINITE, goe_update(&estimator, &image, &estimate));
     TEST_ASSERT_FALSE(estimator.motion.started);
 #if GOE_WITH_WINDOW
     settings.method = GOE_METHOD_WINDOW;
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
-    CHECK_STATUS(GOE_COLLECTING, goe_update(&estimator, &image, &estimate));
+    CHECK_STATUS(GOE_CONVERGING, goe_update(&estimator, &image, &estimate));
 #endif
 }
 
-/* [goe_intake.c] GIVEN a side of the box that is no number, or out of range THEN the image is refused; one that is not seen is not read. */
-static void every_side_that_is_seen_is_checked(void) {
+/* [goe_intake.c] GIVEN a side of the box that is not finite, or out of range THEN the image is refused; an invisible one is not read. */
+static void every_side_that_is_visible_is_checked(void) {
     scene_t scene;
     goe_estimator_t estimator;
     goe_estimate_t estimate;
@@ -832,7 +832,7 @@ static void every_side_that_is_seen_is_checked(void) {
         float *const px[] = {&image.box.left_px, &image.box.top_px, &image.box.right_px, &image.box.bottom_px};
         scene_image(&scene, 1 + side, &image, NULL);
         *px[side] = check_from_bits(0x7FC00000u);
-        image.box.seen = (uint8_t)(GOE_SEES_BOX & ~(1u << side));
+        image.box.sides = (uint8_t)(GOE_SIDES_ALL & ~(1u << side));
         TEST_ASSERT_TRUE(goe_update(&estimator, &image, &estimate) >= GOE_OK);
     }
 }
@@ -845,12 +845,12 @@ static float height_sigma_with(float first_m, float later_m, goe_model_t model, 
     scene_default(&scene);
     scene.boxes = true;
     goe_settings_t settings = scene_settings(&scene);
-    settings.navigation.ground_m = 0.0f;
+    settings.navigation.terrain_height_sd_m = 0.0f;
     settings.model = model;
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
     for (int k = 0; k < 45; k++) {
         scene_image(&scene, k, &image, NULL);
-        image.noise.height_m = k == 0 ? first_m : later_m;
+        image.noise.height_sd_m = k == 0 ? first_m : later_m;
         (void)goe_update(&estimator, &image, estimate);
     }
     TEST_ASSERT_TRUE(estimate->valid & GOE_HAS_HEIGHT);
@@ -914,7 +914,7 @@ static void the_width_of_slender_things_is_not_confidently_wrong(void) {
     TEST_ASSERT_EQUAL_INT(0, wrong);
 }
 
-/* [goe_image_noise_t.height_m]
+/* [goe_image_noise_t.height_sd_m]
  * GIVEN an image that knows the error of its height THEN it counts in the first image with a box, and in no other. */
 static void a_height_s_own_error_counts_in_the_first_image(void) {
     goe_estimate_t estimate;
@@ -925,9 +925,9 @@ static void a_height_s_own_error_counts_in_the_first_image(void) {
     CHECK_SAME(plain, height_sigma_with(0.0f, 3.0f, GOE_MODEL_AUTO, &estimate));
 }
 
-/* [(R33)] GIVEN the same boxes WHEN a disc is asked for THEN the range is known better: a prism's sigma holds what no image can show of its
+/* [(R33)] GIVEN the same boxes WHEN a disc is configured THEN the range is known better: a prism's sigma includes unobservable
  * depth, and that keeps no answer back. */
-static void a_prism_is_told_with_what_no_image_shows(void) {
+static void a_prism_reports_unobserved_depth(void) {
     goe_estimate_t prism;
     goe_estimate_t disc;
     (void)height_sigma_with(0.0f, 0.0f, GOE_MODEL_AUTO, &prism);
@@ -939,9 +939,9 @@ static void a_prism_is_told_with_what_no_image_shows(void) {
 }
 
 /* [(R33)]
- * GIVEN a share of the range that the whole sigma passes, and what an image can show does not THEN the position is told, with
+ * GIVEN a share of the range between the observable part of the sigma and the whole THEN the position is reported, with
  * the whole sigma. */
-static void what_no_image_shows_keeps_no_answer_back(void) {
+static void unobserved_depth_keeps_no_answer_back(void) {
     static const float share[] = {0.02f, 0.01f};
     scene_t scene;
     goe_estimator_t estimator;
@@ -951,19 +951,19 @@ static void what_no_image_shows_keeps_no_answer_back(void) {
         scene_default(&scene);
         scene.boxes = true;
         goe_settings_t settings = scene_settings(&scene);
-        settings.refined.range_share = share[strict];
+        settings.filter.range_sd_rel_max = share[strict];
         CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
         for (int k = 0; k < 34; k++) {
             scene_image(&scene, k, &image, NULL);
             (void)goe_update(&estimator, &image, &estimate);
         }
-        const bool told = estimate.fresh && estimate.method == GOE_METHOD_REFINED;
-        TEST_ASSERT_EQUAL_INT(strict == 0, told);
-        TEST_ASSERT_TRUE(!told || estimate.sigma.z0_m > share[strict] * estimate.z0_m);
+        const bool reported = estimate.fresh && estimate.method == GOE_METHOD_FILTER;
+        TEST_ASSERT_EQUAL_INT(strict == 0, reported);
+        TEST_ASSERT_TRUE(!reported || estimate.sigma.z0_m > share[strict] * estimate.z0_m);
     }
 }
 
-/* GIVEN a box sooner than 0.08 of the time for which its errors stay alike THEN it adds nothing, and the answer stands; later it
+/* GIVEN a box sooner than 0.08 of the correlation time of its errors THEN it adds nothing, and the answer stays; later it
  * does. */
 static void boxes_that_come_too_soon_are_not_used(void) {
     scene_t scene;
@@ -979,32 +979,32 @@ static void boxes_that_come_too_soon_are_not_used(void) {
         (void)goe_update(&estimator, &image, &estimate);
     }
     TEST_ASSERT_TRUE(estimate.fresh);
-    const int points = estimate.points;
+    const int points = estimate.images_used;
     const int64_t last_us = image.pose.time_us;
-    const float early_s = 0.08f * settings.detector.correlation_s;
+    const float early_s = 0.08f * settings.detector.box_correlation_time_s;
     image.pose.time_us = last_us + (int64_t)((early_s - 0.002f) * 1.0e6f);
-    CHECK_STATUS(GOE_HELD, goe_update(&estimator, &image, &estimate));
+    CHECK_STATUS(GOE_STALE, goe_update(&estimator, &image, &estimate));
     TEST_ASSERT_FALSE(estimate.fresh);
-    TEST_ASSERT_EQUAL_INT(points, estimate.points);
+    TEST_ASSERT_EQUAL_INT(points, estimate.images_used);
     image.pose.time_us = last_us + (int64_t)((early_s + 0.002f) * 1.0e6f);
     CHECK_STATUS(GOE_OK, goe_update(&estimator, &image, &estimate));
-    TEST_ASSERT_EQUAL_INT(points + 1, estimate.points);
+    TEST_ASSERT_EQUAL_INT(points + 1, estimate.images_used);
 }
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(every_side_that_is_seen_is_checked);
+    RUN_TEST(every_side_that_is_visible_is_checked);
     RUN_TEST(the_width_of_slender_things_is_not_confidently_wrong);
     RUN_TEST(a_height_s_own_error_counts_in_the_first_image);
-    RUN_TEST(a_prism_is_told_with_what_no_image_shows);
-    RUN_TEST(what_no_image_shows_keeps_no_answer_back);
+    RUN_TEST(a_prism_reports_unobserved_depth);
+    RUN_TEST(unobserved_depth_keeps_no_answer_back);
     RUN_TEST(boxes_that_come_too_soon_are_not_used);
-    RUN_TEST(the_ground_tells_the_first_range);
-    RUN_TEST(the_typical_size_tells_it_otherwise);
+    RUN_TEST(the_ground_gives_the_first_range);
+    RUN_TEST(the_typical_size_gives_another_range);
     RUN_TEST(no_range_is_no_start);
-    RUN_TEST(without_an_altimeter_the_foot_tells_the_height);
+    RUN_TEST(without_an_altimeter_the_foot_gives_the_height);
     RUN_TEST(a_disc_by_force_has_no_depth_of_its_own);
-    RUN_TEST(rows_are_freed_of_what_they_share);
+    RUN_TEST(rows_are_whitened);
     RUN_TEST(a_shift_far_above_the_noise_makes_no_row_certain);
     RUN_TEST(a_row_far_below_its_shift_counts_less);
     RUN_TEST(the_depth_of_a_body_is_bounded);
@@ -1015,7 +1015,7 @@ int main(void) {
     RUN_TEST(rows_that_share_an_error_are_whitened);
     RUN_TEST(each_side_has_its_own_memory);
     RUN_TEST(a_sides_error_is_a_share_of_the_box);
-    RUN_TEST(a_start_is_what_one_box_shows);
+    RUN_TEST(a_start_matches_one_box);
     RUN_TEST(the_axes_turn_towards_the_box);
     RUN_TEST(sides_are_remembered_in_flight);
     RUN_TEST(a_box_goes_with_base_corners);

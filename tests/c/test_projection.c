@@ -103,7 +103,7 @@ static void the_line_is_exact_everywhere(void) {
         const goe_point_t right = at((x + 0.5 * w * c) / (z - 0.5 * w * s));
         goe_row_t row;
         goe_span_t span;
-        if (x * s + z * c > 0.2 * z) { /* the front is seen, not too flat */
+        if (x * s + z * c > 0.2 * z) { /* the front is visible, not too flat */
             CHECK_STATUS(GOE_OK, goe_projection_line(&left, &right, turn_of(b), &span, &row));
             check_worst(&worst, ((double)row.xi - x / w) * w / z);
             check_worst(&worst, ((double)row.zeta - z / w) * w / z);
@@ -115,7 +115,7 @@ static void the_line_is_exact_everywhere(void) {
     TEST_ASSERT_TRUE(worst < 3.0e-5);
 }
 
-static void a_line_seen_from_its_end_or_from_behind_is_edge_on(void) {
+static void a_line_viewed_from_its_end_or_from_behind_is_edge_on(void) {
     goe_row_t row = {1.25f, 2.5f};
     goe_span_t span;
     const goe_point_t a = at(0.1);
@@ -147,7 +147,7 @@ static void a_virtual_rotation_subtracts_from_the_bearing(void) {
     }
 }
 
-/* [(4)] The limit of the alignment, 0.05 of a unit ray or 87.13 degrees, holds for the turned camera as well. */
+/* [(4)] The limit of the alignment, 0.05 of a unit ray or 87.13 degrees, applies to the turned camera as well. */
 static void a_virtual_rotation_stops_where_the_alignment_does(void) {
     float x = 0.0f;
     const goe_point_t inside = at(tan(27.0 * RAD_PER_DEG));
@@ -163,7 +163,7 @@ int main(void) {
     RUN_TEST(the_disc_size_has_the_error_of_equation_2);
     RUN_TEST(a_disc_needs_left_on_the_left);
     RUN_TEST(the_line_is_exact_everywhere);
-    RUN_TEST(a_line_seen_from_its_end_or_from_behind_is_edge_on);
+    RUN_TEST(a_line_viewed_from_its_end_or_from_behind_is_edge_on);
     RUN_TEST(a_virtual_rotation_subtracts_from_the_bearing);
     RUN_TEST(a_virtual_rotation_stops_where_the_alignment_does);
     return UNITY_END();

@@ -1,4 +1,4 @@
-/* What must hold for every flight: exact recovery, symmetries, invariances. SPDX-License-Identifier: MIT */
+/* Properties of every flight: exact recovery, symmetries, invariances. SPDX-License-Identifier: MIT */
 #include <math.h>
 #include <string.h>
 
@@ -73,7 +73,7 @@ static void check_box(const worst_t *worst) {
     check_report("W, worst relative error", worst->width);
     check_report("L, worst relative error", worst->length);
     check_report("orientation, worst error in degrees", worst->orientation_deg);
-    check_report("centre, worst error in metres", worst->center_m);
+    check_report("center, worst error in meters", worst->center_m);
     check_report("solutions", worst->solutions);
     TEST_ASSERT_TRUE(worst->x0 < 1.0e-3);
     TEST_ASSERT_TRUE(worst->z0 < 1.0e-3);
@@ -207,7 +207,7 @@ static void turning_the_world_changes_nothing_in_the_trajectory_frame(void) {
     }
 }
 
-/* GIVEN one flight WHEN T is given another heading THEN the obstacle's heading in the world, its centre and its size
+/* GIVEN one flight WHEN T is given another heading THEN the obstacle's heading in the world, its center and its size
  * stay: the choice of T is no part of the answer. */
 static void the_heading_in_the_world_does_not_depend_on_the_trajectory_frame(void) {
     scene_t scene;
@@ -236,7 +236,7 @@ static void the_heading_in_the_world_does_not_depend_on_the_trajectory_frame(voi
 
 /* [goe_estimate_t.x0_m]
  * GIVEN a flight WHEN it is mirrored left to right THEN X0 and the orientation change sign and nothing else changes. */
-static void left_and_right_are_alike(void) {
+static void left_and_right_are_equal(void) {
     for (int shape = 0; shape < 2; shape++) {
         for (int path = 0; path < 3; path++) {
             scene_t scene;
@@ -301,8 +301,8 @@ static void doubling_all_lengths_doubles_the_answer(void) {
 }
 
 /* [goe_pose_t.position_ned_m]
- * GIVEN a flight WHEN the origin of NED lies elsewhere THEN nothing changes but the centre, which moves along; far away
- * floats hold positions to 0.1 mm at 1 km and to 4 mm at 100 km, which is what the tolerances grow with. */
+ * GIVEN a flight WHEN the origin of NED lies elsewhere THEN nothing changes but the center, which moves along; far away
+ * floats hold positions to 0.1 mm at 1 km and to 4 mm at 100 km, and the tolerances grow with that. */
 static void the_origin_of_ned_does_not_matter(void) {
     static const double distances_m[] = {100.0, 1000.0, 10000.0, 100000.0};
     static const double tolerances[] = {1.0e-4, 2.0e-4, 2.0e-3, 1.5e-2};
@@ -345,7 +345,7 @@ static void an_estimate_agrees_with_itself(void) {
             CHECK_CLOSE(1.0e-6, cos(radians), e->length_axis[1]);
             CHECK_CLOSE(1.0e-6, cos(radians), e->width_axis[0]);
             CHECK_CLOSE(1.0e-6, -sin(radians), e->width_axis[1]);
-            CHECK_CLOSE(1.0e-4, 90.0f, fabsf(e->other_side_deg - e->orientation_deg));
+            CHECK_CLOSE(1.0e-4, 90.0f, fabsf(e->front_orientation_deg - e->orientation_deg));
         }
         if (e->valid & GOE_HAS_POSITION) {
             CHECK_CLOSE(1.0e-4, e->x0_m - (float)flight[k].truth.dx_m, e->x_m);
@@ -361,7 +361,7 @@ int main(void) {
     RUN_TEST(own_attitude_and_mounting_are_taken_out);
     RUN_TEST(turning_the_world_changes_nothing_in_the_trajectory_frame);
     RUN_TEST(the_heading_in_the_world_does_not_depend_on_the_trajectory_frame);
-    RUN_TEST(left_and_right_are_alike);
+    RUN_TEST(left_and_right_are_equal);
     RUN_TEST(doubling_all_lengths_doubles_the_answer);
     RUN_TEST(the_origin_of_ned_does_not_matter);
     RUN_TEST(an_estimate_agrees_with_itself);

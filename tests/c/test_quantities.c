@@ -1,7 +1,7 @@
-/* What the filter's state means in metres, how certain that is, and what is told of it. SPDX-License-Identifier: MIT
+/* The filter's state in meters, its uncertainty, and the reported quantities. SPDX-License-Identifier: MIT
  *
  * Each variance must be that of the state's covariance, by derivatives that are taken here as differences of the values
- * themselves; to it comes, on purpose, what no image can show. */
+ * themselves; unobservable depth adds to it, on purpose. */
 /* tests: lib/refined/goe_quantities.c */
 #include "refined/goe_quantities.h"
 
@@ -47,8 +47,8 @@ static void make_any(goe_phase_t phase) {
     memset(&filter, 0, sizeof filter);
     memset(&motion, 0, sizeof motion);
     goe_settings_default(&settings);
-    settings.navigation.velocity_bias_m_s = 0.0f;
-    settings.navigation.position_walk_m = 0.0f;
+    settings.navigation.velocity_bias_sd_m_s = 0.0f;
+    settings.navigation.position_walk_sd_m = 0.0f;
     filter.phase = (uint8_t)phase;
     filter.phase_images = 100;
     filter.known = 0xFFu;
@@ -80,7 +80,7 @@ static void make_any(goe_phase_t phase) {
     }
     if (prism) {
         sigma_of[GOE_PRISM_DEPTH] = 0.1;
-        sigma_of[GOE_PRISM_UNSEEN] = 1.0;
+        sigma_of[GOE_PRISM_UNOBSERVED] = 1.0;
     } else if (phase == GOE_PHASE_DISC) {
         filter.state[GOE_SIDE_X] = 0.0f;
         settings.model = GOE_MODEL_DISC; /* a true disc, and asked for: its condition moves nothing */
@@ -184,9 +184,9 @@ static void sight_of(double *x_m, double *z_m) {
     *z_m = 1.0 / q - (double)camera.z;
 }
 
-/* On purpose: the middle of what is no disc may lie apart from the obstacle's, its ends change, and the roof's corner that the top is over
- * lies apart from the middle as well. share: of that, 1 of a chord. */
-/* The square of the sine of the angle under which the top is seen from the camera's height. */
+/* On purpose: the middle of a shape that is no disc may differ from the obstacle's, its ends change, and the roof's corner below the top
+ * is off the middle as well. share: of that, 1 of a chord. */
+/* The square of the sine of the angle under which the top is viewed from the camera's height. */
 static double below2(void) {
     goe_quantities_t q;
     goe_quantities_find(&filter, &settings, &motion, &q);
@@ -223,7 +223,7 @@ static double turned_of(void) {
     return sin(atan2(x_m, z_m) - atan((double)filter.state[GOE_BEARING]));
 }
 
-/* (R41), unless a disc is asked for. */
+/* (R41), unless a disc is configured. */
 static double beyond_prism(int value) {
     const double width = 2.0 * (double)filter.state[GOE_PRISM_HALF] / (double)filter.state[GOE_INVERSE_RANGE];
     const double deeper = fmax(exp((double)filter.state[GOE_PRISM_DEPTH]) - 1.0, 0.0);
@@ -246,7 +246,7 @@ static double beyond_face(int value) {
         case GOE_WIDTH:
             return squared(0.06 * size);
         case GOE_HEIGHT:
-            return squared((settings.refined.top_is_highest ? 2.0 : 0.15) * size) * below2();
+            return squared((settings.filter.top_is_highest ? 2.0 : 0.15) * size) * below2();
         default:
             return squared(0.1 * size);
     }
@@ -264,7 +264,7 @@ static bool is_of_corner(int quantity) { return quantity >= GOE_ORIENTATION && q
 /* -------------------------------------------------------------------------------------------------------------- tests -- */
 
 /* [A30, (R41), (R42)]
- * GIVEN any state of any phase and an own motion that is exact THEN the sigma of each quantity, of the centre in north and east, and
+ * GIVEN any state of any phase and an own motion that is exact THEN the sigma of each quantity, of the center in north and east, and
  * the covariance of the two are those of the state. */
 static void sigmas_are_those_of_the_state(void) {
     any = check_random_start("sigmas");
@@ -294,9 +294,9 @@ static void sigmas_are_those_of_the_state(void) {
     }
 }
 
-/* GIVEN a prism, of which no image shows how deep it is THEN that widens its sigmas, and silences nothing: what is known is decided without
- * it. Of all others what the last state adds is as good as the rest. */
-static void what_no_image_shows_silences_nothing(void) {
+/* GIVEN a prism, of unobservable depth THEN that widens its sigmas, and silences nothing: validity is decided without
+ * it. For all others the contribution of the last state is as good as the rest. */
+static void unobserved_depth_silences_nothing(void) {
     any = check_random_start("unseen");
     for (int n = 0; n < CASES; n++) {
         const goe_phase_t phase = phases[n % 5];
@@ -332,8 +332,8 @@ static double unlikeness_of(double *spread) {
 }
 
 /* [A30, (R39), (R40)]
- * GIVEN a disc that was not asked for THEN by as much as it may be something else its sigmas, its covariance and that of its centre
- * hold what the condition on no skew moves, where the middle and the roof's corner may lie, and how the width may change. */
+ * GIVEN a disc that was not configured THEN its sigmas, its covariance and that of its center include, in proportion to its possible other
+ * shape, the effect of the condition on no skew, the places of the middle and the roof's corner, and the change of the width. */
 static void a_disc_may_be_something_else(void) {
     double most = 0.0;
     double least = 1.0;
@@ -353,8 +353,7 @@ static void a_disc_may_be_something_else(void) {
         most = fmax(most, unlike);
         least = fmin(least, unlike);
         for (int i = 0; i < VALUES; i++) {
-            for (int j = 0; j < VALUES;
-                 j++) { /* the condition takes the skew's part out of a value, as it is seen here */
+            for (int j = 0; j < VALUES; j++) { /* the condition takes the skew's part out of a value, as here */
                 expected[i][j] += by[i][GOE_SIDE_X] * by[j][GOE_SIDE_X] * spread * spread;
             }
             expected[i][i] += beyond(i, unlike, 0.05);
@@ -377,9 +376,9 @@ static void a_disc_may_be_something_else(void) {
 
 static double square_of(float a, float b) { return (double)a * (double)a + (double)b * (double)b; }
 
-/* GIVEN something that is estimated beside the state, as the latency is THEN what the state is uncertain by with it widens the place, in T
- * as in north and east, and the extents that hang on the same states. */
-static void what_is_estimated_beside_the_state_widens(void) {
+/* GIVEN an estimated augmented state, such as the latency THEN its share of the uncertainty of the state widens the place, in T
+ * as in north and east, and the extents that depend on the same states. */
+static void augmented_states_widen_the_sigmas(void) {
     any = check_random_start("beside");
     for (int n = 0; n < CASES; n++) {
         make_any(GOE_PHASE_CHORD);
@@ -404,7 +403,7 @@ static void what_is_estimated_beside_the_state_widens(void) {
     }
 }
 
-/* GIVEN the same THEN the covariance that goe_covariance tells is the state's, too. */
+/* GIVEN the same THEN the covariance that goe_covariance gives is the state's, too. */
 static void covariances_are_those_of_the_state(void) {
     any = check_random_start("covariances");
     for (int n = 0; n < CASES; n++) {
@@ -426,17 +425,17 @@ static void covariances_are_those_of_the_state(void) {
 }
 
 /* GIVEN a state that is exact and an own velocity with a constant error WHEN the aircraft has flown for ten seconds THEN all lengths
- * are off by what the error makes of the path, as no image shows it; a path that leads back on itself is not scaled, but the place is
- * off by what has been added on the way; the walk of the own position moves the place, and from the track's first image on. */
-static void what_the_own_motion_is_off_by_is_in_the_sigmas(void) {
+ * are off by the effect of the error on the path, as no image shows it; a path that leads back on itself is not scaled, but the place is
+ * off by the sum along the way; the walk of the own position moves the place, and from the track's first image on. */
+static void errors_of_own_motion_are_in_the_sigmas(void) {
     any = check_random_start("drift");
     for (int n = 0; n < CASES; n++) {
         const double s = 10.0;
         make_any(phases[n % 5]);
         be_uncertain(CERTAIN);
         filter.inverse.element[goe_inverse_column(GOE_SIDE_X) + GOE_SIDE_X] = 1.0e-6f; /* of a disc's condition */
-        settings.navigation.velocity_bias_m_s = 0.2f;
-        settings.navigation.position_walk_m = 0.1f;
+        settings.navigation.velocity_bias_sd_m_s = 0.2f;
+        settings.navigation.position_walk_sd_m = 0.1f;
         const double path = hypot((double)motion.dx_m - (double)filter.axes.start_dx_m,
                                   (double)motion.dz_m - (double)filter.axes.start_dz_m);
         const bool turned = n % 2 != 0;
@@ -467,9 +466,9 @@ static void what_the_own_motion_is_off_by_is_in_the_sigmas(void) {
     }
 }
 
-/* GIVEN the same THEN that is on the covariance's diagonal alone; with what came before the filter's start for X0 and Z0, but not
- * where a hazard asks, as the camera now has no part in that. */
-static void what_the_own_motion_is_off_by_is_on_the_diagonal(void) {
+/* GIVEN the same THEN that is on the covariance's diagonal alone; for X0 and Z0 including the time before the filter's start, but not
+ * for a hazard, as the camera now has no part in that. */
+static void errors_of_own_motion_are_on_the_diagonal(void) {
     any = check_random_start("drift of covariances");
     for (int n = 0; n < CASES; n++) {
         float now[GOE_QUANTITIES][GOE_QUANTITIES];
@@ -477,8 +476,8 @@ static void what_the_own_motion_is_off_by_is_on_the_diagonal(void) {
         make_any(phases[n % 5]);
         be_uncertain(CERTAIN);
         filter.inverse.element[goe_inverse_column(GOE_SIDE_X) + GOE_SIDE_X] = 1.0e-6f;
-        settings.navigation.velocity_bias_m_s = 0.2f;
-        settings.navigation.position_walk_m = 0.1f;
+        settings.navigation.velocity_bias_sd_m_s = 0.2f;
+        settings.navigation.position_walk_sd_m = 0.1f;
         goe_quantities_find(&filter, &settings, &motion, &quantities);
         goe_quantities_covariance(&filter, &settings, &motion, false, 0.0f, now);
         goe_quantities_covariance(&filter, &settings, &motion, true, 0.0f, ahead);
@@ -493,7 +492,7 @@ static void what_the_own_motion_is_off_by_is_on_the_diagonal(void) {
 }
 
 /* GIVEN a height whose error is the altimeter's alone THEN the height over the ground has it, and the height over the camera has not:
- * it moves both alike. */
+ * it moves both equally. */
 static void the_altimeters_error_is_not_between_camera_and_top(void) {
     float now[GOE_QUANTITIES][GOE_QUANTITIES];
     float ahead[GOE_QUANTITIES][GOE_QUANTITIES];
@@ -520,7 +519,7 @@ static void the_altimeters_error_is_not_between_camera_and_top(void) {
     }
 }
 
-/* GIVEN a box by its outline THEN what an outline misses is added to its edges and orientation; along the side, which is seen at a
+/* GIVEN a box by its outline THEN the unobserved part is added to its edges and orientation; along the side, which is viewed at a
  * small angle, an error of the angle is one of the length. */
 static void an_outline_is_less_certain_than_its_rows_say(void) {
     any = check_random_start("outline");
@@ -540,9 +539,9 @@ static void an_outline_is_less_certain_than_its_rows_say(void) {
         const double pz = 1.0 - (double)camera.z * q;
         const double vx = (double)e.side.along.x / (double)e.side.length;
         const double vz = (double)e.side.along.z / (double)e.side.length;
-        /* how far the camera is beside the box, square to the side; half a front is (FRONT_X / vz) / 2 long */
-        const double beside = fmax(fabs(vz * px - vx * pz) - 0.5 * (double)filter.state[GOE_FRONT_X] / vz, 0.0);
-        const double sine2 = beside * beside / (px * px + pz * pz);
+        /* lateral distance of the camera from the box, square to the side; half a front is (FRONT_X / vz) / 2 long */
+        const double augmented = fmax(fabs(vz * px - vx * pz) - 0.5 * (double)filter.state[GOE_FRONT_X] / vz, 0.0);
+        const double sine2 = augmented * augmented / (px * px + pz * pz);
         const double length = (double)quantities.value[side];
         const double lean = length * 0.04 / sqrt(sine2 + 1.0e-6);
         CHECK_CLOSE(1.0e-3, 0.04, quantities.sigma[GOE_ORIENTATION]);
@@ -556,7 +555,7 @@ static void an_outline_is_less_certain_than_its_rows_say(void) {
     }
 }
 
-/* Residuals that are larger than they should be, and alike from image to image. */
+/* Residuals that are larger than they should be, and correlated from image to image. */
 static void scatter(void) {
     filter.health.mean_nis = (float)between(1.0, 5.0);
     filter.health.excess = (float)between(0.0, 2.0);
@@ -573,8 +572,8 @@ static void sigmas_are_the_roots_of_the_diagonal(void) {
         float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
         make_any(phases[n % 6]);
         settings.model = n % 4 == 0 ? GOE_MODEL_DISC : GOE_MODEL_AUTO;
-        settings.navigation.velocity_bias_m_s = 0.2f;
-        settings.navigation.position_walk_m = 0.1f;
+        settings.navigation.velocity_bias_sd_m_s = 0.2f;
+        settings.navigation.position_walk_sd_m = 0.1f;
         filter.naming.exchanged = n / 6 % 2 != 0;
         filter.state[GOE_SIDE_X] += (float)(between(0.0, 0.1) * (double)filter.state[GOE_FRONT_X]);
         be_uncertain(between(0.1, 2.0));
@@ -589,9 +588,9 @@ static void sigmas_are_the_roots_of_the_diagonal(void) {
     }
 }
 
-/* GIVEN an image THEN what it knows is told only if the image before knew it, too; and what is known hangs on the shares of the
+/* GIVEN an image THEN its quantities are reported only if the image before knew them, too; and validity depends on the shares of the
  * header: a range that is not known to its share hides everything, an extent only itself. */
-static void what_is_told_was_known_twice(void) {
+static void a_reported_value_was_known_twice(void) {
     any = check_random_start("known");
     make_any(GOE_PHASE_BOX);
     be_uncertain(0.1);
@@ -606,17 +605,17 @@ static void what_is_told_was_known_twice(void) {
     goe_quantities_find(&filter, &settings, &motion, &quantities);
     TEST_ASSERT_EQUAL_HEX(0x2Du, quantities.known);
     filter.phase = GOE_PHASE_BOX;
-    filter.state[GOE_INVERSE_RANGE] = -0.01f; /* behind: no metres are made of it */
+    filter.state[GOE_INVERSE_RANGE] = -0.01f; /* behind: no length is computed from it */
     goe_quantities_find(&filter, &settings, &motion, &quantities);
     TEST_ASSERT_EQUAL_HEX(0u, quantities.known);
     TEST_ASSERT_EQUAL_HEX(0u, quantities.now);
     filter.state[GOE_INVERSE_RANGE] = 0.01f;
-    settings.refined.range_share = 1.0e-5f;
+    settings.filter.range_sd_rel_max = 1.0e-5f;
     goe_quantities_find(&filter, &settings, &motion, &quantities);
     TEST_ASSERT_EQUAL_HEX(0u, quantities.known);
 }
 
-/* GIVEN a range that there is none, or one behind, of any model, THEN no metres are made of it: nothing is known, and nothing was
+/* GIVEN an impossible range, or one behind, of any model, THEN no length is computed from it: nothing is known, and nothing was
  * divided by it. */
 static void without_a_range_nothing_is_known(void) {
     static const float none[] = {0.0f, -0.0f, -1.0e-30f, -0.5f};
@@ -633,17 +632,17 @@ static void without_a_range_nothing_is_known(void) {
     }
 }
 
-/* GIVEN an obstacle that is followed WHEN its velocity has carried it farther than any obstacle lies, either way, THEN nothing is told
+/* GIVEN an obstacle that is followed WHEN its velocity has carried it beyond all bounds, either way, THEN nothing is reported
  * of it. */
-static void what_has_moved_beyond_all_bounds_is_not_told(void) {
+static void a_position_beyond_all_bounds_is_not_reported(void) {
     static const float far_m_s[] = {0.0f, 2.0e5f, -2.0e5f};
     any = check_random_start("carried off");
     for (size_t i = 0; i < 9; i++) {
         make_any(GOE_PHASE_CHORD);
         be_uncertain(1.0e-2);
         filter.mover.followed = true;
-        filter.mover.beside[GOE_BESIDE_VELOCITY_X] = far_m_s[i % 3];
-        filter.mover.beside[GOE_BESIDE_VELOCITY_Z] = far_m_s[i / 3];
+        filter.mover.augmented[GOE_AUGMENTED_VELOCITY_X] = far_m_s[i % 3];
+        filter.mover.augmented[GOE_AUGMENTED_VELOCITY_Z] = far_m_s[i / 3];
         goe_quantities_find(&filter, &settings, &motion, &quantities); /* 10 s after the start */
         TEST_ASSERT_EQUAL(i == 0, (quantities.known & GOE_HAS_POSITION) != 0);
     }
@@ -665,18 +664,18 @@ static void a_height_beyond_all_bounds_is_not_reported(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(sigmas_are_those_of_the_state);
-    RUN_TEST(what_no_image_shows_silences_nothing);
+    RUN_TEST(unobserved_depth_silences_nothing);
     RUN_TEST(a_disc_may_be_something_else);
-    RUN_TEST(what_is_estimated_beside_the_state_widens);
+    RUN_TEST(augmented_states_widen_the_sigmas);
     RUN_TEST(covariances_are_those_of_the_state);
-    RUN_TEST(what_the_own_motion_is_off_by_is_in_the_sigmas);
-    RUN_TEST(what_the_own_motion_is_off_by_is_on_the_diagonal);
+    RUN_TEST(errors_of_own_motion_are_in_the_sigmas);
+    RUN_TEST(errors_of_own_motion_are_on_the_diagonal);
     RUN_TEST(the_altimeters_error_is_not_between_camera_and_top);
     RUN_TEST(an_outline_is_less_certain_than_its_rows_say);
     RUN_TEST(sigmas_are_the_roots_of_the_diagonal);
-    RUN_TEST(what_is_told_was_known_twice);
+    RUN_TEST(a_reported_value_was_known_twice);
     RUN_TEST(without_a_range_nothing_is_known);
-    RUN_TEST(what_has_moved_beyond_all_bounds_is_not_told);
+    RUN_TEST(a_position_beyond_all_bounds_is_not_reported);
     RUN_TEST(a_height_beyond_all_bounds_is_not_reported);
     return UNITY_END();
 }

@@ -23,7 +23,7 @@ static void fly_the_worked_example(goe_method_t method, int first) {
     for (int k = 0; k <= 25; k++) { /* 2 m an image */
         goe_image_t image;
         scene_image(&scene, k, &image, NULL);
-        CHECK_STATUS(k < first ? GOE_COLLECTING : GOE_OK, goe_update(&estimator, &image, &estimate));
+        CHECK_STATUS(k < first ? GOE_CONVERGING : GOE_OK, goe_update(&estimator, &image, &estimate));
         if (k >= first) {
             TEST_ASSERT_FLOAT_WITHIN(0.1f, 200.0f, estimate.z0_m);
             TEST_ASSERT_FLOAT_WITHIN(0.02f, -30.0f, estimate.x0_m);
@@ -39,10 +39,10 @@ static void fly_the_worked_example(goe_method_t method, int first) {
     TEST_ASSERT_TRUE(estimate.fresh);
 }
 
-/* [GOE_COLLECTING, GOE_HAS_POSITION, goe_estimate_t.x0_m, goe_estimate_t.x_m, goe_estimate_t.z0_m]
- * The refined method answers once the range is known to 25 %, the window when it is full. */
-static void the_worked_example_of_the_manual(void) { fly_the_worked_example(GOE_METHOD_REFINED, 6); }
-/* [GOE_COLLECTING, goe_estimate_t.z0_m, method] */
+/* [GOE_CONVERGING, GOE_HAS_POSITION, goe_estimate_t.x0_m, goe_estimate_t.x_m, goe_estimate_t.z0_m]
+ * The filter method answers once the range is known to 25 %, the window when it is full. */
+static void the_worked_example_of_the_manual(void) { fly_the_worked_example(GOE_METHOD_FILTER, 6); }
+/* [GOE_CONVERGING, goe_estimate_t.z0_m, method] */
 static void the_worked_example_by_the_window(void) { fly_the_worked_example(GOE_METHOD_WINDOW, 7); }
 
 int main(void) {

@@ -1,4 +1,4 @@
-/* How well the images fit, and when the filter has to start anew. SPDX-License-Identifier: MIT */
+/* How well the images fit, and when the filter has to start again. SPDX-License-Identifier: MIT */
 /* tests: lib/refined/goe_health.c */
 #include "refined/goe_health.h"
 
@@ -44,15 +44,15 @@ static bool judge(unsigned refused) { return goe_health_judge(&filter, &settings
 
 /* ------------------------------------------------------------------------------------------------------------- means -- */
 
-/* [GOE_REASON_NOISE, goe_estimate_t.misfit]
- * GIVEN images whose NIS is that of their rows THEN the misfit is their mean with eight zeros before, of 64 images from then on. */
+/* [GOE_REASON_NOISE, goe_estimate_t.nis_ratio]
+ * GIVEN images whose NIS is that of their rows THEN the NIS ratio is their mean with eight zeros before, of 64 images from then on. */
 static void the_misfit_begins_with_eight_zeros_and_remembers_64_images(void) {
     double expected = 0.0;
     for (int n = 1; n <= 200; n++) {
-        const int heard = n + SEEDS < MEAN_IMAGES ? n + SEEDS : MEAN_IMAGES;
+        const int counted = n + SEEDS < MEAN_IMAGES ? n + SEEDS : MEAN_IMAGES;
         const float ratio = n > 100 ? 2.0f : 1.0f;
         take(ratio);
-        expected += ((double)ratio - expected) / heard;
+        expected += ((double)ratio - expected) / counted;
         CHECK_CLOSE(1.0e-5, expected, filter.health.mean_nis);
         if (n == 24) {
             CHECK_CLOSE(1.0e-5, 24.0 / 32.0, filter.health.mean_nis);
@@ -88,7 +88,7 @@ static void one_image_does_not_decide(void) {
     TEST_ASSERT_EQUAL_INT(0, filter.health.images);
 }
 
-/* [goe_estimate_t.points] */
+/* [goe_estimate_t.images_used] */
 static void the_count_of_images_saturates(void) {
     filter.health.images = INT16_MAX - 1;
     take(1.0f);
@@ -99,9 +99,9 @@ static void the_count_of_images_saturates(void) {
 
 /* ---------------------------------------------------------------------------------------------------------- recovery -- */
 
-/* [T1] GIVEN one point that is refused in 4 images in a row, of a chord in 8 THEN the filter starts anew; an image between in which it
+/* [T1] GIVEN one point that is refused in 4 images in a row, of a chord in 8 THEN the filter starts again; an image between in which it
  * fits begins the count again, one in which it is not measured does not. */
-static void a_point_refused_again_and_again_starts_the_filter_anew(void) {
+static void a_point_refused_again_and_again_starts_the_filter_again(void) {
     for (int chord = 0; chord < 2; chord++) {
         const int most = chord > 0 ? 8 : 4;
         setUp();
@@ -113,16 +113,16 @@ static void a_point_refused_again_and_again_starts_the_filter_anew(void) {
         for (int i = 1; i < most; i++) {
             TEST_ASSERT_FALSE(judge(LEFT));
         }
-        goe_verdict_t unseen = verdict_of(0u);
-        unseen.measured = ALL & ~LEFT;
-        TEST_ASSERT_FALSE(goe_health_judge(&filter, &settings, unseen));
+        goe_verdict_t undetected = verdict_of(0u);
+        undetected.measured = ALL & ~LEFT;
+        TEST_ASSERT_FALSE(goe_health_judge(&filter, &settings, undetected));
         TEST_ASSERT_TRUE(judge(LEFT));
         TEST_ASSERT_EQUAL_UINT8(0u, filter.health.refused[GOE_POINT_LEFT]);
     }
 }
 
 /* [T1] */
-static void half_of_the_points_refused_three_times_start_the_filter_anew(void) {
+static void half_of_the_points_refused_three_times_start_the_filter_again(void) {
     TEST_ASSERT_FALSE(judge(HALF));
     TEST_ASSERT_FALSE(judge(HALF));
     TEST_ASSERT_FALSE(judge(0u));
@@ -132,7 +132,7 @@ static void half_of_the_points_refused_three_times_start_the_filter_anew(void) {
 }
 
 /* [T1] */
-static void images_that_do_not_fit_start_the_filter_anew(void) {
+static void images_that_do_not_fit_start_the_filter_again(void) {
     filter.health.recent_nis = 6.0f;
     TEST_ASSERT_FALSE(judge(0u));
     filter.health.recent_nis = 6.01f;
@@ -145,7 +145,7 @@ static void images_that_do_not_fit_start_the_filter_anew(void) {
 }
 
 /* [T1] */
-static void a_state_of_no_obstacle_starts_the_filter_anew(void) {
+static void a_state_of_no_obstacle_starts_the_filter_again(void) {
     filter.state[GOE_FRONT_X] = 0.0f;
     TEST_ASSERT_TRUE(judge(0u));
     setUp();
@@ -179,7 +179,7 @@ static void fail_once(void) {
 
 /* [GOE_REASON_BASE]
  * GIVEN a box of base corners that fails twice, late in its track THEN these are given up; a disc's failures, a box's in the first
- * 32 images, or one that was asked for, say nothing of them. */
+ * 32 images, or those of a configured box, are no evidence about them. */
 static void base_corners_that_fail_twice_are_given_up(void) {
     for (int phase = GOE_PHASE_DISC; phase <= GOE_PHASE_BOX_OUTLINE; phase++) {
         for (int late = 0; late < 2; late++) {
@@ -199,7 +199,7 @@ static void base_corners_that_fail_twice_are_given_up(void) {
 }
 
 /* [GOE_REASON_CONVENTION]
- * GIVEN two restarts within 24 images THEN what is given does not belong together; farther apart they are an outlier's. */
+ * GIVEN two restarts within 24 images THEN the inputs contradict each other; farther apart they are an outlier's. */
 static void two_restarts_soon_are_one_too_many(void) {
     for (int between = 22; between < 26; between++) {
         setUp();
@@ -218,10 +218,10 @@ int main(void) {
     RUN_TEST(the_misfit_begins_with_eight_zeros_and_remembers_64_images);
     RUN_TEST(one_image_does_not_decide);
     RUN_TEST(the_count_of_images_saturates);
-    RUN_TEST(a_point_refused_again_and_again_starts_the_filter_anew);
-    RUN_TEST(half_of_the_points_refused_three_times_start_the_filter_anew);
-    RUN_TEST(images_that_do_not_fit_start_the_filter_anew);
-    RUN_TEST(a_state_of_no_obstacle_starts_the_filter_anew);
+    RUN_TEST(a_point_refused_again_and_again_starts_the_filter_again);
+    RUN_TEST(half_of_the_points_refused_three_times_start_the_filter_again);
+    RUN_TEST(images_that_do_not_fit_start_the_filter_again);
+    RUN_TEST(a_state_of_no_obstacle_starts_the_filter_again);
     RUN_TEST(a_top_that_is_refused_is_freed);
     RUN_TEST(base_corners_that_fail_twice_are_given_up);
     RUN_TEST(two_restarts_soon_are_one_too_many);

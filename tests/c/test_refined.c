@@ -1,4 +1,4 @@
-/* The refined method through the public calls. SPDX-License-Identifier: MIT */
+/* The filter method through the public calls. SPDX-License-Identifier: MIT */
 #include <math.h>
 #include <string.h>
 
@@ -10,7 +10,7 @@
 #define IMAGES 44 /* of a flight towards an obstacle 100 m ahead, 2 m each */
 #define BOX_BITS 0x3Fu
 #define DISC_BITS (GOE_HAS_POSITION | GOE_HAS_WIDTH | GOE_HAS_HEIGHT | GOE_HAS_CENTER)
-#define RESETS 0 /* in causes */
+#define RESETS 0 /* in fault_counts */
 #define TOP 2    /* feature, in the order of goe_image_t */
 #define RAD_PER_DEG 0.017453292519943295
 
@@ -21,7 +21,7 @@ static goe_estimate_t estimate;
 static goe_image_t image;
 static check_random_t any;
 
-/* A truck whose two faces are seen, past which the aircraft weaves. */
+/* A truck whose two faces are visible, past which the aircraft weaves. */
 void setUp(void) {
     scene_default(&scene);
     scene.width_m = 4.0;
@@ -74,7 +74,7 @@ static double folded(double deg) { return deg > 90.0 ? deg - 180.0 : deg <= -90.
 
 /* The six quantities in the order of goe_covariance. A box whose side edge lies more across than along is the box whose side
  * is the other edge, and whose front is the face next to it: the estimate's orientation says which one is meant. */
-static void tell_truth(double truth[GOE_QUANTITIES]) {
+static void give_truth(double truth[GOE_QUANTITIES]) {
     const double s = sin(scene.alpha_deg * RAD_PER_DEG);
     const double c = cos(scene.alpha_deg * RAD_PER_DEG);
     const double half_w = 0.5 * scene.width_m;
@@ -91,7 +91,7 @@ static void tell_truth(double truth[GOE_QUANTITIES]) {
     }
 }
 
-static void tell_answer(float value[GOE_QUANTITIES], float sigma[GOE_QUANTITIES]) {
+static void set_answer(float value[GOE_QUANTITIES], float sigma[GOE_QUANTITIES]) {
     const goe_estimate_t *e = &estimate;
     const float values[] = {e->x0_m, e->z0_m, e->orientation_deg, e->width_m, e->length_m, e->height_m};
     const float sigmas[] = {e->sigma.x0_m,    e->sigma.z0_m,     e->sigma.orientation_deg,
@@ -111,8 +111,8 @@ static void check_truth(double sigmas, double share) {
     double truth[GOE_QUANTITIES];
     float value[GOE_QUANTITIES];
     float sigma[GOE_QUANTITIES];
-    tell_truth(truth);
-    tell_answer(value, sigma);
+    give_truth(truth);
+    set_answer(value, sigma);
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         if (is_valid(i)) {
             const double scale = i == GOE_X0 ? truth[GOE_Z0] : i == GOE_ORIENTATION ? 90.0 : truth[i];
@@ -127,7 +127,7 @@ static void check_truth(double sigmas, double share) {
 static void check_center(void) {
     scene_truth_t truth;
     double quantity[GOE_QUANTITIES];
-    tell_truth(quantity);
+    give_truth(quantity);
     scene_image(&scene, IMAGES - 1, &image, &truth);
     CHECK_CLOSE(0.01, truth.center_north_m, estimate.center_north_m);
     CHECK_CLOSE(0.01, truth.center_east_m, estimate.center_east_m);
@@ -137,7 +137,7 @@ static void check_center(void) {
 
 /* [A1, A8, GOE_HAS_ORIENTATION, goe_estimate_t.center_north_m, goe_estimate_t.height_m, goe_estimate_t.length_m,
  * goe_estimate_t.orientation_deg, goe_estimate_t.width_m, goe_estimate_t.x0_m, goe_image_t.top, goe_refined.c]
- * GIVEN boxes of any orientation on either side WHEN nothing but rounding is wrong THEN all six quantities and the centre
+ * GIVEN boxes of any orientation on either side WHEN nothing but rounding is wrong THEN all six quantities and the center
  * come out to 1e-4, whichever edge is called the side. */
 static void boxes_come_out_as_they_are(void) {
     static const double aside_m[] = {-25.0, -12.0, 15.0};
@@ -148,7 +148,7 @@ static void boxes_come_out_as_they_are(void) {
                 scene.path = (scene_path_t)path;
                 scene.x0_m = aside_m[i];
                 scene.alpha_deg = alpha_deg;
-                scene_tell_no_noise(&settings);
+                scene_clear_noise(&settings);
                 start();
                 CHECK_STATUS(GOE_OK, fly(0, IMAGES));
                 TEST_ASSERT_EQUAL_INT(GOE_MODEL_BOX, estimate.model);
@@ -173,7 +173,7 @@ static void cylinders_come_out_as_they_are(void) {
             scene.x0_m = aside_m[i % 3];
             scene.height_m = height_m[i / 3];
             scene.width_m = 1.5 + 3.0 * i; /* the first guess, of 6 m, is never right */
-            scene_tell_no_noise(&settings);
+            scene_clear_noise(&settings);
             start();
             CHECK_STATUS(GOE_OK, fly(0, IMAGES));
             TEST_ASSERT_EQUAL_INT(GOE_MODEL_DISC, estimate.model);
@@ -191,16 +191,16 @@ static void sigmas_shrink_with_every_image(void) {
     float value[GOE_QUANTITIES];
     float sigma[GOE_QUANTITIES];
     float first = 0.0f;
-    settings.navigation.velocity_bias_m_s = 0.0f;
-    settings.navigation.position_walk_m = 0.0f;
+    settings.navigation.velocity_bias_sd_m_s = 0.0f;
+    settings.navigation.position_walk_sd_m = 0.0f;
     start();
     fly(0, 6);
     TEST_ASSERT_EQUAL_INT(GOE_MODEL_BOX, estimate.model);
-    tell_answer(value, before);
+    set_answer(value, before);
     first = before[GOE_Z0];
     for (int k = 6; k < IMAGES; k++) {
         fly(k, k + 1);
-        tell_answer(value, sigma);
+        set_answer(value, sigma);
         for (int i = 0; i < GOE_QUANTITIES; i++) {
             if (before[i] > 0.0f) {
                 TEST_ASSERT_TRUE(sigma[i] > 0.0f && sigma[i] <= 1.02f * before[i]);
@@ -211,7 +211,7 @@ static void sigmas_shrink_with_every_image(void) {
     TEST_ASSERT_TRUE(sigma[GOE_Z0] < 0.1f * first);
 }
 
-/* What the next image adds to the information on the range, with the range known to `share` of itself as far as linearising at it goes. */
+/* Information of the next image on the range, with the range known to `share` of itself for the linearization. */
 static double information_gained(const goe_estimator_t *before, double share) {
     estimator = *before;
     float *v = estimator.filter.inverse.element;
@@ -232,14 +232,14 @@ static double information_gained(const goe_estimator_t *before, double share) {
 }
 
 /* [goe_refined.c]
- * GIVEN a range that is hardly known WHEN an image comes after a good part of the way THEN it tells less of it than the same image where
- * the range is known: what the state is linearised at may be wrong by then. */
+ * GIVEN a range that is hardly known WHEN an image comes after a good part of the way THEN it gives less information than the same image
+ * where the range is known: the linearization point may be wrong by then. */
 static void an_uncertain_range_makes_an_image_count_less(void) {
     scene_make_cylinder(&scene);
     start();
-    settings.refined.gate_sigma = 100.0f;
-    settings.refined.huber_sigma = 100.0f;
-    settings.navigation.position_walk_m = 0.0f; /* no time takes information away */
+    settings.filter.gate_sigma = 100.0f;
+    settings.filter.huber_sigma = 100.0f;
+    settings.navigation.position_walk_sd_m = 0.0f; /* no time takes information away */
     start();
     (void)fly(0, 30);
     const goe_estimator_t before = estimator;
@@ -252,7 +252,7 @@ static void an_uncertain_range_makes_an_image_count_less(void) {
 }
 
 /* GIVEN a flight WHEN it is mirrored THEN X0 and orientation change sign and nothing else changes. */
-static void left_and_right_are_alike(void) {
+static void left_and_right_are_equal(void) {
     for (int shape = 0; shape < 2; shape++) {
         setUp();
         if (shape > 0) {
@@ -279,29 +279,29 @@ static void left_and_right_are_alike(void) {
     }
 }
 
-/* GIVEN a camera that is mounted half a degree off in pitch and yaw and does not know it WHEN a box on flat ground is passed
- * THEN range, height and size come out all the same, because the images show the error; a filter that is told there is none
+/* GIVEN a camera that is mounted half a degree off in pitch and yaw, within the settings, WHEN a box on flat ground is passed
+ * THEN range, height and size are still right, because the images show the error; a filter configured without this error
  * answers worse, and shows it. */
 static void a_constant_attitude_error_is_taken_out(void) {
-    float misfit[2];
+    float nis_ratio[2];
     double error_m[2];
     for (int known = 0; known < 2; known++) {
         setUp();
         scene.camera.mount_pitch_deg = 0.5f;
         scene.camera.mount_yaw_deg = -0.4f;
-        scene_tell_no_noise(&settings);
-        settings.detector.point_px = 0.1f;
-        settings.navigation.attitude_bias_deg = known > 0 ? 0.5f : 1.0e-3f;
+        scene_clear_noise(&settings);
+        settings.detector.point_noise_px = 0.1f;
+        settings.navigation.attitude_bias_sd_deg = known > 0 ? 0.5f : 1.0e-3f;
         CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
         fly(0, IMAGES);
-        misfit[known] = estimate.misfit;
+        nis_ratio[known] = estimate.nis_ratio;
         error_m[known] = fabs((double)estimate.z0_m - scene.z0_m);
         if (known > 0) {
             TEST_ASSERT_EQUAL_HEX32(BOX_BITS, estimate.valid);
             check_truth(3.0, 0.01);
         }
     }
-    TEST_ASSERT_TRUE(misfit[1] < 1.0f && misfit[0] > 2.0f);
+    TEST_ASSERT_TRUE(nis_ratio[1] < 1.0f && nis_ratio[0] > 2.0f);
     TEST_ASSERT_TRUE(error_m[0] > 3.0 * error_m[1]);
 }
 
@@ -327,7 +327,7 @@ static double whitened_square(int n, double c[GOE_QUANTITIES][GOE_QUANTITIES], d
     return sum;
 }
 
-/* Checks what goe.h says of the covariance, and returns the normalised square of the estimate's error. */
+/* Checks goe.h's rules of the covariance, and returns the normalized square of the estimate's error. */
 static double check_covariance(int *freedoms) {
     float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
     double c[GOE_QUANTITIES][GOE_QUANTITIES];
@@ -338,8 +338,8 @@ static double check_covariance(int *freedoms) {
     int n = 0;
     int kept[GOE_QUANTITIES];
     CHECK_STATUS(GOE_OK, goe_covariance(&estimator, covariance));
-    tell_truth(truth);
-    tell_answer(value, sigma);
+    give_truth(truth);
+    set_answer(value, sigma);
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         for (int j = 0; j < GOE_QUANTITIES; j++) {
             CHECK_SAME(covariance[i][j], covariance[j][i]);
@@ -369,7 +369,7 @@ static double check_covariance(int *freedoms) {
 }
 
 /* [GOE_X0, goe_covariance, goe_covariance.c, goe_shape.c, (R22)] */
-static void the_covariance_is_positive_and_holds_the_sigmas(void) {
+static void the_covariance_is_positive_and_contains_the_sigmas(void) {
     int freedoms;
     any = check_random_start("covariance");
     for (int shape = 0; shape < 2; shape++) {
@@ -390,7 +390,7 @@ static void the_covariance_is_positive_and_holds_the_sigmas(void) {
 
 typedef struct {
     int runs, valid[GOE_QUANTITIES], within[GOE_QUANTITIES], suspects;
-    double nees, freedoms, misfit;
+    double nees, freedoms, nis_ratio;
 } honesty_t;
 
 static void fly_once(honesty_t *honesty, double sigma_px) {
@@ -400,24 +400,24 @@ static void fly_once(honesty_t *honesty, double sigma_px) {
     int freedoms;
     start();
     fly_noisily(0, IMAGES, sigma_px);
-    tell_truth(truth);
-    tell_answer(value, sigma);
+    give_truth(truth);
+    set_answer(value, sigma);
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         honesty->valid[i] += is_valid(i) ? 1 : 0;
         honesty->within[i] += is_valid(i) && fabs((double)value[i] - truth[i]) < 2.0 * (double)sigma[i] ? 1 : 0;
     }
     honesty->nees += check_covariance(&freedoms);
     honesty->freedoms += freedoms;
-    honesty->misfit += (double)estimate.misfit;
+    honesty->nis_ratio += (double)estimate.nis_ratio;
     honesty->suspects += estimate.suspect ? 1 : 0;
     honesty->runs++;
 }
 
 /* [A1, A2, goe_covariance, goe_estimate_t.sigma, goe_estimate_t.suspect, goe_quantities.c, (R24)]
- * GIVEN 80 boxes and 80 cylinders, Gaussian noise of 0.5 px and nothing else wrong, and told so THEN the truth lies within
+ * GIVEN 80 boxes and 80 cylinders, Gaussian noise of 0.5 px and nothing else wrong, and configured so THEN the truth lies within
  * 2 sigma in 88 % of the flights or more for each quantity, the error squared by the covariance is that of its number of
- * quantities (of cylinders 3/4 of it: a little too careful), the innovations are as told, and none is suspected. */
-static void sigmas_tell_the_error(void) {
+ * quantities (of cylinders 3/4 of it: a little too careful), the innovations are as configured, and none is suspected. */
+static void sigmas_cover_the_error(void) {
     any = check_random_start("honesty");
     for (int shape = 0; shape < 2; shape++) {
         honesty_t honesty;
@@ -434,13 +434,13 @@ static void sigmas_tell_the_error(void) {
             }
             scene.x0_m = check_random_between(&any, -30.0, 30.0);
             scene.path = (scene_path_t)(n % 3);
-            scene_tell_no_noise(&settings);
-            settings.detector.point_px = 0.5f;
+            scene_clear_noise(&settings);
+            settings.detector.point_noise_px = 0.5f;
             fly_once(&honesty, 0.5);
         }
         check_report(shape > 0 ? "cylinders: NEES over freedoms" : "boxes: NEES over freedoms",
                      honesty.nees / honesty.freedoms);
-        check_report("misfit", honesty.misfit / honesty.runs);
+        check_report("nis_ratio", honesty.nis_ratio / honesty.runs);
         for (int i = 0; i < GOE_QUANTITIES; i++) {
             if (honesty.valid[i] > 0) {
                 check_report("share within 2 sigma", (double)honesty.within[i] / honesty.valid[i]);
@@ -449,7 +449,7 @@ static void sigmas_tell_the_error(void) {
         }
         TEST_ASSERT_TRUE(honesty.freedoms >= (shape > 0 ? 3.9 : 5.5) * honesty.runs);
         TEST_ASSERT_TRUE(honesty.nees < 1.35 * honesty.freedoms && honesty.nees > 0.5 * honesty.freedoms);
-        TEST_ASSERT_TRUE(honesty.misfit < 1.1 * honesty.runs && honesty.misfit > 0.6 * honesty.runs);
+        TEST_ASSERT_TRUE(honesty.nis_ratio < 1.1 * honesty.runs && honesty.nis_ratio > 0.6 * honesty.runs);
         TEST_ASSERT_EQUAL_INT(0, honesty.suspects);
     }
 }
@@ -469,7 +469,7 @@ static void jump_by_then(bool known) {
 
 /* [goe_pose_t.reset_delta_known]
  * GIVEN a straight flight of which all positions are exact floats WHEN the autopilot's filter jumps by a known delta THEN the
- * answer is the same in all bits but for the centre, which moves along. */
+ * answer is the same in all bits but for the center, which moves along. */
 static void a_known_jump_is_compensated(void) {
     scene.path = SCENE_STRAIGHT;
     start();
@@ -491,16 +491,16 @@ static void a_known_jump_is_compensated(void) {
     CHECK_SAME(plain.height_m, estimate.height_m);
     CHECK_SAME(plain.orientation_deg, estimate.orientation_deg);
     CHECK_SAME(plain.sigma.z0_m, estimate.sigma.z0_m);
-    CHECK_SAME(plain.misfit, estimate.misfit);
-    TEST_ASSERT_EQUAL_INT(plain.points, estimate.points);
+    CHECK_SAME(plain.nis_ratio, estimate.nis_ratio);
+    TEST_ASSERT_EQUAL_INT(plain.images_used, estimate.images_used);
     CHECK_CLOSE(1.0e-4, plain.center_north_m + jump[0], estimate.center_north_m);
     CHECK_CLOSE(1.0e-4, plain.center_east_m + jump[1], estimate.center_east_m);
-    TEST_ASSERT_EQUAL_UINT32(0u, estimator.causes[RESETS]);
+    TEST_ASSERT_EQUAL_UINT32(0u, estimator.fault_counts[RESETS]);
 }
 
 /* [goe_pose_t.reset_delta_known]
- * GIVEN an answer that is old WHEN the filter jumps by a known delta, and nothing is seen THEN the centre moves along. */
-static void a_jump_moves_an_old_centre_along(void) {
+ * GIVEN an answer that is old WHEN the filter jumps by a known delta, and nothing is detected THEN the center moves along. */
+static void a_jump_moves_an_old_center_along(void) {
     start();
     fly(0, 25);
     const goe_estimate_t before = estimate;
@@ -508,15 +508,15 @@ static void a_jump_moves_an_old_centre_along(void) {
     scene_image(&scene, 25, &image, NULL);
     jump_by_then(true);
     for (int i = 0; i < 6; i++) {
-        pixel(i)->seen = false;
+        pixel(i)->visible = false;
     }
-    CHECK_STATUS(GOE_NOTHING_SEEN, update());
+    CHECK_STATUS(GOE_NO_DETECTION, update());
     CHECK_CLOSE(1.0e-4, before.center_north_m + jump[0], estimate.center_north_m);
     CHECK_CLOSE(1.0e-4, before.center_east_m + jump[1], estimate.center_east_m);
 }
 
 /* [A22, goe_pose_t.reset_delta_known] GIVEN a jump of unknown size THEN the track is that of an estimator which starts with this image. */
-static void an_unknown_jump_starts_anew(void) {
+static void an_unknown_jump_starts_again(void) {
     goe_estimator_t fresh;
     goe_estimate_t from_fresh;
     start();
@@ -531,9 +531,9 @@ static void an_unknown_jump_starts_anew(void) {
         const goe_status_t status = update();
         CHECK_STATUS(goe_update(&fresh, &image, &from_fresh), status);
         TEST_ASSERT_EQUAL_MEMORY(&from_fresh, &estimate, sizeof estimate);
-        TEST_ASSERT_TRUE(estimate.points <= k - 19);
+        TEST_ASSERT_TRUE(estimate.images_used <= k - 19);
     }
-    TEST_ASSERT_EQUAL_UINT32(1u, estimator.causes[RESETS]);
+    TEST_ASSERT_EQUAL_UINT32(1u, estimator.fault_counts[RESETS]);
 }
 
 /* [A7] */
@@ -543,7 +543,7 @@ static void a_reset_forgets_the_track(void) {
     CHECK_STATUS(GOE_OK, goe_reset(&estimator));
     TEST_ASSERT_EQUAL_INT(0, estimator.filter.phase);
     float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
-    CHECK_STATUS(GOE_COLLECTING, goe_covariance(&estimator, covariance));
+    CHECK_STATUS(GOE_CONVERGING, goe_covariance(&estimator, covariance));
     fly(0, 20);
     const goe_estimate_t again = estimate;
     start();
@@ -556,8 +556,8 @@ static void a_reset_forgets_the_track(void) {
 /* [goe_refined.c, (R16)] GIVEN single wild points WHEN they come now and then THEN the answer hardly moves. */
 static void single_outliers_are_left_out(void) {
     any = check_random_start("outliers");
-    scene_tell_no_noise(&settings);
-    settings.detector.point_px = 0.5f;
+    scene_clear_noise(&settings);
+    settings.detector.point_noise_px = 0.5f;
     start();
     for (int k = 0; k < IMAGES; k++) {
         scene_image(&scene, k, &image, NULL);
@@ -583,8 +583,8 @@ static void a_track_that_began_with_an_outlier_recovers(void) {
                 if (shape > 0) {
                     scene_make_cylinder(&scene);
                 }
-                scene_tell_no_noise(&settings);
-                settings.detector.point_px = 0.5f;
+                scene_clear_noise(&settings);
+                settings.detector.point_noise_px = 0.5f;
                 start();
                 for (int k = 0; k < IMAGES; k++) {
                     scene_image(&scene, k, &image, NULL);
@@ -603,7 +603,7 @@ static void a_track_that_began_with_an_outlier_recovers(void) {
 }
 
 /* [T2] GIVEN a detector that finds another top from an image on, 3 m higher WHEN that was refused for a while THEN the height
- * follows, and neither the track nor the range starts anew. */
+ * follows, and neither the track nor the range starts again. */
 static void another_top_costs_the_height_alone(void) {
     any = check_random_start("another top");
     start();
@@ -621,11 +621,11 @@ static void another_top_costs_the_height_alone(void) {
 }
 
 /* [goe_refined.c]
- * GIVEN an attitude whose error drifts WHEN nothing is seen for a while THEN each of the biases is less certain by the variance of a
+ * GIVEN an attitude whose error drifts WHEN nothing is detected for a while THEN each of the biases is less certain by the variance of a
  * random walk over that time, and the gate counts with it before the filter is inverted again. */
 static void the_attitude_s_error_drifts_with_time(void) {
     const double drift_rad = 0.2 * RAD_PER_DEG; /* per root second */
-    settings.navigation.attitude_drift_deg = 0.2f;
+    settings.navigation.attitude_walk_sd_deg = 0.2f;
     start();
     fly(0, 20);
     goe_filter_t before = estimator.filter;
@@ -633,9 +633,9 @@ static void the_attitude_s_error_drifts_with_time(void) {
     for (int k = 20; k < 36; k++) {
         scene_image(&scene, k, &image, NULL);
         for (int i = 0; i < 6; i++) {
-            pixel(i)->seen = false;
+            pixel(i)->visible = false;
         }
-        CHECK_STATUS(GOE_NOTHING_SEEN, update());
+        CHECK_STATUS(GOE_NO_DETECTION, update());
     }
     const double gained = drift_rad * drift_rad * 16.0 / scene.image_rate_hz;
     goe_filter_t after = estimator.filter;
@@ -649,15 +649,15 @@ static void the_attitude_s_error_drifts_with_time(void) {
 }
 
 /* [goe_estimate_t.height_m]
- * GIVEN a cylinder, of which nothing shows how high the camera is above the ground THEN the told sigma of that is in the
+ * GIVEN a cylinder, of which nothing shows how high the camera is above the ground THEN the configured sigma of that is in the
  * height's, and only there. */
 static void the_error_of_the_altitude_is_in_the_height(void) {
     float sigma[2][2];
     for (int i = 0; i < 2; i++) {
         setUp();
         scene_make_cylinder(&scene);
-        scene_tell_no_noise(&settings);
-        settings.navigation.height_bias_m = i > 0 ? 2.0f : 0.01f;
+        scene_clear_noise(&settings);
+        settings.navigation.height_bias_sd_m = i > 0 ? 2.0f : 0.01f;
         start();
         fly(0, IMAGES);
         TEST_ASSERT_EQUAL_HEX32(DISC_BITS, estimate.valid);
@@ -668,10 +668,10 @@ static void the_error_of_the_altitude_is_in_the_height(void) {
     CHECK_CLOSE(1.0e-3 * (double)sigma[0][1], sigma[0][1], sigma[1][1]);
 }
 
-/* [T1] GIVEN eight images of another obstacle, 15 m aside and half as far THEN the track ends up at the one that is seen. */
+/* [T1] GIVEN eight images of another obstacle, 15 m aside and half as far THEN the track ends up at the visible one. */
 static void a_track_that_began_at_another_obstacle_recovers(void) {
-    scene_tell_no_noise(&settings);
-    settings.detector.point_px = 0.5f;
+    scene_clear_noise(&settings);
+    settings.detector.point_noise_px = 0.5f;
     start();
     const scene_t right = scene;
     scene.x0_m += 15.0;
@@ -683,8 +683,8 @@ static void a_track_that_began_at_another_obstacle_recovers(void) {
     check_truth(5.0, 0.02);
 }
 
-/* [(R15)] GIVEN a cylinder much narrower or wider than the first guess, near, and pixels that are nearly exact THEN what
- * linearising at a wrong range leaves out neither captures the filter nor makes it sure of a wrong one. */
+/* [(R15)] GIVEN a cylinder much narrower or wider than the first guess, near, and pixels that are nearly exact THEN the
+ * linearization error at a wrong range neither captures the filter nor makes it sure of a wrong one. */
 static void a_first_guess_that_is_far_off_comes_right(void) {
     static const double width_m[] = {1.0, 3.0, 12.0, 25.0};
     static const double range_m[] = {60.0, 100.0};
@@ -698,12 +698,12 @@ static void a_first_guess_that_is_far_off_comes_right(void) {
         scene.x0_m = -25.0;
         scene.width_m = width_m[i % 4];
         scene.z0_m = range_m[i / 4];
-        scene_tell_no_noise(&settings);
+        scene_clear_noise(&settings);
         start();
         for (int k = 0; k < 24; k++) {
             fly(k, k + 1);
-            TEST_ASSERT_TRUE(estimate.points >= points); /* no restart */
-            points = estimate.points;
+            TEST_ASSERT_TRUE(estimate.images_used >= points); /* no restart */
+            points = estimate.images_used;
             if (estimate.fresh) {
                 CHECK_CLOSE(2.5 * (double)estimate.sigma.z0_m, scene.z0_m, estimate.z0_m);
             }
@@ -715,13 +715,13 @@ static void a_first_guess_that_is_far_off_comes_right(void) {
 }
 
 /* [(R14)]
- * GIVEN images in which nothing is seen THEN what the bias and the bearing gain in them is kept beside the inverse, and is in
+ * GIVEN images without a detection THEN the process noise of the bias and the bearing is kept separate from the inverse, and is in
  * the root. */
 static void time_adds_to_the_bias_and_the_bearing(void) {
     const double dt_s = 0.125;
-    settings.navigation.attitude_drift_deg = 0.5f;
-    settings.navigation.position_walk_m = 0.3f;
-    settings.navigation.slope = 0.0f;
+    settings.navigation.attitude_walk_sd_deg = 0.5f;
+    settings.navigation.position_walk_sd_m = 0.3f;
+    settings.navigation.terrain_slope_sd = 0.0f;
     start();
     fly(0, 25);
     goe_filter_t *filter = &estimator.filter;
@@ -731,9 +731,9 @@ static void time_adds_to_the_bias_and_the_bearing(void) {
     for (int k = 25; k < 29; k++) {
         scene_image(&scene, k, &image, NULL);
         for (int i = 0; i < 6; i++) {
-            pixel(i)->seen = false;
+            pixel(i)->visible = false;
         }
-        CHECK_STATUS(GOE_NOTHING_SEEN, update());
+        CHECK_STATUS(GOE_NO_DETECTION, update());
     }
     const double drift2 = 4.0 * dt_s * 0.25 * RAD_PER_DEG * RAD_PER_DEG;
     const double q = (double)filter->state[GOE_INVERSE_RANGE];
@@ -749,29 +749,29 @@ static void time_adds_to_the_bias_and_the_bearing(void) {
     TEST_ASSERT_TRUE((double)goe_inverse_variance(&filter->inverse, GOE_BEARING) > was + 0.4 * walk2);
 }
 
-/* [(R23)] GIVEN the same filter WHEN the own velocity and position are given as less well known THEN the covariance grows by what no
- * image shows: shares of range and sizes, and the walk. */
-static void what_no_image_shows_of_the_own_motion_is_added(void) {
+/* [(R23)] GIVEN the same filter WHEN the own velocity and position are given as less well known THEN the covariance grows by the
+ * unobservable part: shares of range and sizes, and the walk. */
+static void unobservable_errors_of_own_motion_are_added(void) {
     float before[GOE_QUANTITIES][GOE_QUANTITIES];
     float after[GOE_QUANTITIES][GOE_QUANTITIES];
     const double s = 24.0 * 0.125;
     const double path_m = 48.0;
     scene.path = SCENE_STRAIGHT;
     scene.wobble_deg = 0.0;
-    settings.navigation.velocity_bias_m_s = 0.0f;
-    settings.navigation.position_walk_m = 0.0f;
+    settings.navigation.velocity_bias_sd_m_s = 0.0f;
+    settings.navigation.position_walk_sd_m = 0.0f;
     start();
     fly(0, 25);
     CHECK_STATUS(GOE_OK, goe_covariance(&estimator, before));
-    estimator.settings.navigation.position_walk_m = 2.0f;
+    estimator.settings.navigation.position_walk_sd_m = 2.0f;
     goe_guard_seal(&estimator);
     CHECK_STATUS(GOE_OK, goe_covariance(&estimator, after));
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         const double walked = i <= GOE_Z0 ? 4.0 * s : 0.0;
         CHECK_CLOSE(1.0e-3 * (walked + 1.0e-3), walked, after[i][i] - before[i][i]);
     }
-    estimator.settings.navigation.position_walk_m = 0.0f;
-    estimator.settings.navigation.velocity_bias_m_s = 1.0f;
+    estimator.settings.navigation.position_walk_sd_m = 0.0f;
+    estimator.settings.navigation.velocity_bias_sd_m_s = 1.0f;
     goe_guard_seal(&estimator);
     CHECK_STATUS(GOE_OK, goe_covariance(&estimator, after));
     const double share = s / path_m;
@@ -824,12 +824,12 @@ static void a_moving_obstacle_is_suspected(void) {
     TEST_ASSERT_EQUAL_INT(0, fly_past_a_mover(0.0, 0.0, 0.0));
 }
 
-/* GIVEN an autopilot that gives its attitude the wrong way round, on an aircraft that sways THEN the filter starts anew again and
- * again, and the estimate tells that what it is given does not belong together; GIVEN the right way THEN it never says so. */
-static void a_wrong_convention_is_told(void) {
+/* GIVEN an autopilot that gives its attitude the wrong way round, on an aircraft that sways THEN the filter starts again and
+ * again, and the estimate reports contradictory inputs; GIVEN the right way THEN it never does. */
+static void a_wrong_convention_is_reported(void) {
     any = check_random_start("convention");
     for (int wrong = 0; wrong < 2; wrong++) {
-        int told = 0;
+        int reported = 0;
         setUp();
         scene.wobble_deg = 10.0;
         start();
@@ -840,14 +840,14 @@ static void a_wrong_convention_is_told(void) {
                 image.pose.attitude[i] = -image.pose.attitude[i];
             }
             update();
-            told += estimate.reason == GOE_REASON_CONVENTION && estimate.suspect ? 1 : 0;
+            reported += estimate.reason == GOE_REASON_CONVENTION && estimate.suspect ? 1 : 0;
         }
-        TEST_ASSERT_TRUE(wrong > 0 ? told > 0 : told == 0);
+        TEST_ASSERT_TRUE(wrong > 0 ? reported > 0 : reported == 0);
     }
 }
 
-/* [A31, goe_quantities.c, refined.range_share]
- * GIVEN a noisy flight THEN a quantity is told only after two images in a row that knew it: the one before, and this one. */
+/* [A31, goe_quantities.c, filter.range_sd_rel_max]
+ * GIVEN a noisy flight THEN a quantity is reported only after two images in a row that knew it: the one before, and this one. */
 static void known_in_two_images_in_a_row(void) {
     int held_back = 0;
     any = check_random_start("two in a row");
@@ -862,10 +862,10 @@ static void known_in_two_images_in_a_row(void) {
         for (int k = 0; k < 80; k++) {
             fly_noisily(k, k + 1, 0.5);
             const unsigned now = estimator.filter.known;
-            const unsigned told = estimate.valid & ~(GOE_HAS_CENTER | GOE_HAS_VELOCITY);
-            if (estimate.fresh && estimate.method == GOE_METHOD_REFINED) {
-                TEST_ASSERT_EQUAL_HEX(before & now, told);
-                held_back += (now & ~told) != 0u ? 1 : 0;
+            const unsigned reported = estimate.valid & ~(GOE_HAS_CENTER | GOE_HAS_VELOCITY);
+            if (estimate.fresh && estimate.method == GOE_METHOD_FILTER) {
+                TEST_ASSERT_EQUAL_HEX(before & now, reported);
+                held_back += (now & ~reported) != 0u ? 1 : 0;
             }
             before = now;
         }
@@ -875,7 +875,7 @@ static void known_in_two_images_in_a_row(void) {
 }
 
 /* The residual is the window's; the baseline is the way since the track began. */
-static void what_is_the_window_s_alone_is_0(void) {
+static void fields_of_the_window_method_alone_are_0(void) {
     scene.path = SCENE_STRAIGHT;
     scene.wobble_deg = 0.0;
     start();
@@ -890,10 +890,10 @@ static void what_is_the_window_s_alone_is_0(void) {
 static void the_number_of_images_saturates(void) {
     start();
     fly(0, 20);
-    TEST_ASSERT_TRUE(estimate.points > 10 && estimate.points <= 20);
+    TEST_ASSERT_TRUE(estimate.images_used > 10 && estimate.images_used <= 20);
     estimator.filter.health.images = INT16_MAX - 1;
     fly(20, 25);
-    TEST_ASSERT_EQUAL_INT(32767, estimate.points);
+    TEST_ASSERT_EQUAL_INT(32767, estimate.images_used);
 }
 
 /* -------------------------------------------------------------------------------------------------------- forced models -- */
@@ -905,11 +905,11 @@ static void a_forced_disc_stays_a_disc(void) {
         fly(k, k + 1);
         TEST_ASSERT_TRUE(estimate.model == GOE_MODEL_NONE || estimate.model == GOE_MODEL_DISC);
     }
-    TEST_ASSERT_EQUAL_INT(GOE_METHOD_REFINED, estimate.method);
+    TEST_ASSERT_EQUAL_INT(GOE_METHOD_FILTER, estimate.method);
     TEST_ASSERT_EQUAL_HEX32(0u, estimate.valid & (GOE_HAS_ORIENTATION | GOE_HAS_LENGTH));
 }
 
-/* GIVEN the line model WHEN a box is seen THEN no disc is ever told: the window's line until the box begins, the box from
+/* GIVEN the line model WHEN a box is visible THEN no disc is ever reported: the window's line until the box begins, the box from
  * then on. */
 static void a_forced_line_is_a_box_and_no_disc_before_it(void) {
     bool begun = false;
@@ -919,13 +919,13 @@ static void a_forced_line_is_a_box_and_no_disc_before_it(void) {
         fly(k, k + 1);
         TEST_ASSERT_TRUE(estimate.model != GOE_MODEL_DISC);
         begun = begun || estimate.model == GOE_MODEL_BOX;
-        TEST_ASSERT_TRUE(!begun || (estimate.model == GOE_MODEL_BOX && estimate.method == GOE_METHOD_REFINED));
+        TEST_ASSERT_TRUE(!begun || (estimate.model == GOE_MODEL_BOX && estimate.method == GOE_METHOD_FILTER));
     }
     TEST_ASSERT_TRUE(begun);
 }
 
 /* A forced line with a cylinder in view: never a base corner, never an answer. */
-static void a_forced_line_without_corners_tells_nothing(void) {
+static void a_forced_line_without_corners_informs_nothing(void) {
     scene_make_cylinder(&scene);
     settings.model = GOE_MODEL_LINE;
     start();
@@ -936,15 +936,15 @@ static void a_forced_line_without_corners_tells_nothing(void) {
     }
 }
 
-/* GIVEN one face of a box, from which the orientation is not told yet WHEN a disc stands in for it THEN its width is not
- * told. */
-static void a_stand_in_tells_no_width(void) {
+/* GIVEN one face of a box, without a reported orientation yet WHEN a disc substitutes for it THEN its width is not
+ * reported. */
+static void a_stand_in_gives_no_width(void) {
     bool stood_in = false;
     scene.path = SCENE_STRAIGHT;
     scene.x0_m = 0.0;
     scene.z0_m = 180.0;
     scene.alpha_deg = 0.0;
-    settings.detector.point_px = 2.0f;
+    settings.detector.point_noise_px = 2.0f;
     start();
     for (int k = 0; k < IMAGES; k++) {
         fly(k, k + 1);
@@ -956,20 +956,20 @@ static void a_stand_in_tells_no_width(void) {
     TEST_ASSERT_TRUE(stood_in);
 }
 
-/* [goe_refined.c] GIVEN a track of more images than are counted THEN the count stays at the most that it may tell. */
+/* [goe_refined.c] GIVEN a track of more images than are counted THEN the count stays at its largest value. */
 static void the_count_of_images_saturates(void) {
     start();
     fly(0, 20);
     estimator.filter.health.images = INT16_MAX - 1;
     for (int k = 20; k < 23; k++) {
         fly(k, k + 1);
-        TEST_ASSERT_EQUAL_INT(32767, estimate.points);
-        TEST_ASSERT_TRUE(estimate.misfit >= 0.0f && estimate.misfit < 1.0f);
+        TEST_ASSERT_EQUAL_INT(32767, estimate.images_used);
+        TEST_ASSERT_TRUE(estimate.nis_ratio >= 0.0f && estimate.nis_ratio < 1.0f);
     }
 }
 
-/* GIVEN a forced line and a truck so far away that its orientation is not told yet WHEN the window solves THEN its answer
- * is told, and never again once the box has begun. */
+/* GIVEN a forced line and a truck too far away for its orientation to be reported WHEN the window solves THEN its answer
+ * is reported, and never again once the box has begun. */
 static void the_window_answers_before_the_start_only(void) {
     int from_window = 0;
     bool begun = false;
@@ -977,7 +977,7 @@ static void the_window_answers_before_the_start_only(void) {
     settings.model = GOE_MODEL_LINE;
     settings.window.orientation_min_px = 0.0f;
     settings.window.edge_min_px = 0.0f;
-    settings.detector.point_px = 3.0f;
+    settings.detector.point_noise_px = 3.0f;
     scene.z0_m = 400.0;
     start();
     for (int k = 0; k < 190; k++) {
@@ -995,8 +995,8 @@ static void the_window_answers_before_the_start_only(void) {
 
 /* ------------------------------------------------------------------------------------------------------- nothing in view -- */
 
-/* [A7, A34] GIVEN a solution WHEN nothing is seen any more THEN it grows old, follows the motion, and is not changed. */
-static void an_answer_follows_the_motion_while_nothing_is_seen(void) {
+/* [A7, A34] GIVEN a solution WHEN detections end THEN it grows old, follows the motion, and is not changed. */
+static void an_answer_follows_the_motion_while_nothing_is_detected(void) {
     start();
     CHECK_STATUS(GOE_OK, fly(0, 25));
     const goe_estimate_t last = estimate;
@@ -1004,9 +1004,9 @@ static void an_answer_follows_the_motion_while_nothing_is_seen(void) {
         scene_truth_t truth;
         scene_image(&scene, k, &image, &truth);
         for (int i = 0; i < 6; i++) {
-            pixel(i)->seen = false;
+            pixel(i)->visible = false;
         }
-        CHECK_STATUS(GOE_NOTHING_SEEN, update());
+        CHECK_STATUS(GOE_NO_DETECTION, update());
         TEST_ASSERT_FALSE(estimate.fresh);
         TEST_ASSERT_EQUAL_HEX32(last.valid, estimate.valid);
         TEST_ASSERT_EQUAL_INT(0, estimate.nis_rows);
@@ -1036,9 +1036,9 @@ static void the_covariance_of_an_old_answer_only_grows(void) {
     TEST_ASSERT_TRUE(before[GOE_Z0][GOE_WIDTH] != 0.0f);
     scene_image(&scene, 25, &image, NULL);
     for (int i = 0; i < 6; i++) {
-        pixel(i)->seen = false;
+        pixel(i)->visible = false;
     }
-    CHECK_STATUS(GOE_NOTHING_SEEN, update());
+    CHECK_STATUS(GOE_NO_DETECTION, update());
     CHECK_STATUS(GOE_OK, goe_covariance(&estimator, covariance));
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         const double spread = sqrt((double)before[i][i]);
@@ -1050,7 +1050,7 @@ static void the_covariance_of_an_old_answer_only_grows(void) {
     }
     goe_filter_enter(&estimator.filter, GOE_PHASE_NONE);
     CHECK_STATUS(GOE_OK, goe_covariance(&estimator, covariance));
-    tell_answer(value, sigma);
+    set_answer(value, sigma);
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         const double square = (double)sigma[i] * (double)sigma[i];
         TEST_ASSERT_TRUE((double)covariance[i][i] >= square * (1.0 - 1.0e-6));
@@ -1069,10 +1069,10 @@ static void any_subset_of_the_features_will_do(void) {
         goe_estimator_t kept = estimator;
         scene_image(&scene, 20, &image, NULL);
         for (int i = 0; i < 6; i++) {
-            pixel(i)->seen = pixel(i)->seen && (subset >> i & 1u) != 0u;
+            pixel(i)->visible = pixel(i)->visible && (subset >> i & 1u) != 0u;
         }
         const goe_status_t status = update();
-        TEST_ASSERT_TRUE(status == GOE_OK || status == GOE_HELD);
+        TEST_ASSERT_TRUE(status == GOE_OK || status == GOE_STALE);
         TEST_ASSERT_EQUAL_HEX32(BOX_BITS, estimate.valid);
         check_truth(2.0, 0.05);
         estimator = kept;
@@ -1088,7 +1088,7 @@ static void spoil_range(void) { image.top.v_px = 2.0e5f; }
 static void spoil_time(void) { image.pose.time_us -= 1000000; }
 static void spoil_attitude(void) { image.pose.attitude[0] *= 1.05f; }
 
-/* [A21] GIVEN a refused image WHEN it comes THEN no byte but one counter changes, and the answer is told as a stale one. */
+/* [A21] GIVEN a refused image WHEN it comes THEN no byte but one counter changes, and the answer is reported as a stale one. */
 static void a_refused_image_changes_one_counter(void) {
     static const spoil_t spoils[] = {spoil_pose, spoil_pixel, spoil_range, spoil_time, spoil_attitude};
     static const goe_status_t statuses[] = {GOE_NOT_FINITE, GOE_NOT_FINITE, GOE_OUT_OF_RANGE, GOE_BAD_TIME,
@@ -1101,7 +1101,7 @@ static void a_refused_image_changes_one_counter(void) {
         scene_image(&scene, 25, &image, NULL);
         spoils[i]();
         CHECK_STATUS(statuses[i], update());
-        before.causes[-(int)statuses[i]]++;
+        before.fault_counts[-(int)statuses[i]]++;
         TEST_ASSERT_EQUAL_MEMORY(&before, &estimator, sizeof before);
         TEST_ASSERT_FALSE(estimate.fresh);
         TEST_ASSERT_EQUAL_HEX32(last.valid, estimate.valid);
@@ -1110,13 +1110,13 @@ static void a_refused_image_changes_one_counter(void) {
     }
 }
 
-static void reading_calls_refuse_what_is_no_estimator(void) {
+static void reading_calls_refuse_an_invalid_estimator(void) {
     static const float nothing[GOE_QUANTITIES][GOE_QUANTITIES];
     float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
     goe_estimator_t unready;
     memset(&unready, 0, sizeof unready);
     memset(covariance, 0xFF, sizeof covariance);
-    CHECK_STATUS(GOE_NOT_INITIALISED, goe_covariance(&unready, covariance));
+    CHECK_STATUS(GOE_NOT_INITIALIZED, goe_covariance(&unready, covariance));
     TEST_ASSERT_EQUAL_MEMORY(nothing, covariance, sizeof covariance);
     memset(covariance, 0xFF, sizeof covariance);
     CHECK_STATUS(GOE_BAD_ARGUMENT, goe_covariance(NULL, covariance));
@@ -1124,7 +1124,7 @@ static void reading_calls_refuse_what_is_no_estimator(void) {
     start();
     CHECK_STATUS(GOE_BAD_ARGUMENT, goe_covariance(&estimator, NULL));
     memset(covariance, 0xFF, sizeof covariance);
-    CHECK_STATUS(GOE_COLLECTING, goe_covariance(&estimator, covariance));
+    CHECK_STATUS(GOE_CONVERGING, goe_covariance(&estimator, covariance));
     TEST_ASSERT_EQUAL_MEMORY(nothing, covariance, sizeof covariance);
 }
 
@@ -1134,13 +1134,13 @@ static void swap(goe_pixel_t *a, goe_pixel_t *b) {
     *b = kept;
 }
 
-/* GIVEN left and right exchanged, of the silhouette, of the base, or of both WHEN one image comes so THEN the fault is told
- * and counted, and the answer stands. */
-static void swapped_features_are_told_and_not_used(void) {
+/* GIVEN left and right exchanged, of the silhouette, of the base, or of both WHEN one image comes so THEN the fault is reported
+ * and counted, and the answer stays. */
+static void swapped_features_are_reported_and_not_used(void) {
     start();
     fly(0, 25);
     for (int i = 0; i < 3; i++) {
-        const uint32_t count = estimator.causes[-GOE_SWAPPED];
+        const uint32_t count = estimator.fault_counts[-GOE_SWAPPED];
         scene_image(&scene, 25 + i, &image, NULL);
         if (i != 1) {
             swap(&image.left, &image.right);
@@ -1150,14 +1150,14 @@ static void swapped_features_are_told_and_not_used(void) {
         }
         const goe_status_t status = update();
         TEST_ASSERT_TRUE(status == GOE_PARTIAL || status == GOE_SWAPPED);
-        TEST_ASSERT_EQUAL_UINT32(count + (i == 2 ? 2u : 1u), estimator.causes[-GOE_SWAPPED]);
+        TEST_ASSERT_EQUAL_UINT32(count + (i == 2 ? 2u : 1u), estimator.fault_counts[-GOE_SWAPPED]);
         TEST_ASSERT_EQUAL_HEX32(BOX_BITS, estimate.valid);
         check_truth(2.0, 0.02);
     }
     scene_image(&scene, 30, &image, NULL);
     swap(&image.left, &image.right);
     for (int i = 2; i < 6; i++) {
-        pixel(i)->seen = false;
+        pixel(i)->visible = false;
     }
     CHECK_STATUS(GOE_SWAPPED, update());
     TEST_ASSERT_FALSE(estimate.fresh);
@@ -1169,13 +1169,13 @@ int main(void) {
     RUN_TEST(cylinders_come_out_as_they_are);
     RUN_TEST(sigmas_shrink_with_every_image);
     RUN_TEST(an_uncertain_range_makes_an_image_count_less);
-    RUN_TEST(left_and_right_are_alike);
+    RUN_TEST(left_and_right_are_equal);
     RUN_TEST(a_constant_attitude_error_is_taken_out);
-    RUN_TEST(the_covariance_is_positive_and_holds_the_sigmas);
-    RUN_TEST(sigmas_tell_the_error);
+    RUN_TEST(the_covariance_is_positive_and_contains_the_sigmas);
+    RUN_TEST(sigmas_cover_the_error);
     RUN_TEST(a_known_jump_is_compensated);
-    RUN_TEST(a_jump_moves_an_old_centre_along);
-    RUN_TEST(an_unknown_jump_starts_anew);
+    RUN_TEST(a_jump_moves_an_old_center_along);
+    RUN_TEST(an_unknown_jump_starts_again);
     RUN_TEST(a_reset_forgets_the_track);
     RUN_TEST(single_outliers_are_left_out);
     RUN_TEST(a_track_that_began_with_an_outlier_recovers);
@@ -1185,23 +1185,23 @@ int main(void) {
     RUN_TEST(a_track_that_began_at_another_obstacle_recovers);
     RUN_TEST(a_first_guess_that_is_far_off_comes_right);
     RUN_TEST(time_adds_to_the_bias_and_the_bearing);
-    RUN_TEST(what_no_image_shows_of_the_own_motion_is_added);
+    RUN_TEST(unobservable_errors_of_own_motion_are_added);
     RUN_TEST(a_moving_obstacle_is_suspected);
-    RUN_TEST(a_wrong_convention_is_told);
+    RUN_TEST(a_wrong_convention_is_reported);
     RUN_TEST(known_in_two_images_in_a_row);
-    RUN_TEST(what_is_the_window_s_alone_is_0);
+    RUN_TEST(fields_of_the_window_method_alone_are_0);
     RUN_TEST(the_number_of_images_saturates);
     RUN_TEST(a_forced_disc_stays_a_disc);
     RUN_TEST(a_forced_line_is_a_box_and_no_disc_before_it);
-    RUN_TEST(a_forced_line_without_corners_tells_nothing);
-    RUN_TEST(a_stand_in_tells_no_width);
+    RUN_TEST(a_forced_line_without_corners_informs_nothing);
+    RUN_TEST(a_stand_in_gives_no_width);
     RUN_TEST(the_count_of_images_saturates);
     RUN_TEST(the_window_answers_before_the_start_only);
-    RUN_TEST(an_answer_follows_the_motion_while_nothing_is_seen);
+    RUN_TEST(an_answer_follows_the_motion_while_nothing_is_detected);
     RUN_TEST(the_covariance_of_an_old_answer_only_grows);
     RUN_TEST(any_subset_of_the_features_will_do);
     RUN_TEST(a_refused_image_changes_one_counter);
-    RUN_TEST(reading_calls_refuse_what_is_no_estimator);
-    RUN_TEST(swapped_features_are_told_and_not_used);
+    RUN_TEST(reading_calls_refuse_an_invalid_estimator);
+    RUN_TEST(swapped_features_are_reported_and_not_used);
     return UNITY_END();
 }

@@ -1,4 +1,4 @@
-/* One hash over every output bit of some flights of the refined method. SPDX-License-Identifier: MIT
+/* One hash over every output bit of some flights of the filter method. SPDX-License-Identifier: MIT
  *
  * The other tests say why a line is there; this one says that a change of the library changed a result, however little. The
  * flights are worked out here, in double and with nothing but + - * / and sqrt, so that the input is the same bits on every
@@ -32,7 +32,7 @@ typedef struct {
     double height_m;
 } body_t;
 
-/* What is seen, and by what; bits. */
+/* Visible features, as bits. */
 enum {
     POINTS = 1,
     BASE = 2,
@@ -107,23 +107,23 @@ static void hash_estimate(const goe_estimate_t *e) {
     hash_word(e->valid);
     hash_word((e->fresh ? 1u : 0u) + (e->suspect ? 2u : 0u));
     hash_word((uint32_t)e->reason);
-    hash_word((uint32_t)e->points);
+    hash_word((uint32_t)e->images_used);
     hash_numbers(&e->age_s, numbers);
     hash_word((uint32_t)e->nis_rows);
-    hash_numbers(&e->misfit, 1);
+    hash_numbers(&e->nis_ratio, 1);
     hash_numbers(&e->sigma.x0_m, sizeof e->sigma / sizeof(float));
 }
 
 static void hash_answers(void) {
-    static const goe_plan_t plans[] = {{{14.0f, 1.0f, -0.5f}, 10.0f, 5.0f, 0.0f, 0.0f},
-                                       {{9.0f, -6.0f, 1.0f}, 3.0f, 20.0f, 0.25f, 0.5f}};
+    static const goe_intent_t plans[] = {{{14.0f, 1.0f, -0.5f}, 10.0f, 5.0f, 0.0f, 0.0f},
+                                         {{9.0f, -6.0f, 1.0f}, 3.0f, 20.0f, 0.25f, 0.5f}};
     float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
     hash_word((uint32_t)(int)goe_covariance(&estimator, covariance));
     hash_numbers(&covariance[0][0], (size_t)GOE_QUANTITIES * GOE_QUANTITIES);
     for (size_t i = 0; i < sizeof plans / sizeof plans[0]; i++) {
         goe_hazard_t hazard;
         hash_word((uint32_t)(int)goe_hazard(&estimator, &plans[i], &hazard));
-        hash_numbers(&hazard.time_s, offsetof(goe_hazard_t, has_clearance) / sizeof(float));
+        hash_numbers(&hazard.tcpa_s, offsetof(goe_hazard_t, has_clearance) / sizeof(float));
         hash_word(hazard.has_clearance ? 1u : 0u);
     }
 }
@@ -192,7 +192,7 @@ static goe_pixel_t pixel_of(const pose_t *pose, const place_t *place, double k1,
     const double bent = 1.0 + k1 * (x * x + y * y);
     *u = MIDDLE_PX + FOCAL_PX * x * bent;
     *v = MIDDLE_PX + FOCAL_PX * y * bent;
-    pixel.seen = ray[0] > 1.0;
+    pixel.visible = ray[0] > 1.0;
     return pixel;
 }
 
@@ -216,7 +216,7 @@ static outline_t see(const flight_t *flight, const pose_t *pose, double t) {
         o.range2[i] = north * north + east * east;
         for (int roof = 0; roof < 2; roof++) {
             place.x[2] = roof == 0 ? 0.0 : -flight->body->height_m;
-            o.seen = pixel_of(pose, &place, k1, &o.u[roof][i], &o.v[roof][i]).seen && o.seen;
+            o.seen = pixel_of(pose, &place, k1, &o.u[roof][i], &o.v[roof][i]).visible && o.seen;
         }
     }
     return o;
@@ -249,7 +249,7 @@ static void show_points(const flight_t *flight, const outline_t *o, goe_image_t 
         image->base_left = point(flight, o->u[0][left], o->v[0][left]);
         image->base_right = point(flight, o->u[0][right], o->v[0][right]);
         image->base_near = point(flight, o->u[0][nearest], o->v[0][nearest]);
-        image->base_near.seen = nearest != left && nearest != right;
+        image->base_near.visible = nearest != left && nearest != right;
     }
 }
 
@@ -267,7 +267,7 @@ static void show_box(const flight_t *flight, const outline_t *o, goe_image_t *im
     image->box.top_px = (float)(least[1] + flight->pixels * noise());
     image->box.right_px = (float)(most[0] + flight->pixels * noise());
     image->box.bottom_px = (float)(most[1] + flight->pixels * noise());
-    image->box.seen = GOE_SEES_BOX;
+    image->box.sides = GOE_SIDES_ALL;
 }
 
 /* As the autopilot gives it. After a jump its numbers are others, and it says so. */
@@ -305,8 +305,8 @@ static void take_picture(const flight_t *flight, int k, goe_image_t *image) {
     }
     if ((flight->how & GAPS) != 0 && k % 5 == 1) { /* and these see worse than usual */
         image->noise = (goe_image_noise_t){0.3f, 1.0f, 2.0f};
-        image->base_near.seen = false;
-        image->box.seen = (uint8_t)(image->box.seen & (GOE_SEES_LEFT | GOE_SEES_RIGHT | GOE_SEES_TOP));
+        image->base_near.visible = false;
+        image->box.sides = (uint8_t)(image->box.sides & (GOE_SIDE_LEFT | GOE_SIDE_RIGHT | GOE_SIDE_TOP));
     }
 }
 
@@ -318,12 +318,12 @@ static goe_settings_t settings_of(const flight_t *flight) {
     settings.model = flight->model;
     if ((flight->how & GAPS) != 0) {
         settings.camera.width_px = settings.camera.height_px = 2.0f * (float)MIDDLE_PX;
-        settings.navigation.position_white_m = 0.2f;
-        settings.navigation.slope = 0.02f;
-        settings.navigation.attitude_drift_deg = 0.05f;
+        settings.navigation.position_white_sd_m = 0.2f;
+        settings.navigation.terrain_slope_sd = 0.02f;
+        settings.navigation.attitude_walk_sd_deg = 0.05f;
         settings.detector.point_correlation = 0.3f;
-        settings.detector.point_share = 0.01f;
-        settings.refined.top_is_highest = true;
+        settings.detector.point_noise_rel = 0.01f;
+        settings.filter.top_is_highest = true;
     }
     if ((flight->how & LENS) != 0) { /* and on an arm */
         settings.camera.k1 = (float)BENT;
@@ -331,7 +331,7 @@ static goe_settings_t settings_of(const flight_t *flight) {
         settings.camera.offset_m[1] = 0.5f;
     }
     if ((flight->how & WHITE) != 0) {
-        settings.navigation.height_white_m = 0.4f;
+        settings.navigation.height_white_sd_m = 0.4f;
     }
     return settings;
 }
@@ -345,7 +345,7 @@ static const flight_t flights[] = {
      GOE_MODEL_LINE, GOE_MODEL_BOX, 0x3Fu, GOE_REASON_NONE, 0x4A0B90AEECCBE289u},
     {"a mast by its outline", &mast, POINTS, 60, 150.0, 12.0, 15.0, 12.0, 0.03, 0.4, GOE_MODEL_AUTO, GOE_MODEL_DISC,
      0x35u, GOE_REASON_NONE, 0x9BF482CA0ACA31E9u},
-    {"a house for which a disc was asked", &turned_house, POINTS | WINDY, 60, 110.0, -25.0, 15.0, 11.0, 0.02, 0.2,
+    {"a house for which a disc was configured", &turned_house, POINTS | WINDY, 60, 110.0, -25.0, 15.0, 11.0, 0.02, 0.2,
      GOE_MODEL_DISC, GOE_MODEL_DISC, 0x01u, GOE_REASON_SHAPE, 0x49EAFD6BA9419ED8u},
     {"a house by its outline, one face turning away", &turned_house, POINTS | WINDY, 110, 130.0, 25.0, 15.0, 9.5, 0.02,
      0.2, GOE_MODEL_AUTO, GOE_MODEL_BOX, 0x01u, GOE_REASON_NONE, 0xE0E18C32CFF5C45Cu},
@@ -369,7 +369,7 @@ static void print_hash(const flight_t *flight) {
     UNITY_PRINT_EOL();
 }
 
-/* Flies it; the flight must show what it is there for. Says whether the bits are the stored ones. */
+/* Flies it; the flight must show its purpose. Returns whether the bits are the stored ones. */
 static bool is_as_stored(const flight_t *flight) {
     const goe_settings_t settings = settings_of(flight);
     goe_model_t model = GOE_MODEL_NONE;
@@ -385,9 +385,9 @@ static bool is_as_stored(const flight_t *flight) {
         hash_word((uint32_t)(int)goe_update(&estimator, &image, &estimate));
         hash_estimate(&estimate);
         hash_answers();
-        model = estimate.method == GOE_METHOD_REFINED && estimate.model > model ? estimate.model : model;
+        model = estimate.method == GOE_METHOD_FILTER && estimate.model > model ? estimate.model : model;
         reasons |= 1u << estimate.reason;
-        valid |= estimate.method == GOE_METHOD_REFINED ? estimate.valid : 0u;
+        valid |= estimate.method == GOE_METHOD_FILTER ? estimate.valid : 0u;
     }
     print_hash(flight);
     TEST_ASSERT_TRUE_MESSAGE(model >= flight->at_least, "the model that the flight is there for");

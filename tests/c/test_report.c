@@ -1,4 +1,4 @@
-/* Why an estimate is suspect, and what is told beside it. SPDX-License-Identifier: MIT */
+/* Why an estimate is suspect, and the accompanying fields. SPDX-License-Identifier: MIT */
 /* tests: lib/refined/goe_report.c */
 #include "refined/goe_report.h"
 
@@ -25,7 +25,7 @@ void setUp(void) {
     filter.health.mean_nis = 1.0f;
     filter.health.nis = 7.5f;
     filter.health.nis_rows = 9;
-    estimate.method = GOE_METHOD_REFINED;
+    estimate.method = GOE_METHOD_FILTER;
 }
 void tearDown(void) {}
 
@@ -35,7 +35,7 @@ static void check_reason(goe_reason_t reason, bool suspect) {
     TEST_ASSERT_EQUAL_INT(suspect, estimate.suspect);
 }
 
-/* A disc that was asked for, whose skew is beyond chance. */
+/* A disc that was configured, whose skew is beyond chance. */
 static void be_skewed(void) {
     filter.phase = GOE_PHASE_DISC;
     settings.model = GOE_MODEL_DISC;
@@ -45,9 +45,9 @@ static void be_skewed(void) {
     }
 }
 
-/* GIVEN more than one reason THEN the most telling one is told: what moves before what is no corner, no disc, late, and only then that
- * something does not fit, which all of them bring about. Late poses alone are taken off, and make nothing suspect. */
-static void the_most_telling_reason_is_told(void) {
+/* GIVEN more than one reason THEN the most informative one is reported: motion before a wrong corner, no disc, latency, and only then
+ * a general nis_ratio, which all of them cause. Late poses alone are corrected, and make nothing suspect. */
+static void the_most_informative_reason_is_reported(void) {
     check_reason(GOE_REASON_NONE, false);
     filter.health.mean_nis = 2.0f;
     check_reason(GOE_REASON_NOISE, true);
@@ -69,19 +69,19 @@ static void the_most_telling_reason_is_told(void) {
     check_reason(GOE_REASON_NONE, false);
 }
 
-/* GIVEN few images THEN a misfit says nothing yet. */
+/* GIVEN few images THEN a NIS ratio says nothing yet. */
 static void few_images_make_nothing_suspect(void) {
     filter.health.mean_nis = 5.0f;
     filter.health.images = 7;
     check_reason(GOE_REASON_NONE, false);
     filter.health.images = 8;
     check_reason(GOE_REASON_NOISE, true);
-    settings.refined.misfit_max = 5.0f; /* above which, not from which on */
+    settings.filter.nis_ratio_max = 5.0f; /* above which, not from which on */
     check_reason(GOE_REASON_NONE, false);
 }
 
-/* GIVEN a skewed silhouette THEN it is told as none of a disc only where a disc was asked for, and only while it is taken for one. */
-static void a_skew_matters_where_a_disc_was_asked_for(void) {
+/* GIVEN a skewed silhouette THEN it is reported as no disc only if a disc was configured, and only while the model is one. */
+static void a_skew_matters_where_a_disc_was_requested(void) {
     be_skewed();
     check_reason(GOE_REASON_SHAPE, true);
     settings.model = GOE_MODEL_AUTO;
@@ -90,12 +90,12 @@ static void a_skew_matters_where_a_disc_was_asked_for(void) {
     filter.phase = GOE_PHASE_PRISM;
     check_reason(GOE_REASON_NONE, false);
     be_skewed();
-    filter.state[GOE_SIDE_X] = 0.4f; /* 4 sigma; 4.2 are none of a cylinder's */
+    filter.state[GOE_SIDE_X] = 0.4f; /* 4 sigma; 4.2 are too many for a cylinder */
     check_reason(GOE_REASON_NONE, false);
 }
 
-/* GIVEN an answer of the window's, which knows of no motion and of no false corners THEN what the filter knows of them is told with it;
- * a reason that the answer has stays, but for the motion. */
+/* GIVEN an answer of the window's, which knows of no motion and of no false corners THEN the filter's knowledge of them is reported with
+ * it; a reason that the answer has stays, but for the motion. */
 static void the_windows_answer_is_doubted_too(void) {
     estimate.method = GOE_METHOD_WINDOW;
     goe_report_doubt(&filter, &estimate);
@@ -121,28 +121,28 @@ static void the_windows_answer_is_doubted_too(void) {
     TEST_ASSERT_TRUE(estimate.suspect);
 }
 
-/* GIVEN an answer THEN how it fits is told beside the refined method's alone; the latency, which both methods suffer from, always. */
-static void how_it_fits_is_told_of_the_filters_answer(void) {
-    filter.mover.beside[0] = 0.12f;
+/* GIVEN an answer THEN the fit is reported with the filter method's alone; the latency, which both methods suffer from, always. */
+static void the_fit_is_reported_with_the_filters_answer(void) {
+    filter.mover.augmented[0] = 0.12f;
     goe_report_fit(&filter, &settings, &estimate);
-    TEST_ASSERT_EQUAL_INT(40, estimate.points);
+    TEST_ASSERT_EQUAL_INT(40, estimate.images_used);
     TEST_ASSERT_EQUAL_INT(9, estimate.nis_rows);
     CHECK_SAME(7.5f, estimate.nis);
-    CHECK_SAME(1.0f, estimate.misfit);
+    CHECK_SAME(1.0f, estimate.nis_ratio);
     CHECK_SAME(0.12f, estimate.latency_s);
     CHECK_CLOSE(1.0e-6, 0.05, estimate.sigma.latency_s); /* as before anything was known */
     memset(&estimate, 0, sizeof estimate);
     estimate.method = GOE_METHOD_WINDOW;
     goe_report_fit(&filter, &settings, &estimate);
-    TEST_ASSERT_EQUAL_INT(0, estimate.points + estimate.nis_rows);
+    TEST_ASSERT_EQUAL_INT(0, estimate.images_used + estimate.nis_rows);
     CHECK_SAME(0.0f, estimate.nis);
-    CHECK_SAME(0.0f, estimate.misfit);
+    CHECK_SAME(0.0f, estimate.nis_ratio);
     CHECK_SAME(0.12f, estimate.latency_s);
 }
 
-/* GIVEN quantities THEN each is told with its own sigma if its bit says so, and is 0 otherwise; X0 and Z0 with what the own position
- * was off by before the filter began, x and z without. */
-static void what_is_known_is_told_and_nothing_else(void) {
+/* GIVEN quantities THEN each is reported with its own sigma if its bit says so, and is 0 otherwise; X0 and Z0 with the error of the own
+ * position before the filter began, x and z without. */
+static void only_known_values_are_reported(void) {
     static const unsigned bits[] = {GOE_HAS_WIDTH, GOE_HAS_LENGTH, GOE_HAS_HEIGHT, GOE_HAS_ORIENTATION, GOE_HAS_CENTER};
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         quantities.value[i] = (float)(10 * (i + 1));
@@ -193,7 +193,7 @@ static void what_is_known_is_told_and_nothing_else(void) {
         CHECK_SAME(height ? 6.0f : 0.0f, estimate.sigma.height_m);
         CHECK_CLOSE(1.0e-5, turned ? 28.6478898 : 0.0, estimate.orientation_deg);
         CHECK_CLOSE(1.0e-5, turned ? 28.6478898 : 0.0, estimate.orientation_raw_deg);
-        CHECK_CLOSE(1.0e-5, turned ? 28.6478898 - 90.0 : 0.0, estimate.other_side_deg);
+        CHECK_CLOSE(1.0e-5, turned ? 28.6478898 - 90.0 : 0.0, estimate.front_orientation_deg);
         CHECK_CLOSE(1.0e-4, turned ? 3.0 * 57.2957795 : 0.0, estimate.sigma.orientation_deg);
         CHECK_SAME(turned ? 0.6f : 0.0f, estimate.length_axis[0]);
         CHECK_SAME(turned ? 0.8f : 0.0f, estimate.length_axis[1]);
@@ -209,8 +209,8 @@ static void what_is_known_is_told_and_nothing_else(void) {
     }
 }
 
-/* GIVEN an obstacle that is followed THEN its velocity is told beside the rest. GIVEN an image that knows no position THEN the answer
- * before it stands as it is; of none before, only the method is told. */
+/* GIVEN an obstacle that is followed THEN its velocity is reported with the rest. GIVEN an image that knows no position THEN the previous
+ * answer stays as it is; without a previous one, only the method is reported. */
 static void an_image_that_knows_nothing_takes_nothing_back(void) {
     quantities.known = GOE_HAS_POSITION;
     quantities.prism = true;
@@ -233,7 +233,7 @@ static void an_image_that_knows_nothing_takes_nothing_back(void) {
     memset(&estimate, 0xA5, sizeof estimate);
     estimate.valid = 0;
     TEST_ASSERT_FALSE(goe_report_quantities(&quantities, &motion, &estimate));
-    TEST_ASSERT_EQUAL_INT(GOE_METHOD_REFINED, estimate.method);
+    TEST_ASSERT_EQUAL_INT(GOE_METHOD_FILTER, estimate.method);
     TEST_ASSERT_EQUAL_INT(GOE_MODEL_NONE, estimate.model);
     CHECK_SAME(0.0f, estimate.z0_m);
     TEST_ASSERT_FALSE(estimate.fresh);
@@ -241,12 +241,12 @@ static void an_image_that_knows_nothing_takes_nothing_back(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(the_most_telling_reason_is_told);
+    RUN_TEST(the_most_informative_reason_is_reported);
     RUN_TEST(few_images_make_nothing_suspect);
-    RUN_TEST(a_skew_matters_where_a_disc_was_asked_for);
+    RUN_TEST(a_skew_matters_where_a_disc_was_requested);
     RUN_TEST(the_windows_answer_is_doubted_too);
-    RUN_TEST(how_it_fits_is_told_of_the_filters_answer);
-    RUN_TEST(what_is_known_is_told_and_nothing_else);
+    RUN_TEST(the_fit_is_reported_with_the_filters_answer);
+    RUN_TEST(only_known_values_are_reported);
     RUN_TEST(an_image_that_knows_nothing_takes_nothing_back);
     return UNITY_END();
 }

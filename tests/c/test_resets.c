@@ -4,7 +4,7 @@
 #include "check.h"
 #include "scene.h"
 
-#define RESETS 0 /* in causes */
+#define RESETS 0 /* in fault_counts */
 
 static scene_t scene;
 static goe_estimator_t plain, jumped;
@@ -30,7 +30,7 @@ static void image_after(int k, int times, goe_image_t *image) {
     }
 }
 
-static void tell_jump(goe_image_t *image, int times) {
+static void give_jump(goe_image_t *image, int times) {
     image->pose.reset_delta_known = true;
     for (int i = 0; i < 3; i++) {
         image->pose.reset_delta_ned_m[i] = (float)times * jump[i];
@@ -67,16 +67,16 @@ static void a_known_jump_is_compensated(void) {
         const goe_status_t status = goe_update(&plain, &image, &estimate_plain);
         image_after(k, k >= 12 ? 1 : 0, &image);
         if (k == 12) {
-            tell_jump(&image, 1);
+            give_jump(&image, 1);
         }
         CHECK_STATUS(status, goe_update(&jumped, &image, &estimate_jumped));
         check_same_but_for_the_origin(k >= 12 ? 1 : 0);
     }
     TEST_ASSERT_TRUE(estimate_jumped.valid & GOE_HAS_CENTER);
-    TEST_ASSERT_EQUAL_UINT32(0u, jumped.causes[RESETS]);
+    TEST_ASSERT_EQUAL_UINT32(0u, jumped.fault_counts[RESETS]);
 }
 
-/* [goe_pose_t.reset_delta_ned_m] The sum is told if the filter jumped more than once between two images, the counter then skips. */
+/* [goe_pose_t.reset_delta_ned_m] The sum is given if the filter jumped more than once between two images, the counter then skips. */
 static void several_jumps_between_two_images_are_one_sum(void) {
     for (int k = 0; k < 24; k++) {
         goe_image_t image;
@@ -84,7 +84,7 @@ static void several_jumps_between_two_images_are_one_sum(void) {
         (void)goe_update(&plain, &image, &estimate_plain);
         image_after(k, k >= 9 ? 3 : 0, &image);
         if (k == 9) {
-            tell_jump(&image, 3);
+            give_jump(&image, 3);
         }
         (void)goe_update(&jumped, &image, &estimate_jumped);
         check_same_but_for_the_origin(k >= 9 ? 3 : 0);
@@ -101,16 +101,16 @@ static void the_counter_wraps(void) {
         image_after(k, times, &image);
         image.pose.reset_count = (uint8_t)(254 + times);
         if (k == 10 || k == 15 || k == 20) {
-            tell_jump(&image, 1);
+            give_jump(&image, 1);
         }
         (void)goe_update(&jumped, &image, &estimate_jumped);
         check_same_but_for_the_origin(times);
     }
-    TEST_ASSERT_EQUAL_UINT32(0u, jumped.causes[RESETS]);
+    TEST_ASSERT_EQUAL_UINT32(0u, jumped.fault_counts[RESETS]);
 }
 
-/* [A22, A27, GOE_CAUSES, goe_pose_t.reset_delta_known]
- * GIVEN a track with a solution WHEN the filter jumps by an unknown amount THEN the track starts anew with this image:
+/* [A22, A27, GOE_FAULT_COUNTS, goe_pose_t.reset_delta_known]
+ * GIVEN a track with a solution WHEN the filter jumps by an unknown amount THEN the track starts again with this image:
  * as a new estimator's, and the jump is counted. */
 static void an_unknown_jump_starts_a_new_track(void) {
     for (int k = 0; k < 30; k++) {
@@ -120,12 +120,12 @@ static void an_unknown_jump_starts_a_new_track(void) {
         if (k < 12) {
             continue;
         }
-        CHECK_STATUS(goe_update(&plain, &image, &estimate_plain), status); /* sees only what comes after the jump */
-        CHECK_STATUS(k < 19 ? GOE_COLLECTING : GOE_OK, status);
+        CHECK_STATUS(goe_update(&plain, &image, &estimate_plain), status); /* gets only the input after the jump */
+        CHECK_STATUS(k < 19 ? GOE_CONVERGING : GOE_OK, status);
         TEST_ASSERT_EQUAL_MEMORY(&estimate_plain, &estimate_jumped, sizeof estimate_plain);
     }
-    TEST_ASSERT_EQUAL_UINT32(1u, jumped.causes[RESETS]);
-    TEST_ASSERT_EQUAL_UINT32(0u, plain.causes[RESETS]);
+    TEST_ASSERT_EQUAL_UINT32(1u, jumped.fault_counts[RESETS]);
+    TEST_ASSERT_EQUAL_UINT32(0u, plain.fault_counts[RESETS]);
 }
 
 /* [A22] */
@@ -144,11 +144,11 @@ static void an_unknown_jump_leaves_no_old_answer(void) {
     TEST_ASSERT_EQUAL_FLOAT(0.0f, estimate_jumped.age_s);
 }
 
-#if GOE_WITH_REFINED
+#if GOE_WITH_FILTER
 /* [goe_estimator.c]
- * GIVEN an answer of the refined method WHEN the filter jumps while nothing is seen THEN the old answer's centre, told in the autopilot's
- * north and east, moves along with them; what counts from the camera stays. */
-static void an_old_answers_centre_moves_along(void) {
+ * GIVEN an answer of the filter method WHEN the filter jumps while nothing is detected THEN the old answer's center, reported in the
+ * autopilot's north and east, moves along with them; values relative to the camera stay. */
+static void an_old_answers_center_moves_along(void) {
     goe_image_t image;
     goe_settings_t settings = scene_settings(&scene);
     CHECK_STATUS(GOE_OK, goe_init(&jumped, sizeof jumped, &settings, NULL));
@@ -157,13 +157,13 @@ static void an_old_answers_centre_moves_along(void) {
         (void)goe_update(&jumped, &image, &estimate_jumped);
     }
     const goe_estimate_t before = estimate_jumped;
-    TEST_ASSERT_EQUAL_INT(GOE_METHOD_REFINED, before.method);
+    TEST_ASSERT_EQUAL_INT(GOE_METHOD_FILTER, before.method);
     TEST_ASSERT_TRUE(before.valid & GOE_HAS_CENTER);
     image_after(59, 1, &image);
-    tell_jump(&image, 1);
+    give_jump(&image, 1);
     image.pose.time_us += 100000;
     scene_hide_points(&image);
-    CHECK_STATUS(GOE_NOTHING_SEEN, goe_update(&jumped, &image, &estimate_jumped));
+    CHECK_STATUS(GOE_NO_DETECTION, goe_update(&jumped, &image, &estimate_jumped));
     CHECK_CLOSE(1.0e-4, (double)before.center_north_m + (double)jump[0], estimate_jumped.center_north_m);
     CHECK_CLOSE(1.0e-4, (double)before.center_east_m + (double)jump[1], estimate_jumped.center_east_m);
     CHECK_CLOSE(1.0e-4, (double)before.z_m, estimate_jumped.z_m);
@@ -183,7 +183,7 @@ static void jumps_are_never_motion(void) {
         image.pose.time_us += 100000 * k;
         image.pose.reset_count = (uint8_t)times;
         if (k % 2 == 0) {
-            tell_jump(&image, k == 0 ? 0 : 1);
+            give_jump(&image, k == 0 ? 0 : 1);
         }
         status = goe_update(&jumped, &image, &estimate_jumped);
     }
@@ -193,7 +193,7 @@ static void jumps_are_never_motion(void) {
 }
 
 /* [goe_pose_t.reset_delta_ned_m]
- * A jump is told "since the image before", so one that comes with a refused image is told again with the next. */
+ * A jump is given "since the image before", so one that comes with a refused image is given again with the next. */
 static void a_refused_image_does_not_use_up_a_jump(void) {
     for (int k = 0; k < 24; k++) {
         goe_image_t image;
@@ -203,7 +203,7 @@ static void a_refused_image_does_not_use_up_a_jump(void) {
         }
         image_after(k, k >= 12 ? 1 : 0, &image);
         if (k == 12 || k == 13) {
-            tell_jump(&image, 1);
+            give_jump(&image, 1);
         }
         if (k == 12) {
             image.pose.attitude[0] = 0.0f;
@@ -218,7 +218,7 @@ static void a_refused_image_does_not_use_up_a_jump(void) {
     }
 }
 
-/* [A27] A jump with an image in which nothing is seen counts as well. */
+/* [A27] A jump with an image without a detection counts as well. */
 static void a_jump_without_a_feature_is_compensated(void) {
     for (int k = 0; k < 24; k++) {
         goe_image_t image;
@@ -226,7 +226,7 @@ static void a_jump_without_a_feature_is_compensated(void) {
         scene_image(&scene, k, &image, NULL);
         image_after(k, k >= 12 ? 1 : 0, &other);
         if (k == 12) {
-            tell_jump(&other, 1);
+            give_jump(&other, 1);
             goe_image_t empty;
             memset(&empty, 0, sizeof empty);
             empty.pose = image.pose;
@@ -257,25 +257,25 @@ static void a_delta_is_read_only_with_a_reset(void) {
 static void a_bad_delta_is_ignored_without_a_reset(void) {
     goe_image_t image;
     scene_image(&scene, 0, &image, NULL);
-    CHECK_STATUS(GOE_COLLECTING, goe_update(&jumped, &image, &estimate_jumped));
+    CHECK_STATUS(GOE_CONVERGING, goe_update(&jumped, &image, &estimate_jumped));
     scene_image(&scene, 1, &image, NULL);
     image.pose.reset_delta_known = true;
     image.pose.reset_delta_ned_m[1] = check_from_bits(0x7FC00000u);
-    CHECK_STATUS(GOE_COLLECTING, goe_update(&jumped, &image, &estimate_jumped));
+    CHECK_STATUS(GOE_CONVERGING, goe_update(&jumped, &image, &estimate_jumped));
 }
 
 static void a_bad_delta_of_a_reset_is_refused(void) {
     goe_image_t image;
     scene_image(&scene, 0, &image, NULL);
-    CHECK_STATUS(GOE_COLLECTING, goe_update(&jumped, &image, &estimate_jumped));
+    CHECK_STATUS(GOE_CONVERGING, goe_update(&jumped, &image, &estimate_jumped));
     image_after(1, 1, &image);
-    tell_jump(&image, 1);
+    give_jump(&image, 1);
     image.pose.reset_delta_ned_m[1] = check_from_bits(0x7FC00000u);
     CHECK_STATUS(GOE_NOT_FINITE, goe_update(&jumped, &image, &estimate_jumped));
     image.pose.reset_delta_ned_m[1] = 1.1e6f;
     CHECK_STATUS(GOE_OUT_OF_RANGE, goe_update(&jumped, &image, &estimate_jumped));
     image.pose.reset_delta_known = false; /* then it is not read */
-    CHECK_STATUS(GOE_COLLECTING, goe_update(&jumped, &image, &estimate_jumped));
+    CHECK_STATUS(GOE_CONVERGING, goe_update(&jumped, &image, &estimate_jumped));
 }
 
 int main(void) {
@@ -285,8 +285,8 @@ int main(void) {
     RUN_TEST(the_counter_wraps);
     RUN_TEST(an_unknown_jump_starts_a_new_track);
     RUN_TEST(an_unknown_jump_leaves_no_old_answer);
-#if GOE_WITH_REFINED
-    RUN_TEST(an_old_answers_centre_moves_along);
+#if GOE_WITH_FILTER
+    RUN_TEST(an_old_answers_center_moves_along);
 #endif
     RUN_TEST(jumps_are_never_motion);
     RUN_TEST(a_refused_image_does_not_use_up_a_jump);

@@ -1,14 +1,14 @@
-/* Whatever comes in, nothing but finite numbers comes out. SPDX-License-Identifier: MIT
+/* Any input, only finite output. SPDX-License-Identifier: MIT
  *
- * Invariants, held after every call on random, extreme and broken input:
+ * Invariants, checked after every call on random, extreme and broken input:
  *   - the status is one that goe.h allows for the call;
- *   - every number of the estimate and of the estimator is finite, told by its exponent bits;
+ *   - every number of the estimate and of the estimator is finite, judged by its exponent bits;
  *   - a quantity without its valid bit is 0, one with it lies in its range, sigmas and age are not negative;
- *   - the refined method tells no quantity whose sigma is larger than goe.h allows; the covariance is finite, symmetric and
+ *   - the filter method gives no quantity whose sigma is larger than goe.h allows; the covariance is finite, symmetric and
  *     not negative on its diagonal;
  *   - a refused image changes nothing in the estimator but one counter;
  *   - no byte before or behind the estimator and the estimate is touched.
- * Floats are judged by bits and by integer comparison of bits alone: the test must also hold for a library that was
+ * Floats are judged by bits and by integer comparison of bits alone: the test must also work for a library that was
  * compiled, and a program that was linked, with -ffast-math. GOE_TEST_SEED and GOE_TEST_UPDATES set seed and length. */
 #include <math.h>
 #include <stddef.h>
@@ -21,7 +21,7 @@
 #include "scene.h"
 
 #define UPDATES_EACH 60000
-#define SCATTER_MAX 400.0f /* 21 times the told variance, 19 for residuals that are alike to 0.9 */
+#define SCATTER_MAX 400.0f /* 21 times the configured variance, 19 for residuals with a correlation of 0.9 */
 #define GUARD_BYTES 64
 #define GUARD 0xC3
 
@@ -106,14 +106,15 @@ static void check_header(const goe_estimate_t *e) {
     TEST_ASSERT_TRUE(method >= 0 && method <= (int)memory.estimator.settings.method);
     TEST_ASSERT_TRUE(!position || method != 0);
     TEST_ASSERT_TRUE(model != GOE_MODEL_LINE || method == GOE_METHOD_WINDOW);
-    TEST_ASSERT_TRUE((model != GOE_MODEL_BOX && model != GOE_MODEL_PRISM) || method == GOE_METHOD_REFINED);
+    TEST_ASSERT_TRUE((model != GOE_MODEL_BOX && model != GOE_MODEL_PRISM) || method == GOE_METHOD_FILTER);
     TEST_ASSERT_TRUE(!e->fresh || position);
-    TEST_ASSERT_TRUE(e->points >= 0 && e->points <= (method == GOE_METHOD_REFINED ? INT16_MAX : GOE_WINDOW_MAX));
+    TEST_ASSERT_TRUE(e->images_used >= 0 &&
+                     e->images_used <= (method == GOE_METHOD_FILTER ? INT16_MAX : GOE_WINDOW_MAX));
     TEST_ASSERT_TRUE(!is_negative(&e->age_s) && within(&e->age_s, 4000.5f));
     TEST_ASSERT_TRUE(!e->fresh || is_zero(&e->age_s));
 }
 
-static void check_nothing_beside_the_valid(const goe_estimate_t *e) {
+static void check_only_valid_fields(const goe_estimate_t *e) {
     const goe_sigma_t *s = &e->sigma;
     const float *positions[] = {&e->x0_m,       &e->z0_m, &e->x_m,  &e->z_m, &e->residual,
                                 &e->baseline_m, &s->x0_m, &s->z0_m, &s->x_m, &s->z_m};
@@ -140,7 +141,7 @@ static void check_nothing_beside_the_valid(const goe_estimate_t *e) {
 
 static void check_ranges(const goe_estimate_t *e) {
     const float *never_negative[] = {&e->width_m,    &e->length_m, &e->height_m, &e->residual,
-                                     &e->baseline_m, &e->nis,      &e->misfit};
+                                     &e->baseline_m, &e->nis,      &e->nis_ratio};
     for (size_t i = 0; i < sizeof never_negative / sizeof never_negative[0]; i++) {
         TEST_ASSERT_FALSE(is_negative(never_negative[i]));
     }
@@ -148,7 +149,7 @@ static void check_ranges(const goe_estimate_t *e) {
     for (size_t i = 0; i < sizeof e->sigma / sizeof(float); i++) {
         TEST_ASSERT_FALSE(is_negative(&sigmas[i]));
     }
-    TEST_ASSERT_TRUE(within(&e->orientation_deg, 90.0f) && within(&e->other_side_deg, 90.0f));
+    TEST_ASSERT_TRUE(within(&e->orientation_deg, 90.0f) && within(&e->front_orientation_deg, 90.0f));
     TEST_ASSERT_TRUE(within(&e->length_axis[0], 1.000001f) && within(&e->width_axis[1], 1.000001f));
     TEST_ASSERT_TRUE(e->nis_rows >= 0 && e->nis_rows <= 9);
     TEST_ASSERT_TRUE(e->nis_rows > 0 || is_zero(&e->nis));
@@ -162,14 +163,14 @@ static double widening(void) {
     return sqrt((double)factor);
 }
 
-/* What goe_sigma_t says of the refined method. */
+/* What goe_sigma_t says of the filter method. */
 static void check_refined(const goe_estimate_t *e) {
-    static const float two_metres = 2.0f;
+    static const float two_meters = 2.0f;
     const goe_sigma_t *s = &e->sigma;
-    if (e->method != GOE_METHOD_REFINED || !(e->valid & GOE_HAS_POSITION)) {
+    if (e->method != GOE_METHOD_FILTER || !(e->valid & GOE_HAS_POSITION)) {
         return;
     }
-    if (!e->fresh) { /* of a filter that may have started anew since */
+    if (!e->fresh) { /* of a filter that may have started again since */
         return;
     }
     const double x_m = (double)e->x0_m - (double)memory.estimator.filter.axes.start_dx_m;
@@ -178,18 +179,18 @@ static void check_refined(const goe_estimate_t *e) {
     TEST_ASSERT_FALSE(is_zero(&range_m));
     TEST_ASSERT_TRUE(within(&e->x0_m, 1.0e6f) && within(&e->z0_m, 1.0e6f) && within(&s->x_m, 1.0e6f));
     if (e->model == GOE_MODEL_PRISM || e->model == GOE_MODEL_DISC) {
-        /* what no image can show, or that it may be no disc, widens the sigmas and silences none */
+        /* unobservable depth, or that it may be no disc, widens the sigmas and silences none */
         TEST_ASSERT_TRUE(within(&s->z_m, 1.0e6f) && within(&s->width_m, 1.0e6f) && within(&s->height_m, 1.0e6f));
         TEST_ASSERT_FALSE(e->valid & (GOE_HAS_ORIENTATION | GOE_HAS_LENGTH));
         return;
     }
     const double wider = widening(); /* scatter widens a sigma, and silences none */
-    const double share = (double)memory.estimator.settings.refined.range_share;
+    const double share = (double)memory.estimator.settings.filter.range_sd_rel_max;
     TEST_ASSERT_TRUE(within_share(&s->z_m, share * wider, &range_m));
     TEST_ASSERT_TRUE(within_share(&s->width_m, 0.3 * wider, &e->width_m));
     TEST_ASSERT_TRUE(within_share(&s->length_m, 0.3 * wider, &e->length_m));
     TEST_ASSERT_TRUE(
-        within_share(&s->height_m, 0.3 * wider, within(&e->height_m, two_metres) ? &two_metres : &e->height_m));
+        within_share(&s->height_m, 0.3 * wider, within(&e->height_m, two_meters) ? &two_meters : &e->height_m));
     TEST_ASSERT_TRUE(within(&s->orientation_deg, (float)(10.001 * wider)));
 }
 
@@ -197,7 +198,7 @@ static void check_covariance(const goe_estimate_t *e) {
     float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
     memset(covariance, 0xFF, sizeof covariance);
     const goe_status_t status = goe_covariance(&memory.estimator, covariance);
-    CHECK_STATUS((e->valid & GOE_HAS_POSITION) ? GOE_OK : GOE_COLLECTING, status);
+    CHECK_STATUS((e->valid & GOE_HAS_POSITION) ? GOE_OK : GOE_CONVERGING, status);
     check_finite(&covariance[0][0], (size_t)GOE_QUANTITIES * GOE_QUANTITIES, "covariance");
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         TEST_ASSERT_FALSE(is_negative(&covariance[i][i]));
@@ -227,38 +228,38 @@ static float any_within(float limit) {
     }
 }
 
-/* A plan of numbers that make sense, of extremes, or of bits. */
-static goe_plan_t any_plan(bool *legal) {
-    goe_plan_t plan;
+/* A intent of numbers that make sense, of extremes, or of bits. */
+static goe_intent_t any_intent(bool *legal) {
+    goe_intent_t intent;
     const bool bits = one_in(4);
     for (int i = 0; i < 3; i++) {
-        plan.velocity_ned_m_s[i] = bits ? any_bits() : any_within(one_in(2) ? 30.0f : 1.0e3f);
+        intent.velocity_ned_m_s[i] = bits ? any_bits() : any_within(one_in(2) ? 30.0f : 1.0e3f);
     }
-    plan.margin_m = bits ? any_bits() : fabsf(any_within(1.0e4f));
-    plan.clearance_m = bits ? any_bits() : fabsf(any_within(1.0e4f));
-    plan.since_image_s = bits ? any_bits() : fabsf(any_within(1.0e3f));
-    plan.velocity_sd_m_s = bits ? any_bits() : fabsf(any_within(1.0e2f));
+    intent.margin_m = bits ? any_bits() : fabsf(any_within(1.0e4f));
+    intent.clearance_m = bits ? any_bits() : fabsf(any_within(1.0e4f));
+    intent.since_image_s = bits ? any_bits() : fabsf(any_within(1.0e3f));
+    intent.velocity_sd_m_s = bits ? any_bits() : fabsf(any_within(1.0e2f));
     *legal = !bits;
-    return plan;
+    return intent;
 }
 
 static void check_hazard(const goe_estimate_t *e) {
     static const float one = 1.0f;
     bool legal;
     goe_hazard_t hazard;
-    const goe_plan_t plan = any_plan(&legal);
+    const goe_intent_t intent = any_intent(&legal);
     memset(&hazard, 0xFF, sizeof hazard);
-    const int status = (int)goe_hazard(&memory.estimator, &plan, &hazard);
-    const int expected = (e->valid & GOE_HAS_POSITION) ? GOE_OK : GOE_COLLECTING;
+    const int status = (int)goe_hazard(&memory.estimator, &intent, &hazard);
+    const int expected = (e->valid & GOE_HAS_POSITION) ? GOE_OK : GOE_CONVERGING;
     TEST_ASSERT_TRUE(status == expected || (!legal && (status == GOE_NOT_FINITE || status == GOE_OUT_OF_RANGE)));
-    const float numbers[] = {hazard.time_s,    hazard.miss_m,         hazard.clearance_m, hazard.time_sd_s,
-                             hazard.miss_sd_m, hazard.clearance_sd_m, hazard.violation};
+    const float numbers[] = {hazard.tcpa_s,    hazard.dcpa_m,         hazard.clearance_m,         hazard.tcpa_sd_s,
+                             hazard.dcpa_sd_m, hazard.clearance_sd_m, hazard.conflict_probability};
     check_finite(numbers, sizeof numbers / sizeof numbers[0], "hazard");
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
         TEST_ASSERT_TRUE(i == 2 || !is_negative(&numbers[i]));
         TEST_ASSERT_TRUE(status == GOE_OK || is_zero(&numbers[i]));
     }
-    TEST_ASSERT_TRUE(within(&hazard.violation, one));
+    TEST_ASSERT_TRUE(within(&hazard.conflict_probability, one));
     TEST_ASSERT_TRUE(hazard.has_clearance || (is_zero(&hazard.clearance_m) && is_zero(&hazard.clearance_sd_m)));
     TEST_ASSERT_TRUE(!hazard.has_clearance || (e->valid & GOE_HAS_HEIGHT) != 0u);
 }
@@ -269,7 +270,7 @@ static void check_estimate(void) {
     check_finite(&e->age_s, floats,
                  "estimate"); /* age_s and all behind it are floats, or a count that looks like one */
     check_header(e);
-    check_nothing_beside_the_valid(e);
+    check_only_valid_fields(e);
     check_ranges(e);
     check_refined(e);
     check_covariance(e);
@@ -283,13 +284,13 @@ static void check_filter(const goe_filter_t *filter) {
                           filter->leaving.outward, filter->leaving.turning};
     check_finite(sums, 5, "residuals");
     check_finite(filter->scatter.before, GOE_SERIES + 2, "scatter");
-    if (filter->phase != 0u) { /* otherwise the next image starts it anew */
+    if (filter->phase != 0u) { /* otherwise the next image starts it again */
         check_finite(filter->state, GOE_STATES, "state");
         check_finite(filter->root.element, sizeof filter->root.element / sizeof(float), "root");
     }
-#if GOE_BESIDE
-    check_finite(filter->root.right, GOE_BESIDE, "right-hand side");
-    check_finite(filter->mover.beside, GOE_BESIDE, "latency, velocity");
+#if GOE_AUGMENTED
+    check_finite(filter->root.right, GOE_AUGMENTED, "right-hand side");
+    check_finite(filter->mover.augmented, GOE_AUGMENTED, "latency, velocity");
 #endif
 }
 
@@ -316,10 +317,10 @@ static void update_and_check(const goe_image_t *image) {
     memcpy(&before, &memory.estimator, sizeof before);
     memset(&memory.estimate, 0xFF, sizeof memory.estimate); /* NaN, if it were left so */
     const int status = (int)goe_update(&memory.estimator, image, &memory.estimate);
-    TEST_ASSERT_TRUE(status >= GOE_NO_HEIGHT && status <= GOE_NOTHING_SEEN);
+    TEST_ASSERT_TRUE(status >= GOE_NO_HEIGHT && status <= GOE_NO_DETECTION);
     statuses[status + 16]++;
     if (!GOE_IMAGE_TAKEN(status)) {
-        before.causes[-status]++;
+        before.fault_counts[-status]++;
         TEST_ASSERT_EQUAL_MEMORY(&before, &memory.estimator, sizeof before);
     }
     TEST_ASSERT_EQUAL_INT(status == GOE_OK || status == GOE_PARTIAL, memory.estimate.fresh);
@@ -349,31 +350,31 @@ static float any_from(float least, float most) {
 }
 
 static void any_noise(goe_settings_t *s) {
-    s->detector.point_px = any_from(0.05f, 100.0f);
-    s->detector.point_share = any_from(0.0f, 1.0f);
+    s->detector.point_noise_px = any_from(0.05f, 100.0f);
+    s->detector.point_noise_rel = any_from(0.0f, 1.0f);
     s->detector.point_correlation = any_from(0.0f, 0.95f);
-    s->detector.shape_share = any_from(0.0f, 1.0f);
-    s->navigation.attitude_bias_deg = any_from(1.0e-3f, 30.0f);
-    s->navigation.attitude_white_deg = any_from(1.0e-4f, 30.0f);
-    s->navigation.attitude_drift_deg = any_from(0.0f, 30.0f);
-    s->navigation.height_bias_m = any_from(1.0e-3f, 1.0e3f);
-    s->navigation.velocity_bias_m_s = any_from(0.0f, 100.0f);
-    s->navigation.position_walk_m = any_from(0.0f, 100.0f);
-    s->refined.typical_size_m = any_from(0.1f, 1.0e3f);
-    s->refined.gate_sigma = any_from(1.0f, 100.0f);
-    s->refined.huber_sigma = any_from(0.5f, 100.0f);
-    s->refined.misfit_max = any_from(1.0e-2f, 1.0e3f);
-    s->refined.range_share = any_from(0.01f, 10.0f);
-    s->detector.box_px = any_from(0.05f, 100.0f);
-    s->detector.box_share = any_from(0.0f, 1.0f);
-    s->detector.correlation_s = any_from(0.0f, 100.0f);
-    s->detector.cut_noise = any_from(0.0f, 10.0f);
-    s->navigation.position_white_m = any_from(0.0f, 100.0f);
-    s->navigation.ground_m = any_from(0.0f, 1.0e3f);
+    s->detector.shape_error_rel = any_from(0.0f, 1.0f);
+    s->navigation.attitude_bias_sd_deg = any_from(1.0e-3f, 30.0f);
+    s->navigation.attitude_white_sd_deg = any_from(1.0e-4f, 30.0f);
+    s->navigation.attitude_walk_sd_deg = any_from(0.0f, 30.0f);
+    s->navigation.height_bias_sd_m = any_from(1.0e-3f, 1.0e3f);
+    s->navigation.velocity_bias_sd_m_s = any_from(0.0f, 100.0f);
+    s->navigation.position_walk_sd_m = any_from(0.0f, 100.0f);
+    s->filter.prior_width_m = any_from(0.1f, 1.0e3f);
+    s->filter.gate_sigma = any_from(1.0f, 100.0f);
+    s->filter.huber_sigma = any_from(0.5f, 100.0f);
+    s->filter.nis_ratio_max = any_from(1.0e-2f, 1.0e3f);
+    s->filter.range_sd_rel_max = any_from(0.01f, 10.0f);
+    s->detector.box_noise_px = any_from(0.05f, 100.0f);
+    s->detector.box_noise_rel = any_from(0.0f, 1.0f);
+    s->detector.box_correlation_time_s = any_from(0.0f, 100.0f);
+    s->detector.truncation_noise_rel = any_from(0.0f, 10.0f);
+    s->navigation.position_white_sd_m = any_from(0.0f, 100.0f);
+    s->navigation.terrain_height_sd_m = any_from(0.0f, 1.0e3f);
     s->camera.width_px = any_from(0.0f, 1.0e5f);
     s->camera.height_px = any_from(0.0f, 1.0e5f);
-    s->camera.border_share = any_from(0.0f, 0.5f);
-    s->camera.cut_share = any_from(0.0f, 0.5f);
+    s->camera.border_rel = any_from(0.0f, 0.5f);
+    s->camera.truncation_rel = any_from(0.0f, 0.5f);
 }
 
 static goe_settings_t any_settings(void) {
@@ -410,8 +411,8 @@ static goe_settings_t any_settings(void) {
     s.window.side_min_px = one_in(2) ? 0.1f : between(0.1, 20.0);
     s.window.orientation_memory = 1 + (int)below(one_in(2) ? 3 : 1000);
     s.window.min_baseline_m = one_in(2) ? 1.0e-3f : between(1.0e-3, 10.0);
-    s.method = one_in(4) ? GOE_METHOD_WINDOW : GOE_METHOD_REFINED;
-    s.refined.top_is_highest = one_in(2);
+    s.method = one_in(4) ? GOE_METHOD_WINDOW : GOE_METHOD_FILTER;
+    s.filter.top_is_highest = one_in(2);
     if (one_in(2)) {
         any_noise(&s);
     }
@@ -422,7 +423,7 @@ static goe_pixel_t any_pixel(float (*number)(void)) {
     goe_pixel_t pixel;
     pixel.u_px = number();
     pixel.v_px = number();
-    pixel.seen = !one_in(8);
+    pixel.visible = !one_in(8);
     return pixel;
 }
 
@@ -441,10 +442,10 @@ static void fill_features(goe_image_t *image, float (*number)(void)) {
     image->box.top_px = number();
     image->box.right_px = number();
     image->box.bottom_px = number();
-    image->box.seen = (uint8_t)(one_in(4) ? below(256) : 0u);
-    image->noise.attitude_deg = any_own_noise(number);
-    image->noise.height_m = any_own_noise(number);
-    image->noise.pixel_px = any_own_noise(number);
+    image->box.sides = (uint8_t)(one_in(4) ? below(256) : 0u);
+    image->noise.attitude_sd_deg = any_own_noise(number);
+    image->noise.height_sd_m = any_own_noise(number);
+    image->noise.pixel_sd_px = any_own_noise(number);
 }
 
 static void any_attitude(float q[4]) {
@@ -522,7 +523,7 @@ static void order_box(goe_box_t *box) {
 }
 
 /* [A16, A18, A25, A31, GOE_HAS_POSITION, goe_covariance, goe_estimate_t.method, goe_estimate_t.model, goe_estimate_t.valid, goe_update,
- * refined.range_share]
+ * filter.range_sd_rel_max]
  * GIVEN finite images within the ranges, their extremes preferred, under settings of which the same holds */
 static void extremes_do_no_harm(void) {
     static float (*const numbers[])(void) = {pixel_near, pixel_anywhere, pixel_usual};
@@ -589,17 +590,18 @@ static void spoil(float *x) {
     }
 }
 
-/* The points' box, as far as they are seen, in their place. */
+/* The box of the visible points, in their place. */
 static void put_into_box(goe_image_t *image) {
     goe_box_t *box = &image->box;
     box->left_px = image->left.u_px;
     box->right_px = image->right.u_px;
     box->top_px = image->top.v_px;
     box->bottom_px = image->base_near.v_px;
-    box->seen = (uint8_t)((image->left.seen ? GOE_SEES_LEFT : 0u) | (image->right.seen ? GOE_SEES_RIGHT : 0u) |
-                          (image->top.seen ? GOE_SEES_TOP : 0u) | (image->base_near.seen ? GOE_SEES_BOTTOM : 0u));
+    box->sides =
+        (uint8_t)((image->left.visible ? GOE_SIDE_LEFT : 0u) | (image->right.visible ? GOE_SIDE_RIGHT : 0u) |
+                  (image->top.visible ? GOE_SIDE_TOP : 0u) | (image->base_near.visible ? GOE_SIDE_BOTTOM : 0u));
     if (!one_in(40)) {
-        image->base_left.seen = image->base_near.seen = image->base_right.seen = false;
+        image->base_left.visible = image->base_near.visible = image->base_right.visible = false;
     }
 }
 
@@ -629,8 +631,8 @@ static void spoiled_flights_do_no_harm(void) {
         goe_settings_t settings = scene_settings(&scene);
         settings.model = (goe_model_t)(GOE_MODEL_AUTO + (int)below(3));
         settings.window.points = 3 + (int)below(GOE_WINDOW_MAX - 2);
-        settings.method = one_in(4) ? GOE_METHOD_WINDOW : GOE_METHOD_REFINED;
-        settings.refined.top_is_highest = one_in(2);
+        settings.method = one_in(4) ? GOE_METHOD_WINDOW : GOE_METHOD_FILTER;
+        settings.filter.top_is_highest = one_in(2);
         if (one_in(3)) {
             any_noise(&settings);
         }
@@ -644,7 +646,7 @@ static void spoiled_flights_do_no_harm(void) {
             for (int i = 0; i < 6; i++) {
                 spoil(&pixels[i]->u_px);
                 spoil(&pixels[i]->v_px);
-                pixels[i]->seen = pixels[i]->seen && !one_in(25);
+                pixels[i]->visible = pixels[i]->visible && !one_in(25);
             }
             if (boxed) {
                 put_into_box(&image);
@@ -665,7 +667,7 @@ static void spoiled_flights_do_no_harm(void) {
     TEST_ASSERT_GREATER_THAN_UINT32((uint32_t)flights * 5u, statuses[16 + GOE_OK]);
 }
 
-/* What an opponent would show the refined method, one trick for some images, then the next. */
+/* What an opponent would show the filter method, one trick for some images, then the next. */
 enum {
     HONEST,
     FROZEN,
@@ -695,7 +697,7 @@ static void play_trick(uint32_t trick, int n, goe_image_t *image, const goe_imag
             *pixels[i] = still[i];
         }
         if ((trick == BASE_ALONE && i < 3) || (trick == TOP_ALONE && i != 2)) {
-            pixels[i]->seen = false;
+            pixels[i]->visible = false;
         }
         if (trick == ALL_AT_ONE) {
             pixels[i]->u_px = u;
@@ -729,7 +731,7 @@ static void long_adversarial_tracks_do_no_harm(void) {
         any_scene(&scene);
         goe_settings_t settings = scene_settings(&scene);
         settings.model = (goe_model_t)(GOE_MODEL_AUTO + t % 3);
-        settings.refined.top_is_highest = one_in(2);
+        settings.filter.top_is_highest = one_in(2);
         if (t >= 3) {
             any_noise(&settings);
         }
@@ -740,7 +742,7 @@ static void long_adversarial_tracks_do_no_harm(void) {
             if (n % 10 == 0) {
                 trick = one_in(2) ? (uint32_t)HONEST : below(TRICKS);
             }
-            if (n % 60 == 0) { /* another obstacle, and the flight from its start: nobody tells */
+            if (n % 60 == 0) { /* another obstacle, and the flight from its start, without notice */
                 any_scene(&scene);
                 k = 0;
             }

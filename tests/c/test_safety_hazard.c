@@ -1,4 +1,4 @@
-/* Whatever answer and plan come in, nothing but finite numbers comes out of goe_hazard. SPDX-License-Identifier: MIT
+/* Whatever answer and intent come in, nothing but finite numbers comes out of goe_hazard. SPDX-License-Identifier: MIT
  *
  * As in test_safety.c floats are judged by their bits alone: the test must also hold with -ffast-math. */
 /* tests: lib/hazard/goe_hazard.c */
@@ -80,11 +80,11 @@ static uint32_t magnitude(const float *x) {
     return bits & 0x7FFFFFFFu;
 }
 
-static void check_told(const goe_hazard_t *h) {
+static void check_reported(const goe_hazard_t *h) {
     static const float most = 1.0e9f;
     static const float one = 1.0f;
-    const float *numbers[] = {&h->time_s,    &h->miss_m,    &h->clearance_m,   &h->violation,
-                              &h->time_sd_s, &h->miss_sd_m, &h->clearance_sd_m};
+    const float *numbers[] = {&h->tcpa_s,    &h->dcpa_m,    &h->clearance_m,   &h->conflict_probability,
+                              &h->tcpa_sd_s, &h->dcpa_sd_m, &h->clearance_sd_m};
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
         TEST_ASSERT_TRUE(magnitude(numbers[i]) <= magnitude(&most));
         if (numbers[i] != &h->clearance_m) { /* the only one that may be negative */
@@ -93,7 +93,7 @@ static void check_told(const goe_hazard_t *h) {
             TEST_ASSERT_TRUE(bits <= 0x80000000u);
         }
     }
-    TEST_ASSERT_TRUE(magnitude(&h->violation) <= magnitude(&one));
+    TEST_ASSERT_TRUE(magnitude(&h->conflict_probability) <= magnitude(&one));
 }
 
 static int calls(void) {
@@ -101,45 +101,45 @@ static int calls(void) {
     return wanted ? (int)strtol(wanted, NULL, 0) / UPDATES_PER_CALL : CALLS;
 }
 
-/* [A16, A23, goe_affine.c, goe_hazard_t.violation] */
+/* [A16, A23, goe_affine.c, goe_hazard_t.conflict_probability] */
 static void any_answer_and_plan_give_finite_numbers(void) {
     for (int i = 0; i < calls(); i++) {
-        const goe_plan_t plan = {{up_to(1e3), up_to(1e3), up_to(1e3)},
-                                 magnitude_up_to(1e4),
-                                 magnitude_up_to(1e4),
-                                 magnitude_up_to(1e3),
-                                 magnitude_up_to(1e2)};
+        const goe_intent_t intent = {{up_to(1e3), up_to(1e3), up_to(1e3)},
+                                     magnitude_up_to(1e4),
+                                     magnitude_up_to(1e4),
+                                     magnitude_up_to(1e3),
+                                     magnitude_up_to(1e2)};
         goe_hazard_t hazard;
         give_any_answer();
         const goe_estimator_t before = estimator;
         memset(&hazard, 0xFF, sizeof hazard);
-        CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &plan, &hazard));
-        check_told(&hazard);
+        CHECK_STATUS(GOE_OK, goe_hazard(&estimator, &intent, &hazard));
+        check_reported(&hazard);
         TEST_ASSERT_EQUAL_MEMORY(&before, &estimator, sizeof before);
     }
 }
 
 static void any_bits_of_a_plan_are_refused_or_answered(void) {
     for (int i = 0; i < calls(); i++) {
-        goe_plan_t plan;
+        goe_intent_t intent;
         goe_hazard_t hazard;
         uint32_t bits[6];
         for (int j = 0; j < 6; j++) {
             bits[j] = below(3u) ? check_random_bits(&any) : 0x3F800000u;
         }
-        memcpy(plan.velocity_ned_m_s, bits, 3u * sizeof bits[0]);
-        memcpy(&plan.margin_m, &bits[3], sizeof bits[3]);
-        memcpy(&plan.clearance_m, &bits[4], sizeof bits[4]);
-        memcpy(&plan.since_image_s, &bits[5], sizeof bits[5]);
+        memcpy(intent.velocity_ned_m_s, bits, 3u * sizeof bits[0]);
+        memcpy(&intent.margin_m, &bits[3], sizeof bits[3]);
+        memcpy(&intent.clearance_m, &bits[4], sizeof bits[4]);
+        memcpy(&intent.since_image_s, &bits[5], sizeof bits[5]);
         give_any_answer();
         memset(&hazard, 0xFF, sizeof hazard);
         bool finite = true;
         for (int j = 0; j < 6; j++) {
             finite = finite && (bits[j] & 0x7F800000u) != 0x7F800000u;
         }
-        const goe_status_t status = goe_hazard(&estimator, &plan, &hazard);
+        const goe_status_t status = goe_hazard(&estimator, &intent, &hazard);
         TEST_ASSERT_TRUE(finite ? status == GOE_OK || status == GOE_OUT_OF_RANGE : status == GOE_NOT_FINITE);
-        check_told(&hazard);
+        check_reported(&hazard);
     }
 }
 

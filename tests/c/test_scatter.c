@@ -48,7 +48,7 @@ static double mean_factor(double kept, float repeated) {
     return sum / TRACKS;
 }
 
-/* [(R34)] GIVEN residuals that are new in each image and as large as told THEN nothing is widened by more than chance. */
+/* [(R34)] GIVEN residuals that are new in each image and as large as configured THEN nothing is widened by more than chance. */
 static void nothing_is_widened_without_need(void) {
     const double factor = mean_factor(0.0, 1.0f);
     check_report("factor of white residuals", factor);
@@ -59,7 +59,7 @@ static void nothing_is_widened_without_need(void) {
 
 /* [goe_estimate_t.sigma, (R34)]
  * GIVEN residuals that keep a share from image to image THEN the factor is that of the variance of a long mean of them. */
-static void alike_residuals_count_less(void) {
+static void correlated_residuals_count_less(void) {
     static const double kept[] = {0.3, 0.5, 0.7};
     for (int i = 0; i < 3; i++) {
         const double expected = (1.0 + kept[i]) / (1.0 - kept[i]);
@@ -69,14 +69,14 @@ static void alike_residuals_count_less(void) {
     }
 }
 
-/* [detector.point_correlation, (R34)] GIVEN a correlation that was told THEN it is not counted twice. */
-static void what_is_told_is_not_counted_twice(void) {
+/* [detector.point_correlation, (R34)] GIVEN a configured correlation THEN it is not counted twice. */
+static void an_external_value_is_not_counted_twice(void) {
     const double factor = mean_factor(0.5, 3.0f);
     TEST_ASSERT_TRUE(factor >= 1.0 && factor < 1.15);
 }
 
 /* [goe_estimate_t.sigma, (R34)]
- * GIVEN images that scatter more than told THEN the larger of the two means counts; GIVEN ones that scatter less THEN nothing
+ * GIVEN images that scatter more than configured THEN the larger of the two means counts; GIVEN ones that scatter less THEN nothing
  * shrinks. */
 static void doubt_widens_and_trust_does_not_shrink(void) {
     filter.health.mean_nis = 4.0f;
@@ -94,7 +94,7 @@ static void doubt_widens_and_trust_does_not_shrink(void) {
     CHECK_SAME(1.0f, goe_scatter_factor(&filter, 1.0f));
     filter.health.mean_nis = 1.0f;
     filter.health.excess = 0.0f;
-    filter.scatter.products = 30.0f; /* rho = 30/(10 + 30) less what is chance */
+    filter.scatter.products = 30.0f; /* rho = 30/(10 + 30) less its chance value */
     filter.scatter.squares = 30.0f;
     const double rho = 0.75 - 0.0049 / 0.75;
     CHECK_CLOSE(1.0e-3, (1.0 + rho) / (1.0 - rho), goe_scatter_factor(&filter, 1.0f));
@@ -103,8 +103,8 @@ static void doubt_widens_and_trust_does_not_shrink(void) {
     CHECK_CLOSE(1.0e-3, 19.0, goe_scatter_factor(&filter, 1.0f));
 }
 
-/* [(R34)] GIVEN a feature that is refused or not seen in an image THEN what comes after joins nothing before it; GIVEN an outlier THEN it
- * counts as ten sigmas. */
+/* [(R34)] GIVEN a feature that is refused or not visible in an image THEN the next one is not correlated with an earlier one; GIVEN an
+ * outlier THEN it counts as ten sigmas. */
 static void gaps_join_nothing_and_outliers_are_clipped(void) {
     double residual[4] = {5.0, 5.0, 5.0, 5.0};
     take(residual, 1.0);
@@ -129,8 +129,8 @@ static void gaps_join_nothing_and_outliers_are_clipped(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(nothing_is_widened_without_need);
-    RUN_TEST(alike_residuals_count_less);
-    RUN_TEST(what_is_told_is_not_counted_twice);
+    RUN_TEST(correlated_residuals_count_less);
+    RUN_TEST(an_external_value_is_not_counted_twice);
     RUN_TEST(doubt_widens_and_trust_does_not_shrink);
     RUN_TEST(gaps_join_nothing_and_outliers_are_clipped);
     return UNITY_END();

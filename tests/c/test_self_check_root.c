@@ -1,4 +1,4 @@
-/* The self-check finds a square root that is not correctly rounded: compiled as it stands, with one that can be made wrong.
+/* The self-check finds a square root that is not correctly rounded: compiled as it is, with one that can be made wrong.
  * SPDX-License-Identifier: MIT */
 /* tests: lib/goe_self_check.c */
 #include <math.h>
@@ -44,7 +44,7 @@ static void a_wrong_root_is_found(void) {
     }
 }
 
-/* Each of the arguments is tried: of a root that is wrong for one of them alone the self-check tells, too. */
+/* Each of the arguments is tried: the self-check reports a root that is wrong for one of them alone, too. */
 static void one_wrong_root_among_right_ones_is_found(void) {
     wrong_by = 1u;
     for (uint32_t k = 0; k < ROOTS; k++) {

@@ -52,40 +52,40 @@ static const number_t numbers[] = {
     NUMBER(camera.offset_m[2], -1.0e4f, 1.0e4f, 0.0f),
     NUMBER(camera.width_px, 0.0f, 1.0e5f, 0.0f),
     NUMBER(camera.height_px, 0.0f, 1.0e5f, 0.0f),
-    NUMBER(camera.border_share, 0.0f, 0.5f, 0.012f),
-    NUMBER(camera.cut_share, 0.0f, 0.5f, 0.04f),
+    NUMBER(camera.border_rel, 0.0f, 0.5f, 0.012f),
+    NUMBER(camera.truncation_rel, 0.0f, 0.5f, 0.04f),
     NUMBER(heading_deg, -360.0f, 360.0f, 0.0f),
     NUMBER(window.edge_min_px, 0.0f, 1.0e4f, 10.0f),
     NUMBER(window.orientation_min_px, 0.0f, 1.0e4f, 2.0f),
     NUMBER(window.side_min_px, 0.1f, 1.0e4f, 10.0f),
     NUMBER(window.min_baseline_m, 1.0e-3f, 1.0e4f, 0.1f),
-    NUMBER(detector.point_px, 0.05f, 100.0f, 0.5f),
-    NUMBER(detector.point_share, 0.0f, 1.0f, 0.0f),
+    NUMBER(detector.point_noise_px, 0.05f, 100.0f, 0.5f),
+    NUMBER(detector.point_noise_rel, 0.0f, 1.0f, 0.0f),
     NUMBER(detector.point_correlation, 0.0f, 0.95f, 0.0f),
-    NUMBER(detector.shape_share, 0.0f, 1.0f, 0.0f),
-    NUMBER(detector.box_px, 0.05f, 100.0f, 1.0f),
-    NUMBER(detector.box_share, 0.0f, 1.0f, 0.07f),
-    NUMBER(detector.correlation_s, 0.0f, 100.0f, 1.2f),
-    NUMBER(detector.cut_noise, 0.0f, 10.0f, 1.0f),
-    NUMBER(navigation.attitude_bias_deg, 1.0e-3f, 30.0f, 0.5f),
-    NUMBER(navigation.attitude_white_deg, 1.0e-4f, 30.0f, 0.1f),
-    NUMBER(navigation.attitude_drift_deg, 0.0f, 30.0f, 0.0f),
-    NUMBER(navigation.height_bias_m, 1.0e-3f, 1.0e3f, 0.5f),
-    NUMBER(navigation.velocity_bias_m_s, 0.0f, 100.0f, 0.05f),
-    NUMBER(navigation.position_walk_m, 0.0f, 100.0f, 0.05f),
-    NUMBER(navigation.position_white_m, 0.0f, 100.0f, 0.0f),
-    NUMBER(navigation.height_white_m, 0.0f, 1.0e3f, 0.0f),
-    NUMBER(navigation.slope, 0.0f, 1.0f, 0.0f),
-    NUMBER(navigation.ground_m, 0.0f, 1.0e3f, 2.0f),
-    NUMBER(refined.typical_size_m, 0.1f, 1.0e3f, 6.0f),
-    NUMBER(refined.gate_sigma, 1.0f, 100.0f, 5.0f),
-    NUMBER(refined.huber_sigma, 0.5f, 100.0f, 2.5f),
-    NUMBER(refined.misfit_max, 1.0e-2f, 1.0e3f, 1.9f),
-    NUMBER(refined.range_share, 1.0e-2f, 10.0f, 0.25f),
+    NUMBER(detector.shape_error_rel, 0.0f, 1.0f, 0.0f),
+    NUMBER(detector.box_noise_px, 0.05f, 100.0f, 1.0f),
+    NUMBER(detector.box_noise_rel, 0.0f, 1.0f, 0.07f),
+    NUMBER(detector.box_correlation_time_s, 0.0f, 100.0f, 1.2f),
+    NUMBER(detector.truncation_noise_rel, 0.0f, 10.0f, 1.0f),
+    NUMBER(navigation.attitude_bias_sd_deg, 1.0e-3f, 30.0f, 0.5f),
+    NUMBER(navigation.attitude_white_sd_deg, 1.0e-4f, 30.0f, 0.1f),
+    NUMBER(navigation.attitude_walk_sd_deg, 0.0f, 30.0f, 0.0f),
+    NUMBER(navigation.height_bias_sd_m, 1.0e-3f, 1.0e3f, 0.5f),
+    NUMBER(navigation.velocity_bias_sd_m_s, 0.0f, 100.0f, 0.05f),
+    NUMBER(navigation.position_walk_sd_m, 0.0f, 100.0f, 0.05f),
+    NUMBER(navigation.position_white_sd_m, 0.0f, 100.0f, 0.0f),
+    NUMBER(navigation.height_white_sd_m, 0.0f, 1.0e3f, 0.0f),
+    NUMBER(navigation.terrain_slope_sd, 0.0f, 1.0f, 0.0f),
+    NUMBER(navigation.terrain_height_sd_m, 0.0f, 1.0e3f, 2.0f),
+    NUMBER(filter.prior_width_m, 0.1f, 1.0e3f, 6.0f),
+    NUMBER(filter.gate_sigma, 1.0f, 100.0f, 5.0f),
+    NUMBER(filter.huber_sigma, 0.5f, 100.0f, 2.5f),
+    NUMBER(filter.nis_ratio_max, 1.0e-2f, 1.0e3f, 1.9f),
+    NUMBER(filter.range_sd_rel_max, 1.0e-2f, 10.0f, 0.25f),
 };
 
 static const count_t counts[] = {
-    COUNT(method, GOE_METHOD_WINDOW, GOE_METHOD_REFINED, GOE_METHOD_REFINED),
+    COUNT(method, GOE_METHOD_WINDOW, GOE_METHOD_FILTER, GOE_METHOD_FILTER),
     COUNT(model, GOE_MODEL_AUTO, GOE_MODEL_LINE, GOE_MODEL_AUTO),
     COUNT(window.points, 3, GOE_WINDOW_MAX, 8),
     COUNT(window.line_points, 1, 1000, 8),
@@ -143,7 +143,7 @@ static void check_bad(const char *name) {
     TEST_ASSERT_EQUAL_MEMORY(&before, &estimator, sizeof before);
 }
 
-/* [A26] GIVEN settings full of a sentinel WHEN defaults are asked for THEN no field is left out. */
+/* [A26] GIVEN settings full of a sentinel WHEN defaults are requested THEN no field is left out. */
 static void the_defaults_set_every_field(void) {
     goe_settings_t again;
     unsigned char heading_auto;
@@ -161,17 +161,17 @@ static void the_defaults_set_every_field(void) {
         TEST_ASSERT_EQUAL_INT_MESSAGE(counts[i].standard, get_count(&counts[i]), counts[i].name);
     }
     memcpy(&heading_auto, &settings.heading_auto, 1);
-    memcpy(&top_is_highest, &settings.refined.top_is_highest, 1);
+    memcpy(&top_is_highest, &settings.filter.top_is_highest, 1);
     TEST_ASSERT_EQUAL_UINT8(1, heading_auto);
     TEST_ASSERT_EQUAL_UINT8(0, top_is_highest);
     /* a field that this test does not know of would differ between the two fills */
     TEST_ASSERT_EQUAL_MEMORY(&again, &settings, sizeof settings);
 }
 
-/* [A26] The tables above cover the whole structure: 4 bytes a field, but for the enumerations and the flags beside them. */
+/* [A26] The tables above cover the whole structure: 4 bytes a field, but for the enumerations and the flags next to them. */
 static void the_tables_of_this_test_are_complete(void) {
     const size_t head = offsetof(goe_settings_t, heading_deg) - offsetof(goe_settings_t, method);
-    const size_t tail = sizeof settings - offsetof(goe_settings_t, refined.top_is_highest);
+    const size_t tail = sizeof settings - offsetof(goe_settings_t, filter.top_is_highest);
     TEST_ASSERT_EQUAL_size_t(sizeof settings, 4u * (NUMBERS + COUNTS - 2u) + head + tail);
 }
 

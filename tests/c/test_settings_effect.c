@@ -48,36 +48,36 @@ static const effect_t effects[] = {
     {"camera.offset_m[2]", BOXES, 2.0f, DIFFERS, NOTHING_SHOWN},
     {"camera.width_px", CUT, 0.0f, DIFFERS, NOTHING_SHOWN},
     {"camera.height_px", CUT, 0.0f, DIFFERS, NOTHING_SHOWN},
-    {"camera.border_share", CUT, 0.3f, DIFFERS, NOTHING_SHOWN},
-    {"camera.cut_share", CUT, 0.5f, GROWS, SHOWN(sigma.z0_m)},
+    {"camera.border_rel", CUT, 0.3f, DIFFERS, NOTHING_SHOWN},
+    {"camera.truncation_rel", CUT, 0.5f, GROWS, SHOWN(sigma.z0_m)},
     {"method", TRUCK, GOE_METHOD_WINDOW, DIFFERS, NOTHING_SHOWN},
     {"model", TRUCK, GOE_MODEL_DISC, DIFFERS, NOTHING_SHOWN},
     {"heading_auto", TRUCK, 0.0f, DIFFERS, NOTHING_SHOWN},
     {"heading_deg", TRUCK, 10.0f, DIFFERS, NOTHING_SHOWN},
-    {"navigation.attitude_bias_deg", TRUCK, 5.0f, GROWS, SHOWN(sigma.orientation_deg)},
-    {"navigation.attitude_white_deg", TRUCK, 1.0f, GROWS, SHOWN(sigma.z0_m)},
-    {"navigation.attitude_drift_deg", TRUCK, 1.0f, GROWS, SHOWN(sigma.z0_m)},
-    {"navigation.height_bias_m", CHIMNEY, 5.0f, GROWS, SHOWN(sigma.height_m)},
-    {"navigation.velocity_bias_m_s", CHIMNEY, 1.0f, GROWS, SHOWN(sigma.z0_m)},
-    {"navigation.position_walk_m", CHIMNEY, 0.5f, GROWS, SHOWN(sigma.z0_m)},
-    {"navigation.position_white_m", BOXES, 1.0f, GROWS, SHOWN(sigma.z0_m)},
-    {"navigation.height_white_m", CHIMNEY, 5.0f, GROWS, SHOWN(sigma.height_m)},
-    {"navigation.slope", CHIMNEY, 0.2f, GROWS, SHOWN(sigma.height_m)},
-    {"navigation.ground_m", BOXES, 20.0f, GROWS, SHOWN(sigma.height_m)},
-    {"detector.point_px", TRUCK, 2.0f, GROWS, SHOWN(sigma.z0_m)},
-    {"detector.point_share", CHIMNEY, 0.1f, GROWS, SHOWN(sigma.width_m)},
+    {"navigation.attitude_bias_sd_deg", TRUCK, 5.0f, GROWS, SHOWN(sigma.orientation_deg)},
+    {"navigation.attitude_white_sd_deg", TRUCK, 1.0f, GROWS, SHOWN(sigma.z0_m)},
+    {"navigation.attitude_walk_sd_deg", TRUCK, 1.0f, GROWS, SHOWN(sigma.z0_m)},
+    {"navigation.height_bias_sd_m", CHIMNEY, 5.0f, GROWS, SHOWN(sigma.height_m)},
+    {"navigation.velocity_bias_sd_m_s", CHIMNEY, 1.0f, GROWS, SHOWN(sigma.z0_m)},
+    {"navigation.position_walk_sd_m", CHIMNEY, 0.5f, GROWS, SHOWN(sigma.z0_m)},
+    {"navigation.position_white_sd_m", BOXES, 1.0f, GROWS, SHOWN(sigma.z0_m)},
+    {"navigation.height_white_sd_m", CHIMNEY, 5.0f, GROWS, SHOWN(sigma.height_m)},
+    {"navigation.terrain_slope_sd", CHIMNEY, 0.2f, GROWS, SHOWN(sigma.height_m)},
+    {"navigation.terrain_height_sd_m", BOXES, 20.0f, GROWS, SHOWN(sigma.height_m)},
+    {"detector.point_noise_px", TRUCK, 2.0f, GROWS, SHOWN(sigma.z0_m)},
+    {"detector.point_noise_rel", CHIMNEY, 0.1f, GROWS, SHOWN(sigma.width_m)},
     {"detector.point_correlation", CHIMNEY, 0.8f, GROWS, SHOWN(sigma.width_m)},
-    {"detector.shape_share", CHIMNEY, 0.1f, GROWS, SHOWN(sigma.width_m)},
-    {"detector.box_px", BOXES, 5.0f, GROWS, SHOWN(sigma.height_m)},
-    {"detector.box_share", BOXES, 0.2f, GROWS, SHOWN(sigma.z0_m)},
-    {"detector.correlation_s", BOXES, 0.2f, DIFFERS, NOTHING_SHOWN},
-    {"detector.cut_noise", CUT, 5.0f, GROWS, SHOWN(sigma.z0_m)},
-    {"refined.typical_size_m", CHIMNEY, 20.0f, DIFFERS, NOTHING_SHOWN},
-    {"refined.gate_sigma", OUTLIERS, 100.0f, DIFFERS, NOTHING_SHOWN},
-    {"refined.huber_sigma", OUTLIERS, 1.0f, DIFFERS, NOTHING_SHOWN},
-    {"refined.misfit_max", OUTLIERS, 0.01f, DIFFERS, NOTHING_SHOWN},
-    {"refined.range_share", TRUCK, 0.01f, DIFFERS, NOTHING_SHOWN},
-    {"refined.top_is_highest", TRUCK, 1.0f, DIFFERS, NOTHING_SHOWN},
+    {"detector.shape_error_rel", CHIMNEY, 0.1f, GROWS, SHOWN(sigma.width_m)},
+    {"detector.box_noise_px", BOXES, 5.0f, GROWS, SHOWN(sigma.height_m)},
+    {"detector.box_noise_rel", BOXES, 0.2f, GROWS, SHOWN(sigma.z0_m)},
+    {"detector.box_correlation_time_s", BOXES, 0.2f, DIFFERS, NOTHING_SHOWN},
+    {"detector.truncation_noise_rel", CUT, 5.0f, GROWS, SHOWN(sigma.z0_m)},
+    {"filter.prior_width_m", CHIMNEY, 20.0f, DIFFERS, NOTHING_SHOWN},
+    {"filter.gate_sigma", OUTLIERS, 100.0f, DIFFERS, NOTHING_SHOWN},
+    {"filter.huber_sigma", OUTLIERS, 1.0f, DIFFERS, NOTHING_SHOWN},
+    {"filter.nis_ratio_max", OUTLIERS, 0.01f, DIFFERS, NOTHING_SHOWN},
+    {"filter.range_sd_rel_max", TRUCK, 0.01f, DIFFERS, NOTHING_SHOWN},
+    {"filter.top_is_highest", TRUCK, 1.0f, DIFFERS, NOTHING_SHOWN},
     {"window.points", PAPER, 5.0f, DIFFERS, NOTHING_SHOWN},
     {"window.line_points", PAPER, 20.0f, DIFFERS, NOTHING_SHOWN},
     {"window.edge_min_px", PAPER, 60.0f, DIFFERS, NOTHING_SHOWN},
@@ -153,8 +153,8 @@ static goe_settings_t start(flight_t flight) {
         scene.height_m = 90.0;
         settings.camera.width_px = 1280.0f;
         settings.camera.height_px = 1280.0f;
-        settings.camera.border_share = 0.012f;
-        settings.camera.cut_share = 0.04f;
+        settings.camera.border_rel = 0.012f;
+        settings.camera.truncation_rel = 0.04f;
     }
     return settings;
 }
@@ -183,8 +183,8 @@ static void fly(flight_t flight, const goe_settings_t *settings, answers_t *answ
 static answers_t plain, changed;
 
 /* [A2, (R14), (R23)]
- * GIVEN a flight WHEN one setting alone is changed THEN the answers are others; one that tells of an error makes the sigma larger
- * in which that error is. */
+ * GIVEN a flight WHEN one setting alone is changed THEN the answers change; one that configures an error makes the sigma larger
+ * that includes that error. */
 static void every_setting_does_what_it_says(void) {
     for (size_t i = 0; i < EFFECTS; i++) {
         const effect_t *effect = &effects[i];

@@ -1,4 +1,4 @@
-/* Memory of a side's error against generalised least squares over all images at once, in double. SPDX-License-Identifier: MIT */
+/* Memory of a side's error against generalized least squares over all images at once, in double. SPDX-License-Identifier: MIT */
 /* tests: lib/refined/goe_side_memory.c */
 #include "refined/goe_side_memory.h"
 
@@ -123,7 +123,7 @@ static series_t any_series(void) {
     return s;
 }
 
-/* [detector.box_share, (R30), (R31), (R32)]
+/* [detector.box_noise_rel, (R30), (R31), (R32)]
  * GIVEN a side whose error is a first-order process WHEN its images come one by one THEN value and variance are those of all
  * images at once, with the error's whole covariance. */
 static void it_is_as_good_as_all_images_at_once(void) {
@@ -141,7 +141,7 @@ static void it_is_as_good_as_all_images_at_once(void) {
     }
 }
 
-/* [(R32)] GIVEN a row that was refused THEN nothing is learnt from it. */
+/* [(R32)] GIVEN a row that was refused THEN nothing is learned from it. */
 static void a_refused_row_teaches_nothing(void) {
     goe_side_memory_t side;
     goe_side_memory_t before;

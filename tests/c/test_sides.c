@@ -1,4 +1,4 @@
-/* The sides of a box: which count, and the points that stand for them, against leaning rectangles in double.
+/* The sides of a box: which count, and the points that replace them, against leaning rectangles in double.
  * SPDX-License-Identifier: MIT */
 /* tests: lib/image/goe_sides.c */
 #include "image/goe_sides.h"
@@ -20,7 +20,7 @@ static goe_camera_t camera;
 static goe_image_t image;
 static goe_view_t view;
 static goe_faults_t faults;
-static uint32_t causes[GOE_CAUSES];
+static uint32_t fault_counts[GOE_FAULT_COUNTS];
 static goe_pixel_t left, right, top;
 
 static void look(double roll_deg, double down_deg);
@@ -29,16 +29,16 @@ void setUp(void) {
     memset(&camera, 0, sizeof camera);
     memset(&image, 0, sizeof image);
     memset(&view, 0, sizeof view);
-    memset(causes, 0, sizeof causes);
+    memset(fault_counts, 0, sizeof fault_counts);
     camera.fx_px = 800.0f;
     camera.fy_px = 500.0f;
     camera.cx_px = 500.0f;
     camera.cy_px = 400.0f;
     camera.width_px = WIDTH_PX;
     camera.height_px = HEIGHT_PX;
-    camera.border_share = BORDER;
-    camera.cut_share = CUT;
-    faults.causes = causes;
+    camera.border_rel = BORDER;
+    camera.truncation_rel = CUT;
+    faults.fault_counts = fault_counts;
     faults.first = GOE_OK;
     view.image = &image;
     look(0.0, 0.0);
@@ -62,7 +62,7 @@ static void see(float l, float t, float r, float b, unsigned seen) {
     image.box.top_px = t;
     image.box.right_px = r;
     image.box.bottom_px = b;
-    image.box.seen = (uint8_t)seen;
+    image.box.sides = (uint8_t)seen;
     faults.first = GOE_OK;
     goe_sides_read(&camera, &view, &faults);
     goe_sides_points(&camera, &view, &left, &right, &top);
@@ -70,68 +70,68 @@ static void see(float l, float t, float r, float b, unsigned seen) {
 
 /* ----------------------------------------------------------------------------------------------------------- sides -- */
 
-/* [GOE_SEES_BOX, goe_box_t.seen] GIVEN bits beyond those of the four sides THEN they are none. */
+/* [GOE_SIDES_ALL, goe_box_t.sides] GIVEN bits beyond those of the four sides THEN they are none. */
 static void a_bit_that_is_no_side_is_none(void) {
-    see(400.0f, 300.0f, 600.0f, 500.0f, 0xF0u | GOE_SEES_LEFT);
-    TEST_ASSERT_EQUAL_HEX(GOE_SEES_LEFT, view.sides.usable);
+    see(400.0f, 300.0f, 600.0f, 500.0f, 0xF0u | GOE_SIDE_LEFT);
+    TEST_ASSERT_EQUAL_HEX(GOE_SIDE_LEFT, view.sides.usable);
 }
 
-/* [camera.border_share, camera.height_px, camera.width_px]
+/* [camera.border_rel, camera.height_px, camera.width_px]
  * GIVEN a side nearer to its border than the share of the width THEN it does not count, and no other side is the worse. */
 static void a_side_at_the_border_is_not_measured(void) {
     static const float in_px[] = {12.0f, 12.0f, WIDTH_PX - 13.0f, HEIGHT_PX - 13.0f};
     static const float out_px[] = {9.0f, 9.0f, WIDTH_PX - 10.0f, HEIGHT_PX - 10.0f};
-    for (unsigned set = 0; set <= GOE_SEES_BOX; set++) {
-        const float l = set & GOE_SEES_LEFT ? in_px[0] : out_px[0];
-        const float t = set & GOE_SEES_TOP ? in_px[1] : out_px[1];
-        const float r = set & GOE_SEES_RIGHT ? in_px[2] : out_px[2];
-        const float b = set & GOE_SEES_BOTTOM ? in_px[3] : out_px[3];
-        see(l, t, r, b, GOE_SEES_BOX);
+    for (unsigned set = 0; set <= GOE_SIDES_ALL; set++) {
+        const float l = set & GOE_SIDE_LEFT ? in_px[0] : out_px[0];
+        const float t = set & GOE_SIDE_TOP ? in_px[1] : out_px[1];
+        const float r = set & GOE_SIDE_RIGHT ? in_px[2] : out_px[2];
+        const float b = set & GOE_SIDE_BOTTOM ? in_px[3] : out_px[3];
+        see(l, t, r, b, GOE_SIDES_ALL);
         TEST_ASSERT_EQUAL_HEX(set, view.sides.usable);
-        TEST_ASSERT_EQUAL_UINT32(0u, causes[-GOE_SWAPPED]);
+        TEST_ASSERT_EQUAL_UINT32(0u, fault_counts[-GOE_SWAPPED]);
     }
 }
 
 static void a_border_that_is_not_known_is_none(void) {
     camera.width_px = camera.height_px = 0.0f;
-    see(-5.0f, -5.0f, 5000.0f, 5000.0f, GOE_SEES_BOX);
-    TEST_ASSERT_EQUAL_HEX(GOE_SEES_BOX, view.sides.usable);
+    see(-5.0f, -5.0f, 5000.0f, 5000.0f, GOE_SIDES_ALL);
+    TEST_ASSERT_EQUAL_HEX(GOE_SIDES_ALL, view.sides.usable);
     TEST_ASSERT_FALSE(view.sides.cut);
 }
 
-/* [camera.cut_share, detector.cut_noise]
- * GIVEN left or right missing, or nearer to the border than cut_share THEN the box counts as cut; top and bottom do not cut. */
+/* [camera.truncation_rel, detector.truncation_noise_rel]
+ * GIVEN left or right missing, or nearer to the border than truncation_rel THEN the box counts as cut; top and bottom do not cut. */
 static void a_box_is_cut_by_left_and_right_alone(void) {
-    see(200.0f, 30.0f, 600.0f, 780.0f, GOE_SEES_BOX);
+    see(200.0f, 30.0f, 600.0f, 780.0f, GOE_SIDES_ALL);
     TEST_ASSERT_FALSE(view.sides.cut);
-    see(40.0f, 200.0f, 600.0f, 600.0f, GOE_SEES_BOX);
+    see(40.0f, 200.0f, 600.0f, 600.0f, GOE_SIDES_ALL);
     TEST_ASSERT_TRUE(view.sides.cut);
-    TEST_ASSERT_EQUAL_HEX(GOE_SEES_BOX, view.sides.usable);
-    see(200.0f, 200.0f, 960.0f, 600.0f, GOE_SEES_BOX);
+    TEST_ASSERT_EQUAL_HEX(GOE_SIDES_ALL, view.sides.usable);
+    see(200.0f, 200.0f, 960.0f, 600.0f, GOE_SIDES_ALL);
     TEST_ASSERT_TRUE(view.sides.cut);
-    see(200.0f, 200.0f, 600.0f, 600.0f, GOE_SEES_BOX & ~(unsigned)GOE_SEES_RIGHT);
+    see(200.0f, 200.0f, 600.0f, 600.0f, GOE_SIDES_ALL & ~(unsigned)GOE_SIDE_RIGHT);
     TEST_ASSERT_TRUE(view.sides.cut);
 }
 
-/* [goe_box_t.left_px] GIVEN sides out of order THEN none counts, and that is told; of sides that are not seen no order is asked. */
+/* [goe_box_t.left_px] GIVEN sides out of order THEN none counts, and that is reported; invisible sides may be in any order. */
 static void sides_out_of_order_do_not_count(void) {
-    see(600.0f, 200.0f, 600.0f, 600.0f, GOE_SEES_BOX);
+    see(600.0f, 200.0f, 600.0f, 600.0f, GOE_SIDES_ALL);
     TEST_ASSERT_EQUAL_HEX(0u, view.sides.usable);
     TEST_ASSERT_EQUAL_INT(GOE_SWAPPED, faults.first);
-    see(200.0f, 600.0f, 600.0f, 500.0f, GOE_SEES_BOX);
+    see(200.0f, 600.0f, 600.0f, 500.0f, GOE_SIDES_ALL);
     TEST_ASSERT_EQUAL_HEX(0u, view.sides.usable);
-    TEST_ASSERT_EQUAL_UINT32(2u, causes[-GOE_SWAPPED]);
-    see(600.0f, 600.0f, 200.0f, 500.0f, GOE_SEES_LEFT | GOE_SEES_TOP);
-    TEST_ASSERT_EQUAL_HEX(GOE_SEES_LEFT | GOE_SEES_TOP, view.sides.usable);
-    see(600.0f, 200.0f, 200.0f, 500.0f, GOE_SEES_LEFT | GOE_SEES_TOP | GOE_SEES_BOTTOM);
-    TEST_ASSERT_EQUAL_HEX(GOE_SEES_LEFT | GOE_SEES_TOP | GOE_SEES_BOTTOM, view.sides.usable);
-    TEST_ASSERT_EQUAL_UINT32(2u, causes[-GOE_SWAPPED]);
+    TEST_ASSERT_EQUAL_UINT32(2u, fault_counts[-GOE_SWAPPED]);
+    see(600.0f, 600.0f, 200.0f, 500.0f, GOE_SIDE_LEFT | GOE_SIDE_TOP);
+    TEST_ASSERT_EQUAL_HEX(GOE_SIDE_LEFT | GOE_SIDE_TOP, view.sides.usable);
+    see(600.0f, 200.0f, 200.0f, 500.0f, GOE_SIDE_LEFT | GOE_SIDE_TOP | GOE_SIDE_BOTTOM);
+    TEST_ASSERT_EQUAL_HEX(GOE_SIDE_LEFT | GOE_SIDE_TOP | GOE_SIDE_BOTTOM, view.sides.usable);
+    TEST_ASSERT_EQUAL_UINT32(2u, fault_counts[-GOE_SWAPPED]);
 }
 
 /* ---------------------------------------------------------------------------------------------------------- points -- */
 
 static void check_pixel(double u_px, double v_px, const goe_pixel_t *pixel) {
-    TEST_ASSERT_TRUE(pixel->seen);
+    TEST_ASSERT_TRUE(pixel->visible);
     CHECK_CLOSE(0.02, u_px, pixel->u_px);
     CHECK_CLOSE(0.02, v_px, pixel->v_px);
 }
@@ -153,7 +153,7 @@ static void a_leaning_box_is_turned_back(void) {
         const double high = w * fabs(s) + h * c;
         look(roll_deg, 0.0); /* down lies in the image at (sin roll, cos roll) */
         see((float)(500.0 + 800.0 * (x - wide)), (float)(400.0 + 500.0 * (y - high)),
-            (float)(500.0 + 800.0 * (x + wide)), (float)(400.0 + 500.0 * (y + high)), GOE_SEES_BOX);
+            (float)(500.0 + 800.0 * (x + wide)), (float)(400.0 + 500.0 * (y + high)), GOE_SIDES_ALL);
         if (fabs(s) < 0.011) {
             continue; /* taken as upright */
         }
@@ -163,40 +163,40 @@ static void a_leaning_box_is_turned_back(void) {
     }
 }
 
-/* GIVEN an upright box THEN its points are the middles of its sides, as far as these are seen: without bottom at the top's height,
+/* GIVEN an upright box THEN its points are the middles of its visible sides: without bottom at the top's height,
  * without both at the image's middle. */
 static void an_upright_box_gives_the_middles_of_its_sides(void) {
-    see(300.0f, 100.0f, 500.0f, 300.0f, GOE_SEES_BOX);
+    see(300.0f, 100.0f, 500.0f, 300.0f, GOE_SIDES_ALL);
     check_pixel(300.0, 200.0, &left);
     check_pixel(500.0, 200.0, &right);
     check_pixel(400.0, 100.0, &top);
-    see(300.0f, 100.0f, 500.0f, 300.0f, GOE_SEES_BOX & ~(unsigned)GOE_SEES_BOTTOM);
+    see(300.0f, 100.0f, 500.0f, 300.0f, GOE_SIDES_ALL & ~(unsigned)GOE_SIDE_BOTTOM);
     check_pixel(300.0, 100.0, &left);
     check_pixel(400.0, 100.0, &top);
-    see(300.0f, 100.0f, 500.0f, 300.0f, GOE_SEES_LEFT | GOE_SEES_RIGHT);
+    see(300.0f, 100.0f, 500.0f, 300.0f, GOE_SIDE_LEFT | GOE_SIDE_RIGHT);
     check_pixel(500.0, 400.0, &right);
-    TEST_ASSERT_FALSE(top.seen);
+    TEST_ASSERT_FALSE(top.visible);
 }
 
-static void check_no_points(void) { TEST_ASSERT_FALSE(left.seen || right.seen || top.seen); }
+static void check_no_points(void) { TEST_ASSERT_FALSE(left.visible || right.visible || top.visible); }
 
-/* [goe_image_t.box] GIVEN a box that does not tell the width of what leans in it THEN it gives no points. */
-static void what_a_box_does_not_tell_gives_no_points(void) {
-    see(300.0f, 100.0f, 500.0f, 300.0f, GOE_SEES_BOX & ~(unsigned)GOE_SEES_LEFT);
+/* [goe_image_t.box] GIVEN a box too narrow for the lean of its content THEN it gives no points. */
+static void missing_sides_of_a_box_give_no_points(void) {
+    see(300.0f, 100.0f, 500.0f, 300.0f, GOE_SIDES_ALL & ~(unsigned)GOE_SIDE_LEFT);
     check_no_points();
     look(20.0, 0.0); /* without its height */
-    see(300.0f, 100.0f, 500.0f, 300.0f, GOE_SEES_BOX & ~(unsigned)GOE_SEES_BOTTOM);
+    see(300.0f, 100.0f, 500.0f, 300.0f, GOE_SIDES_ALL & ~(unsigned)GOE_SIDE_BOTTOM);
     check_no_points();
     look(40.0, 0.0); /* leaning too far */
-    see(300.0f, 100.0f, 500.0f, 300.0f, GOE_SEES_BOX);
+    see(300.0f, 100.0f, 500.0f, 300.0f, GOE_SIDES_ALL);
     check_no_points();
     look(20.0, 0.0); /* too flat, and too narrow, for any rectangle that leans so */
-    see(300.0f, 190.0f, 700.0f, 210.0f, GOE_SEES_BOX);
+    see(300.0f, 190.0f, 700.0f, 210.0f, GOE_SIDES_ALL);
     check_no_points();
-    see(480.0f, 100.0f, 520.0f, 700.0f, GOE_SEES_BOX);
+    see(480.0f, 100.0f, 520.0f, 700.0f, GOE_SIDES_ALL);
     check_no_points();
     look(0.0, 90.0); /* from straight above there is no down in the image */
-    see(400.0f, 300.0f, 600.0f, 500.0f, GOE_SEES_BOX);
+    see(400.0f, 300.0f, 600.0f, 500.0f, GOE_SIDES_ALL);
     check_no_points();
 }
 
@@ -209,6 +209,6 @@ int main(void) {
     RUN_TEST(sides_out_of_order_do_not_count);
     RUN_TEST(a_leaning_box_is_turned_back);
     RUN_TEST(an_upright_box_gives_the_middles_of_its_sides);
-    RUN_TEST(what_a_box_does_not_tell_gives_no_points);
+    RUN_TEST(missing_sides_of_a_box_give_no_points);
     return UNITY_END();
 }

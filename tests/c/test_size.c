@@ -11,7 +11,7 @@ void tearDown(void) {}
 static void an_estimator_takes_two_and_three_quarters_of_a_kibibyte_at_the_default_window(void) {
     const size_t beyond = (GOE_WINDOW_MAX > STANDARD_WINDOW ? GOE_WINDOW_MAX - STANDARD_WINDOW : 0u) * BYTES_PER_POINT;
     check_report("bytes of an estimator", (double)sizeof(goe_estimator_t));
-    TEST_ASSERT_TRUE(sizeof(goe_estimator_t) <= (GOE_BESIDE > 0 ? 2936u : 2376u) + beyond);
+    TEST_ASSERT_TRUE(sizeof(goe_estimator_t) <= (GOE_AUGMENTED > 0 ? 2936u : 2376u) + beyond);
 }
 
 static void each_point_of_the_window_takes_40_bytes(void) {

@@ -100,7 +100,7 @@ static dense_t information_of(const goe_triangle_t *root) {
 static dense_t covariance_of(const goe_triangle_t *root) { return inverted(information_of(root), N); }
 
 /* Symmetric matrices, each element by the diagonal's. */
-static void check_alike(double share, const dense_t *expected, const dense_t *actual) {
+static void check_equal(double share, const dense_t *expected, const dense_t *actual) {
     for (int i = 0; i < N; i++) {
         for (int j = 0; j < N; j++) {
             const double scale = sqrt(expected->m[i][i] * expected->m[j][j]);
@@ -160,7 +160,7 @@ static dense_t noise_of(const goe_matrix_t *matrix, double nuisance_root) {
     return s;
 }
 
-/* R'R + A'S^-1A, its solution for A'S^-1r, and what is left: e'S^-1e + x'R'Rx, e = r - Ax. */
+/* R'R + A'S^-1A, its solution for A'S^-1r, and the rest: e'S^-1e + x'R'Rx, e = r - Ax. */
 static solution_t solve(const goe_triangle_t *root, double nuisance_root, const goe_matrix_t *matrix) {
     const dense_t weight = inverted(noise_of(matrix, nuisance_root), ROWS);
     const dense_t prior = information_of(root);
@@ -216,15 +216,15 @@ static void check_update(goe_triangle_t *root, double nuisance_root, goe_matrix_
     float change[GOE_UNKNOWNS];
     const float nis = goe_srif_update(root, (float)nuisance_root, matrix, change);
     const dense_t information = information_of(root);
-    check_alike(SHARE, &expected.information, &information);
+    check_equal(SHARE, &expected.information, &information);
     for (int i = 0; i < N; i++) {
         CHECK_CLOSE(SHARE, 0.0, ((double)change[i] - expected.change[i]) / sqrt(covariance.m[i][i]));
     }
     CHECK_CLOSE(SHARE * (1.0 + expected.nis), expected.nis, nis);
 }
 
-/* [GOE_METHOD_REFINED, goe_estimate_t.nis, (R17)]
- * GIVEN any triangle and any 1 to 9 rows WHEN they are rotated in THEN information, change and what is left are those of the
+/* [GOE_METHOD_FILTER, goe_estimate_t.nis, (R17)]
+ * GIVEN any triangle and any 1 to 9 rows WHEN they are rotated in THEN information, change and the rest are those of the
  * normal equations with the temporaries' noise in the rows' covariance. */
 static void an_update_solves_the_normal_equations(void) {
     any = check_random_start("update");
@@ -237,8 +237,8 @@ static void an_update_solves_the_normal_equations(void) {
     }
 }
 
-/* [T3] GIVEN the same WHEN the last state is considered THEN the others are those of the normal equations with that state held at 0,
- * their dependence on it is that of these equations, too, and what is known of it stays. */
+/* [T3] GIVEN the same WHEN the last state is considered THEN the others are those of the normal equations with that state fixed at 0,
+ * their dependence on it is that of these equations, too, and its own information stays. */
 static void a_considered_state_is_held_and_depended_on(void) {
     any = check_random_start("considering");
     for (int n = 0; n < CASES; n++) {
@@ -379,10 +379,10 @@ static void check_spread(const float direction[GOE_STATES], size_t first, size_t
     }
     goe_srif_spread(&root, direction, first, last, sigma);
     const dense_t actual = covariance_of(&root);
-    check_alike(5.0 * SHARE, &expected, &actual);
+    check_equal(5.0 * SHARE, &expected, &actual);
 }
 
-/* [navigation.attitude_drift_deg, navigation.position_walk_m, (R14)]
+/* [navigation.attitude_walk_sd_deg, navigation.position_walk_sd_m, (R14)]
  * GIVEN a variance along one state, or along several at once THEN the covariance grows by sigma^2 d d', and nothing else
  * changes. */
 static void spreading_adds_to_the_covariance(void) {
@@ -413,7 +413,7 @@ static void a_tiny_sigma_changes_nothing(void) {
         goe_srif_spread(&root, one, 0, 0, tiny[i]);
         goe_srif_spread(&root, two, 2, 6, tiny[i]);
         const dense_t after = information_of(&root);
-        check_alike(SHARE, &before, &after);
+        check_equal(SHARE, &before, &after);
     }
 }
 
@@ -449,7 +449,7 @@ static void the_root_times_its_inverse_is_one(void) {
 }
 
 /* [(R22)] GIVEN weights with zeros among them THEN projected'projected = w'Pw. */
-static void a_variance_is_the_covariance_seen_along_the_weights(void) {
+static void a_variance_is_the_covariance_projected_along_the_weights(void) {
     any = check_random_start("variance");
     for (int n = 0; n < CASES; n++) {
         goe_triangle_t root = no_root;
@@ -515,7 +515,7 @@ static void a_marginal_makes_a_root_again(void) {
         }
         goe_srif_from_covariance(c, sigma, &root, &inverse);
         const dense_t actual = covariance_of(&root);
-        check_alike(20.0 * SHARE, &expected, &actual); /* squaring doubled the digits that the condition takes */
+        check_equal(20.0 * SHARE, &expected, &actual); /* squaring doubled the digits that the condition takes */
         check_inverse(&root, &inverse);
     }
 }
@@ -596,7 +596,7 @@ int main(void) {
     RUN_TEST(spreading_adds_to_the_covariance);
     RUN_TEST(a_tiny_sigma_changes_nothing);
     RUN_TEST(the_root_times_its_inverse_is_one);
-    RUN_TEST(a_variance_is_the_covariance_seen_along_the_weights);
+    RUN_TEST(a_variance_is_the_covariance_projected_along_the_weights);
     RUN_TEST(a_marginal_makes_a_root_again);
     RUN_TEST(a_singular_covariance_gives_a_finite_root);
     RUN_TEST(a_substitution_keeps_the_information);

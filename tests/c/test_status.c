@@ -6,7 +6,7 @@
 
 /* Images from the first number to the last, then calls. */
 static const int first[] = {GOE_NO_HEIGHT, GOE_CORRUPTED};
-static const int last[] = {GOE_NOTHING_SEEN, GOE_BAD_SETTINGS};
+static const int last[] = {GOE_NO_DETECTION, GOE_BAD_SETTINGS};
 #define RANGES 2
 #define FREE_FROM (-31) /* for faults of images to come */
 
@@ -53,8 +53,8 @@ static void a_name_fits_a_log(void) {
 static void the_names_are_those_of_the_manual(void) {
     TEST_ASSERT_EQUAL_STRING("ok", text_of(GOE_OK));
     TEST_ASSERT_EQUAL_STRING("no_baseline", text_of(GOE_NO_BASELINE));
-    TEST_ASSERT_EQUAL_STRING("nothing_seen", text_of(GOE_NOTHING_SEEN));
-    TEST_ASSERT_EQUAL_STRING("held", text_of(GOE_HELD));
+    TEST_ASSERT_EQUAL_STRING("no_detection", text_of(GOE_NO_DETECTION));
+    TEST_ASSERT_EQUAL_STRING("stale", text_of(GOE_STALE));
     TEST_ASSERT_EQUAL_STRING("behind_camera", text_of(GOE_BEHIND_CAMERA));
     TEST_ASSERT_EQUAL_STRING("bad_height", text_of(GOE_BAD_HEIGHT));
     TEST_ASSERT_EQUAL_STRING("bad_attitude", text_of(GOE_BAD_ATTITUDE));
@@ -62,7 +62,7 @@ static void the_names_are_those_of_the_manual(void) {
     TEST_ASSERT_EQUAL_STRING("no_height", text_of(GOE_NO_HEIGHT));
     TEST_ASSERT_EQUAL_STRING("bad_settings", text_of(GOE_BAD_SETTINGS));
     TEST_ASSERT_EQUAL_STRING("bad_argument", text_of(GOE_BAD_ARGUMENT));
-    TEST_ASSERT_EQUAL_STRING("not_initialised", text_of(GOE_NOT_INITIALISED));
+    TEST_ASSERT_EQUAL_STRING("not_initialized", text_of(GOE_NOT_INITIALIZED));
     TEST_ASSERT_EQUAL_STRING("corrupted", text_of(GOE_CORRUPTED));
 }
 
@@ -81,8 +81,8 @@ static void any_other_number_is_unknown(void) {
 /* [A25] */
 static void the_sign_is_the_grade(void) {
     TEST_ASSERT_TRUE(GOE_OK == 0);
-    TEST_ASSERT_TRUE(GOE_PARTIAL > 0 && GOE_COLLECTING > 0 && GOE_HELD > 0 && GOE_NOTHING_SEEN > 0);
-    TEST_ASSERT_TRUE(GOE_BEHIND_CAMERA == -1 && GOE_NO_HEIGHT == -(GOE_CAUSES - 1)); /* index the counters */
+    TEST_ASSERT_TRUE(GOE_PARTIAL > 0 && GOE_CONVERGING > 0 && GOE_STALE > 0 && GOE_NO_DETECTION > 0);
+    TEST_ASSERT_TRUE(GOE_BEHIND_CAMERA == -1 && GOE_NO_HEIGHT == -(GOE_FAULT_COUNTS - 1)); /* index the counters */
 }
 
 /* GIVEN the statuses of images THEN those of a refusal took nothing, all others took the image; a call's failure took none. */
@@ -96,7 +96,7 @@ static void what_took_the_image(void) {
     }
 }
 
-/* GIVEN any number THEN a reason has a name of its own, and what is none is unknown. */
+/* GIVEN any number THEN a reason has a name of its own, and any other number is unknown. */
 static void reasons_have_names(void) {
     static const char *const names[] = {"none", "convention", "moves", "base", "shape", "late", "noise"};
     for (int reason = GOE_REASON_NONE; reason <= GOE_REASON_NOISE; reason++) {

@@ -1,4 +1,4 @@
-/* What time alone does to what is known: images in which nothing is seen. SPDX-License-Identifier: MIT */
+/* The effect of time alone on the estimate: images without a detection. SPDX-License-Identifier: MIT */
 /* tests: lib/refined/goe_filter.c */
 #include <math.h>
 #include <string.h>
@@ -19,8 +19,8 @@ static goe_image_t last;
 void setUp(void) {
     scene_default(&scene);
     goe_settings_t settings = scene_settings(&scene);
-    settings.navigation.attitude_drift_deg = (float)DRIFT_DEG;
-    settings.navigation.position_walk_m = (float)WALK_M;
+    settings.navigation.attitude_walk_sd_deg = (float)DRIFT_DEG;
+    settings.navigation.position_walk_sd_m = (float)WALK_M;
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
     for (int k = 0; k < 40; k++) {
         scene_image(&scene, k, &last, NULL);
@@ -30,7 +30,7 @@ void setUp(void) {
 }
 void tearDown(void) {}
 
-/* Nothing is seen from where the aircraft was, that much later. */
+/* An image without a detection, from the same position, that much later. */
 static void wait_s(double s) {
     scene_hide_points(&last);
     last.pose.time_us += (int64_t)(s * 1.0e6);
@@ -43,8 +43,8 @@ static double variance(goe_state_index_t state) {
     return (double)goe_inverse_variance(&inverse, state);
 }
 
-/* GIVEN an attitude whose error walks WHEN it has for four seconds THEN each axis is uncertain by twice what it is after one, not by
- * four times; and the gate, which works by what was known before, hears of it. */
+/* GIVEN an attitude whose error walks WHEN it has for four seconds THEN the uncertainty of each axis is twice that after one, not
+ * four times; and the gate, which uses the earlier state, takes it into account. */
 static void the_attitude_drifts_with_the_root_of_time(void) {
     static const goe_state_index_t axes[] = {GOE_BIAS_X, GOE_BIAS_Y, GOE_BIAS_Z};
     double before[3];

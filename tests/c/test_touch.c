@@ -1,4 +1,4 @@
-/* Sides of upright bounding boxes on boxes, chords and discs, against the extremes of what is seen in double.
+/* Sides of upright bounding boxes on boxes, chords and discs, against the extremes of the visible points in double.
  * SPDX-License-Identifier: MIT */
 /* tests: lib/refined/goe_touch.c */
 #include "refined/goe_touch.h"
@@ -130,13 +130,13 @@ static void sides_touch_a_chord_where_its_image_ends(void) { check_model(A_CHORD
 /* [A29, goe_image_t.box, (R27)] */
 static void sides_touch_a_disc_where_its_image_ends(void) { check_model(A_DISC, DISCS, "discs"); }
 
-/* [A29] GIVEN a side that is not seen THEN it gives no row, and the others give theirs. */
-static void a_side_that_is_not_seen_gives_no_row(void) {
+/* [A29] GIVEN an invisible side THEN it gives no row, and the others give theirs. */
+static void a_side_that_is_not_visible_gives_no_row(void) {
     double truth[GOE_STATES];
     model = A_BOX;
     any = check_random_start("some sides");
     any_obstacle(truth);
-    sides.usable = GOE_SEES_RIGHT | GOE_SEES_TOP;
+    sides.usable = GOE_SIDE_RIGHT | GOE_SIDE_TOP;
     make_rows();
     TEST_ASSERT_EQUAL_size_t(2, sighting.rows.count);
     TEST_ASSERT_EQUAL_size_t(GOE_POINT_RIGHT, sighting.rows.feature[0]);
@@ -159,7 +159,7 @@ static void cylinder_ahead(double roof_m, double pitch_down_deg) {
     sighting.state[GOE_FRONT_X] = 0.1f;
     sighting.state[GOE_TOP] = (float)(0.01 * roof_m);
     sighting_look(&sighting);
-    sides.usable = GOE_SEES_BOX;
+    sides.usable = GOE_SIDES_ALL;
     sides.cut = false;
     for (size_t side = 0; side < GOE_BOX_SIDES; side++) {
         sides.px[side] = (side & 1u) ? sighting.settings.camera.cy_px : sighting.settings.camera.cx_px;
@@ -242,7 +242,7 @@ static void a_house_by_its_box_and_its_corners_has_its_height(void) {
         const double roll_deg[3] = {0.0, 10.0, -25.0};
         scene_t scene = house(i % 2 == 0 ? 30.0 : 5.0, roll_deg[i / 4]);
         settings = scene_settings(&scene);
-        settings.refined.top_is_highest = i / 2 % 2 == 1;
+        settings.filter.top_is_highest = i / 2 % 2 == 1;
         const double worst = worst_height(&scene);
         check_report("worst height, sigmas", worst);
         TEST_ASSERT_TRUE(worst < 3.0);
@@ -254,7 +254,7 @@ static void a_house_by_its_box_and_its_corners_has_its_height(void) {
 static void a_good_detector_is_not_spoiled_by_roll(void) {
     scene_t scene = house(30.0, 25.0);
     settings = scene_settings(&scene);
-    settings.detector.box_share = 0.005f;
+    settings.detector.box_noise_rel = 0.005f;
     TEST_ASSERT_TRUE(worst_height(&scene) < 3.0);
     CHECK_CLOSE(0.3, 10.0, estimate.width_m);
     CHECK_CLOSE(0.3, 15.0, estimate.length_m);
@@ -265,7 +265,7 @@ int main(void) {
     RUN_TEST(sides_touch_a_box_where_its_image_ends);
     RUN_TEST(sides_touch_a_chord_where_its_image_ends);
     RUN_TEST(sides_touch_a_disc_where_its_image_ends);
-    RUN_TEST(a_side_that_is_not_seen_gives_no_row);
+    RUN_TEST(a_side_that_is_not_visible_gives_no_row);
     RUN_TEST(a_level_plane_touches_the_nearest_point);
     RUN_TEST(a_head_behind_the_camera_gives_no_row);
     RUN_TEST(a_house_by_its_box_and_its_corners_has_its_height);

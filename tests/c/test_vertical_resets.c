@@ -28,7 +28,7 @@ typedef struct {
     jump_t jump[JUMPS_MAX];
     int jumps;
     double height_sd_m;            /* noise of the height */
-    int blind_from, blind_until;   /* images in which nothing is seen ... */
+    int blind_from, blind_until;   /* images without a detection ... */
     bool looks_back;               /* ... as the aircraft flies backwards in them */
     int refused;                   /* of the flight with jumps, once before it is taken; -1: none */
     int broken_from, broken_until; /* images of something else: the filter starts again */
@@ -103,7 +103,7 @@ static void see(int k, goe_image_t *image) {
         take_late_pose(k, &image->pose);
     }
     if (flight.kind == OUTLINE) {
-        image->base_left.seen = image->base_near.seen = image->base_right.seen = false;
+        image->base_left.visible = image->base_near.visible = image->base_right.visible = false;
     }
     if (flight.kind == BOXES) {
         scene_hide_points(image);
@@ -113,7 +113,7 @@ static void see(int k, goe_image_t *image) {
     }
     if (k >= flight.blind_from && k < flight.blind_until) {
         scene_hide_points(image);
-        image->box.seen = 0u;
+        image->box.sides = 0u;
         if (flight.looks_back) {
             turn_back(image->pose.attitude);
         }
@@ -182,14 +182,14 @@ static void compare_estimates(int k) {
 
 /* The camera flies on as it does, and somewhat towards the obstacle. */
 static void compare_hazards(void) {
-    const goe_plan_t plan = {{(float)flight.scene.speed_mps, 1.5f, 0.5f}, 10.0f, 5.0f, 0.2f, 0.0f};
+    const goe_intent_t intent = {{(float)flight.scene.speed_mps, 1.5f, 0.5f}, 10.0f, 5.0f, 0.2f, 0.0f};
     goe_hazard_t a;
     goe_hazard_t b;
-    const goe_status_t status = goe_hazard(&plain, &plan, &a);
-    CHECK_STATUS(status, goe_hazard(&jumped, &plan, &b));
+    const goe_status_t status = goe_hazard(&plain, &intent, &a);
+    CHECK_STATUS(status, goe_hazard(&jumped, &intent, &b));
     TEST_ASSERT_EQUAL_INT(a.has_clearance, b.has_clearance);
     compare(a.clearance_sd_m, a.clearance_m, b.clearance_m, a.has_clearance);
-    TEST_ASSERT_FLOAT_WITHIN(0.02f, a.violation, b.violation);
+    TEST_ASSERT_FLOAT_WITHIN(0.02f, a.conflict_probability, b.conflict_probability);
 }
 
 /* An image that is refused changes nothing: the delta is given with the next one, too. */
@@ -240,7 +240,7 @@ static void a_known_jump_of_down_is_no_motion(void) {
     for (int run = 0; run < (int)KINDS * (int)SOURCES * 2 * 4; run++) {
         set_up_flight((kind_t)(run % KINDS), (source_t)(run / KINDS % SOURCES));
         any = check_random_start("one jump");
-        flight.settings.navigation.height_white_m = run / ((int)KINDS * (int)SOURCES) % 2 ? 1.0f : 0.0f;
+        flight.settings.navigation.height_white_sd_m = run / ((int)KINDS * (int)SOURCES) % 2 ? 1.0f : 0.0f;
         const float *ned_m = jumps[run / ((int)KINDS * (int)SOURCES * 2)];
         add_jump(30, ned_m[0], ned_m[1], ned_m[2]);
         check_worst(&worst, fly());
@@ -309,7 +309,7 @@ static void a_refused_image_leaves_the_jump_to_the_next_one(void) {
     check_source_by_source();
 }
 
-/* [A28] GIVEN images in which nothing is seen WHEN down jumps in them, and in the one in which something is seen first THEN the track is
+/* [A28] GIVEN images without a detection WHEN down jumps in them, and in the first one with a detection THEN the track is
  * that of a flight without jumps. */
 static void a_jump_in_the_first_image_with_a_feature_counts(void) {
     flight.blind_until = 10;
@@ -318,10 +318,10 @@ static void a_jump_in_the_first_image_with_a_feature_counts(void) {
     check_source_by_source();
 }
 
-/* [A28] GIVEN an aircraft that looks back until something is seen, so that the track begins there THEN a jump in that image counts,
+/* [A28] GIVEN an aircraft that looks back until the first detection, where the track begins THEN a jump in that image counts,
  * too. */
 static void a_jump_counts_where_the_track_begins_at_first_sight(void) {
-    flight.settings.navigation.height_white_m = 1.0f;
+    flight.settings.navigation.height_white_sd_m = 1.0f;
     flight.blind_until = 16;
     flight.looks_back = true;
     add_jump(8, 0.0f, 0.0f, 2.5f);
@@ -348,7 +348,7 @@ static void a_jump_at_a_new_start_of_the_filter_counts(void) {
     TEST_ASSERT_TRUE(seen > 0);
 }
 
-/* [A28] GIVEN poses that are late WHEN the filter jumps THEN what they are late by is taken off in that image as in any other. */
+/* [A28] GIVEN poses that are late WHEN the filter jumps THEN the latency is corrected in that image as in any other. */
 static void a_jump_does_not_disturb_late_poses(void) {
     for (int source = 0; source < SOURCES; source++) {
         set_up_flight(CORNERS, (source_t)source);
@@ -409,7 +409,7 @@ static void the_nearer_of_both_is_taken(void) {
         set_up_flight(CORNERS, (source_t)(run % SOURCES));
         any = check_random_start("noisy height");
         flight.height_sd_m = run < SOURCES ? 0.2 : 2.0;
-        flight.settings.navigation.height_white_m = (float)flight.height_sd_m;
+        flight.settings.navigation.height_white_sd_m = (float)flight.height_sd_m;
         add_jump(30, 0.0f, 0.0f, 2.0f);
         CHECK_STATUS(GOE_OK, goe_init(&jumped, sizeof jumped, &flight.settings, NULL));
         for (int k = 0; k < IMAGES; k++) {
@@ -468,9 +468,9 @@ static void no_flight_sees_a_jump(void) {
         set_up_flight((kind_t)(run % KINDS), (source_t)(run / KINDS % SOURCES));
         take_any_scene();
         flight.settings = scene_settings(&flight.scene);
-        flight.settings.navigation.height_white_m =
+        flight.settings.navigation.height_white_sd_m =
             run / ((int)KINDS * (int)SOURCES) % 2 ? (float)between(0.1, 2.0) : 0.0f;
-        flight.settings.method = run % 10 == 9 ? GOE_METHOD_WINDOW : GOE_METHOD_REFINED;
+        flight.settings.method = run % 10 == 9 ? GOE_METHOD_WINDOW : GOE_METHOD_FILTER;
         take_any_jumps();
         check_worst(&worst, fly());
     }

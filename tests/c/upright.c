@@ -73,7 +73,7 @@ void upright_measure(const upright_t *solid, const double state[GOE_STATES], goe
         const float center_px = (side & 1u) ? camera->cy_px : camera->cx_px;
         sides->px[side] = (float)extreme(solid, state, side) * focal_px + center_px;
     }
-    sides->usable = GOE_SEES_BOX;
+    sides->usable = GOE_SIDES_ALL;
     sides->cut = false;
 }
 

@@ -1,4 +1,4 @@
-"""A simulated autopilot: an aircraft, a clock of its own, and the part of MAVLink that the companion relies on."""
+"""A simulated autopilot: an aircraft, its own clock, and the part of MAVLink that the companion uses."""
 
 from __future__ import annotations
 
@@ -13,30 +13,30 @@ from links import Faults, UdpWire, Wire
 from loop import Loop
 
 LAT_E7, LON_E7, ALT_M = 473977420, 85455940, 488.0  # of the local frame's origin
-METRES_PER_DEGREE = 111319.49
+METERS_PER_DEGREE = 111319.49
 ARDUPILOT, PX4 = 3, 12
 MODES = {ARDUPILOT: 10, PX4: 4 << 16 | 4 << 24}  # AUTO; AUTO.MISSION
 LOITER = 4 << 16 | 3 << 24  # PX4: AUTO.LOITER
 DO_SET_MODE, DO_GO_AROUND, DO_REPOSITION, SET_MESSAGE_INTERVAL, REQUEST_MESSAGE = 176, 191, 192, 511, 512
-BANK, BANK_RATE = math.radians(30.0), math.radians(60.0)  # of a turn, and of rolling into it
-CLIMB_M_S = 3.0  # of a go-around
-ASKING = (SET_MESSAGE_INTERVAL, REQUEST_MESSAGE)  # commands that ask for messages and move nothing
-SIGNING_EPOCH_S = 1_420_070_400  # UNIX time of 2015: times of signatures count from there, in 10 us
+BANK, BANK_RATE = math.radians(30.0), math.radians(60.0)  # in a turn, and while rolling into it
+CLIMB_M_S = 3.0  # in a go-around
+ASKING = (SET_MESSAGE_INTERVAL, REQUEST_MESSAGE)  # commands that request messages and move nothing
+SIGNING_EPOCH_S = 1_420_070_400  # UNIX time of 2015, the epoch of signature times, in units of 10 us
 ACCEPTED, REJECTED, DENIED, FAILED = 0, 1, 2, 4  # results of a command
 ATTITUDE, POSITION, ODOMETRY = 31, 32, 331  # messages: ATTITUDE_QUATERNION, LOCAL_POSITION_NED
 
 
 def numbered(message: Any, mavlink: Any) -> bytes:
-    """A frame with the sender's running number."""
+    """A frame with a fixed sequence number of the sender."""
     frame: bytes = message.pack(mavlink)
     mavlink.seq = (mavlink.seq + 1) % 256
     return frame
 
 
 def local_m(lat_e7: int, lon_e7: int) -> tuple[float, float]:
-    """North and east of the origin; good for some kilometres about it."""
-    north = (lat_e7 - LAT_E7) * 1e-7 * METRES_PER_DEGREE
-    east = (lon_e7 - LON_E7) * 1e-7 * METRES_PER_DEGREE * math.cos(math.radians(LAT_E7 * 1e-7))
+    """North and east of the origin in m; valid for some kilometers around it."""
+    north = (lat_e7 - LAT_E7) * 1e-7 * METERS_PER_DEGREE
+    east = (lon_e7 - LON_E7) * 1e-7 * METERS_PER_DEGREE * math.cos(math.radians(LAT_E7 * 1e-7))
     return north, east
 
 
@@ -54,7 +54,7 @@ def quaternion(roll: float, pitch: float, yaw: float) -> tuple[float, float, flo
 
 @dataclass(frozen=True)
 class Pose:
-    """Of one moment: NED, m, m/s, rad, rad/s."""
+    """The pose at one moment: NED, m, m/s, rad, rad/s."""
 
     position: tuple[float, float, float]
     velocity: tuple[float, float, float]
@@ -114,7 +114,7 @@ class Aircraft:
 
     @property
     def turn(self) -> float:
-        """Of the course, rad/s."""
+        """Rate of the course, rad/s."""
         return 9.81 * math.tan(self.bank) / self.speed_m_s
 
     def place(self) -> tuple[float, float]:
@@ -150,7 +150,7 @@ class Clock:
 
 @dataclass(frozen=True)
 class Heard:
-    """A message of the companion, and where the aircraft was when it came."""
+    """A message of the companion, and the aircraft's position when it arrived."""
 
     time_s: float
     message: Any
@@ -162,12 +162,12 @@ class Heard:
 
 
 class Autopilot:
-    """Sends and answers over a wire; `heard` is everything that came.
+    """Sends and answers over a wire; `heard` lists all received messages.
 
-    `ignored` tells how many of a command are neither obeyed nor answered: the companion has to send them again.
-    With `most_hz` a pose comes only once it was asked for, as often as that; more often is refused by `refusal`. The
-    messages of `refused` it does not have. With a `key` it signs, and refuses what is not signed by it; its
-    clock for that may be `late_s`.
+    `ignored` is the number of times that a command is neither obeyed nor answered, so that the companion has to repeat
+    it. With `most_hz` the autopilot sends poses only on request, up to this rate, and refuses higher rates with
+    `refusal`. It lacks the messages in `refused`. With a `key` it signs its messages and refuses messages without a
+    valid signature; its clock for signatures may be late by `late_s`.
     """
 
     def __init__(
@@ -195,25 +195,25 @@ class Autopilot:
         self.clock = Clock(loop, boot_s, drift)
         self.wire = wire(loop, self._receive, faults)
         self.heard: list[Heard] = []
-        self.answers = Counter[int]()  # to own TIMESYNC questions, by the time that was asked with
+        self.answers = Counter[int]()  # answers to own TIMESYNC questions, by the time in the question
         self.mode, self.modes = MODES[make], [MODES[make]]
         self.ignored, self.landing = Counter(ignored or {}), landing
-        self.silent = False  # neither sends nor hears
+        self.silent = False  # neither sends nor receives
         self.posing = True
         self.shift = (0.0, 0.0, 0.0)  # of the local frame: a reset of the filter
         self.yaw_shift = 0.0
-        self.reset_counter: int | None = None  # a number: ODOMETRY is sent as well
-        self.asked: list[int] = []
+        self.reset_counter: int | None = None  # a number: ODOMETRY is sent, too
+        self.questions: list[int] = []
         self.most_hz, self.refused, self.refusal = most_hz, refused, refusal
         self.key, self.refused_signatures, self.late_s = key, 0, late_s
-        self.gps_fix: int | None = None  # a number: GPS_RAW_INT is sent, with this fix
-        self.filter_flags: int | None = None  # a number: the state of the filter is sent, as each make has it
+        self.gps_fix: int | None = None  # a number: GPS_RAW_INT is sent with this fix
+        self.filter_flags: int | None = None  # a number: the filter state is sent in the form of the autopilot's make
         self._fresh()
         loop.every(1.0 / pose_hz, self._pose)
         loop.every(1.0, self._second)
 
     def _fresh(self) -> None:
-        self.intervals: dict[int, float] = {}  # s, of messages that were asked for
+        self.intervals: dict[int, float] = {}  # intervals of requested messages, s
         self.due: dict[int, float] = {}
         self.mavlink = self.dialect.MAVLink(None, srcSystem=1, srcComponent=1)
         self.parser = self.dialect.MAVLink(None)
@@ -256,7 +256,7 @@ class Autopilot:
         return True
 
     def _odometry(self, us: int, position: list[float], q: tuple[float, ...], pose: Pose) -> None:
-        """Velocity in the body frame; level and northwards both frames are one."""
+        """Velocity in the body frame; level and facing north, body and local frame are equal."""
         unknown = [math.nan] + 20 * [0.0]
         self.send(
             self.dialect.MAVLink_odometry_message(
@@ -279,7 +279,7 @@ class Autopilot:
         self._send_health(us)
         if self.landing:
             send(self.dialect.MAVLink_extended_sys_state_message(0, 4))
-        self.asked.append(us * 1000)
+        self.questions.append(us * 1000)
         send(self.dialect.MAVLink_timesync_message(0, us * 1000))
 
     def _send_health(self, us: int) -> None:
@@ -328,12 +328,12 @@ class Autopilot:
         self.send(self.dialect.MAVLink_command_ack_message(message.command, result))
 
     def _set_interval(self, message: Any) -> int:
-        asked, interval = int(message.param1), message.param2 * 1e-6
-        if asked in self.refused:
+        number, interval = int(message.param1), message.param2 * 1e-6
+        if number in self.refused:
             return DENIED
         if self.most_hz is not None and interval * self.most_hz < 0.999:
             return self.refusal
-        self.intervals[asked] = interval
+        self.intervals[number] = interval
         return ACCEPTED
 
     def _obey(self, message: Any, where_e7: tuple[int, int]) -> None:
@@ -356,7 +356,7 @@ class Autopilot:
             self.mode = mode
             self.modes.append(mode)
 
-    # ------------------------------------------------------------------------------------------------ what was heard
+    # --------------------------------------------------------------------------------------------- received messages
 
     def of(self, name: str) -> list[Any]:
         return [heard.message for heard in self.heard if heard.message.get_type() == name]
@@ -365,17 +365,17 @@ class Autopilot:
         return [heard for heard in self.heard if heard.message.get_type() == name]
 
     def commands(self) -> list[Any]:
-        """Everything that would move the aircraft or change its mode."""
+        """All received commands that would move the aircraft or change its mode."""
         moving = ("SET_MODE", "SET_POSITION_TARGET_LOCAL_NED", "SET_POSITION_TARGET_GLOBAL_INT", "MISSION_ITEM_INT")
-        told = [
+        messages = [
             message for message in self.of("COMMAND_LONG") + self.of("COMMAND_INT") if message.command not in ASKING
         ]
-        return told + [message for name in moving for message in self.of(name)]
+        return messages + [message for name in moving for message in self.of(name)]
 
     # --------------------------------------------------------------------------------------------------- misfortunes
 
     def restart(self, silent_s: float) -> None:
-        """Off, and after a while on again: another socket, boot time 0, sequence 0."""
+        """Switches off and later on again: another socket, boot time 0, sequence 0."""
         self.silent = True
 
         def back() -> None:

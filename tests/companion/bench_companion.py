@@ -1,5 +1,5 @@
-"""Prints how many seconds of the processor goe_companion takes for each second of a simulated flight, with 200 Hz of
-poses and eight obstacles at 30 Hz. tools/bench.sh runs it."""
+"""Prints the processor time of goe_companion for each second of a simulated flight with 200 Hz of poses and eight
+obstacles at 30 Hz. tools/bench.sh runs it."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def share_of_a_core(dialect: ModuleType, folder: Path) -> float:
 def least_share() -> float:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        with contextlib.redirect_stdout(io.StringIO()):  # of the generator
+        with contextlib.redirect_stdout(io.StringIO()):  # generator's process
             dialect = load_dialect(folder)
         return min(share_of_a_core(dialect, folder / str(number)) for number in range(RUNS))
 

@@ -1,4 +1,4 @@
-"""A pinhole camera in the aircraft's nose, what it sees of obstacles, and the ways a detector tells it."""
+"""A pinhole camera in the aircraft's nose, its boxes of obstacles, and the message formats of detectors."""
 
 from __future__ import annotations
 
@@ -23,7 +23,8 @@ AUTOPILOT, SENDER, AGE = 0, 1, 2  # GOE_FEATURES.time_base
 
 @dataclass(frozen=True)
 class Obstacle:
-    """Upright, on the ground, at down 0. A length makes it a box with its length turned `heading_deg` from north."""
+    """An upright obstacle on the ground at down 0. With a length it is a box, whose length axis is `heading_deg` from
+    north."""
 
     north_m: float
     east_m: float = 0.0
@@ -33,7 +34,7 @@ class Obstacle:
     heading_deg: float = 0.0
 
     def outline(self) -> np.ndarray:
-        """North and east of its edges or, round, of 64 points."""
+        """North and east of its corners or, if round, of 64 points."""
         if self.length_m is None:
             angles = np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False)
             corners = 0.5 * self.width_m * np.stack([np.cos(angles), np.sin(angles)], axis=1)
@@ -45,7 +46,7 @@ class Obstacle:
         return corners + np.array([self.north_m, self.east_m])
 
     def points(self) -> np.ndarray:
-        """Its edges on the ground and at its top, NED."""
+        """Points of its outline on the ground and at its top, NED."""
         around = self.outline()
         return np.concatenate([np.column_stack([around, np.full(len(around), down)]) for down in (0.0, -self.height_m)])
 
@@ -55,7 +56,7 @@ MAST = Obstacle(250.0)
 
 @dataclass(frozen=True)
 class Box:
-    """Upright, raw pixels; what the image cuts ends at its border."""
+    """An upright box in raw pixels; the part outside the image is cut off."""
 
     id: int
     left: float
@@ -96,7 +97,7 @@ class Camera:
         return "".join(f"{name}.{key} = {value}\n" for key, value in keys.items())
 
     def project(self, pose: Pose, points_ned: np.ndarray) -> np.ndarray | None:
-        """Pixels, right and down; none if a point is not ahead."""
+        """Pixels (right, down); None if a point is not ahead."""
         body = (points_ned - np.array(pose.position)) @ rotation(pose.q)
         if np.any(body[:, 0] < 1.0):
             return None
@@ -116,20 +117,20 @@ class Camera:
 
 @dataclass(frozen=True)
 class Image:
-    """What was seen, and the middle of the exposure by every clock there is."""
+    """The boxes of an image, and the middle of its exposure by every clock."""
 
     monotonic_s: float
     unix_s: float
     boot_s: float
     boxes: tuple[Box, ...]
-    age_s: float = 0.0  # when it is sent
+    age_s: float = 0.0  # when the message is sent
 
 
 # ------------------------------------------------------------------------------------------------------ lines of JSON
 
 
 def plain_line(image: Image, clock: str | None) -> str:
-    """As the README has it; `clock` None: no time at all."""
+    """As in the README. With `clock` None the line has no time."""
     times = {"unix": image.unix_s, "monotonic": image.monotonic_s, "autopilot": image.boot_s, "age": image.age_s}
     line: dict[str, Any] = {"detections": [detection(box) for box in image.boxes]}
     if clock:
@@ -147,12 +148,12 @@ def ultralytics(box: Box) -> dict[str, Any]:
 
 
 def bare_list(image: Image, clock: str | None = None) -> str:
-    """Without a newline: the datagram's end is the line's."""
+    """Without a newline: the end of the datagram ends the line."""
     return json.dumps([ultralytics(box) for box in image.boxes])
 
 
 def as_printed(image: Image, clock: str | None = None) -> str:
-    """What print(result.tojson()) writes: ultralytics dumps with an indent of 2, over several lines."""
+    """The output of print(result.tojson()): ultralytics dumps with an indent of 2, over several lines."""
     return json.dumps([ultralytics(box) for box in image.boxes], indent=2) + "\n"
 
 
@@ -164,34 +165,34 @@ def aliases(image: Image, clock: str | None) -> str:
 
 
 def without_clock(image: Image, clock: str | None) -> str:
-    """The clock is that of the configuration."""
+    """The configuration names the clock."""
     line = json.loads(plain_line(image, clock))
     del line["clock"]
     return json.dumps(line) + "\n"
 
 
 def without_ids(image: Image, clock: str | None) -> str:
-    """Of a detector that has no tracker."""
+    """As a detector without a tracker sends it."""
     line = json.loads(plain_line(image, clock))
-    for told in line["detections"]:
-        del told["id"]
+    for entry in line["detections"]:
+        del entry["id"]
     return json.dumps(line) + "\n"
 
 
 def of_second_camera(image: Image, clock: str | None) -> str:
-    """Two lines at a time: the first camera sees nothing."""
+    """Two lines at a time: the first camera detects nothing."""
     line = json.loads(plain_line(image, clock))
     lines = {**line, "detections": []}, {**line, "camera": 1}
     return "".join(json.dumps(line) + "\n" for line in lines)
 
 
 def points(image: Image, clock: str | None) -> str:
-    """The middles of the sides in place of boxes."""
+    """The middles of the sides instead of boxes."""
     line = json.loads(plain_line(image, clock))
-    for told, box in zip(line["detections"], image.boxes):
+    for entry, box in zip(line["detections"], image.boxes):
         u, v = 0.5 * (box.left + box.right), 0.5 * (box.top + box.bottom)
-        del told["box"]
-        told.update(left=[box.left, v], right=[box.right, v], top=[u, box.top], pixel_sd=1.0)
+        del entry["box"]
+        entry.update(left=[box.left, v], right=[box.right, v], top=[u, box.top], pixel_sd=1.0)
     return json.dumps(line) + "\n"
 
 
@@ -212,7 +213,7 @@ class UdpLines:
 
 
 class FifoLines:
-    """A detector that writes into a FIFO, and may end and come again."""
+    """A detector that writes into a FIFO, and may end and come back."""
 
     def __init__(self, path: str) -> None:
         os.mkfifo(path)
@@ -235,7 +236,7 @@ class FifoLines:
 
 
 class PipeLines:
-    """The companion's standard input. What the pipe does not take at once waits here."""
+    """The companion's standard input. Data that the pipe does not take at once wait here."""
 
     setting = "stdin"
 
@@ -269,14 +270,14 @@ class PipeLines:
 
 @dataclass
 class Detector:
-    """Takes an image `hz` times a second, and gives what it sees to `tell` `delay_s` later.
+    """Takes `hz` images a second, and passes each to `report` `delay_s` later.
 
-    `delays` holds the delays, and `poses` the truth of every exposure by the autopilot's clock.
+    `delays` lists the delays, and `poses` the true pose of every exposure by the autopilot's clock.
     """
 
     loop: Loop
     autopilot: Autopilot
-    tell: Callable[[Image], None]
+    report: Callable[[Image], None]
     obstacles: Iterable[Obstacle] = (MAST,)
     camera: Camera = field(default_factory=Camera)
     hz: float = 10.0
@@ -296,29 +297,29 @@ class Detector:
         if self.blind:
             return
         pose = self.autopilot.aircraft.advance(now)
-        seen = [self.camera.see(pose, obstacle, k + 1) for k, obstacle in enumerate(self.obstacles)]
-        boxes = tuple(self._noisy(box) for box in seen if box)
+        in_view = [self.camera.see(pose, obstacle, k + 1) for k, obstacle in enumerate(self.obstacles)]
+        boxes = tuple(self._noisy(box) for box in in_view if box)
         image = Image(now, unix + self.unix_error_s, self.autopilot.clock.at(now), boxes)
         self.poses[image.boot_s] = pose
-        self.loop.at(now + self.delay_s, lambda: self._tell(image))
+        self.loop.at(now + self.delay_s, lambda: self._report(image))
 
     def _noisy(self, box: Box) -> Box:
         most = {"left": self.camera.width - 1, "right": self.camera.width - 1}
         moved = {}
         for side in ("left", "top", "right", "bottom"):
             value, end = getattr(box, side), most.get(side, self.camera.height - 1)
-            inside = 0.0 < value < end  # at the border the detector sees the border
+            inside = 0.0 < value < end  # at the border the detector returns the border
             moved[side] = min(max(value + self.dice.gauss(0.0, self.noise_px), 0.0), end) if inside else value
         return replace(box, **moved)
 
-    def _tell(self, image: Image) -> None:
+    def _report(self, image: Image) -> None:
         age_s = self.loop.now_s - image.monotonic_s
-        self.tell(replace(image, age_s=age_s))
+        self.report(replace(image, age_s=age_s))
         self.delays.append(age_s)
 
 
 class FeaturesSender:
-    """GOE_FEATURES of a camera on the autopilot's network, one message a detection; its clock is a third one."""
+    """GOE_FEATURES of a camera on the autopilot's network, one message for each detection; its clock is a third one."""
 
     def __init__(self, autopilot: Autopilot, camera: Camera, time_base: int) -> None:
         self.autopilot, self.camera, self.time_base = autopilot, camera, time_base
@@ -338,7 +339,7 @@ class FeaturesSender:
 
 
 def features(dialect: ModuleType, camera: Camera, box: Box | None, number: int, times: dict[str, int]) -> Any:
-    """Pixels as tenths from the middle of the image."""
+    """Pixels in tenths from the middle of the image."""
     sides = [0, 0, 0, 0]
     if box:
         middle = (camera.width / 2, camera.height / 2)
@@ -350,7 +351,7 @@ def features(dialect: ModuleType, camera: Camera, box: Box | None, number: int, 
         time_sd=0,
         image_width=camera.width,
         image_height=camera.height,
-        seen=0xF if box else 0,
+        visible=0xF if box else 0,
         camera_id=0,
         number=number,
         pixel_sd=0,

@@ -1,4 +1,4 @@
-"""The program under test: its configuration, its process in simulated time, what it said and what it used."""
+"""The program under test: its configuration, its process in simulated time, its output and its resources."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = os.environ.get("GOE_COMPANION", str(ROOT / "build" / "port" / "companion" / "goe_companion"))
 REPLAY = os.environ.get("GOE_REPLAY", str(ROOT / "build" / "sim_host" / "goe_replay"))
 IDLE = struct.Struct("=qqq")  # idle_t of stepped_time.c
-SANITIZED_KIB = 12000  # resident; without a sanitizer it is a third of this
+SANITIZED_KIB = 12000  # resident memory; without a sanitizer it is a third of this
 Settings = Mapping[str, Mapping[str, Any]]
 
 
 def is_missing() -> bool:
-    """A path that the caller named must exist: without the program the tests fail then."""
+    """A path that the caller named must exist: without the program the tests fail."""
     return "GOE_COMPANION" not in os.environ and not Path(PROGRAM).exists()
 
 
@@ -42,14 +42,14 @@ def ini(settings: Settings) -> str:
 
 
 def call(*arguments: str | Path, stdin: int = subprocess.DEVNULL) -> subprocess.CompletedProcess[str]:
-    """A call that ends by itself."""
+    """Runs a call that ends by itself."""
     return subprocess.run(
         [PROGRAM, *map(str, arguments)], stdin=stdin, capture_output=True, text=True, timeout=HANG_S, check=False
     )
 
 
 def replay(log: Path) -> list[dict[str, str]]:
-    """A log as goe_replay reads it; skipped where that is not built."""
+    """Replays a log with goe_replay; skips the test without the program."""
     if "GOE_REPLAY" not in os.environ and not Path(REPLAY).exists():
         pytest.skip(f"{REPLAY} is not built")
     done = subprocess.run([REPLAY, str(log)], capture_output=True, text=True, timeout=HANG_S, check=False)
@@ -64,7 +64,7 @@ def _folder() -> tempfile.TemporaryDirectory[str]:
 
 @functools.lru_cache(maxsize=1)
 def stepped_time() -> Path:
-    """The library that gives a program the time of a loop, compiled once."""
+    """The preloaded library that gives a program the time of a loop, compiled once."""
     made = Path(_folder().name) / "stepped_time.so"
     source = Path(__file__).with_name("stepped_time.c")
     subprocess.run(["cc", "-shared", "-fPIC", "-O1", "-Wall", "-Wextra", source, "-o", made, "-ldl"], check=True)
@@ -73,7 +73,7 @@ def stepped_time() -> Path:
 
 @dataclass(frozen=True)
 class Ended:
-    """What is left of a run."""
+    """Output, files and status of an ended run."""
 
     status: int
     out: str
@@ -84,16 +84,16 @@ class Ended:
         return self.out + self.err
 
     def count(self, name: str) -> int:
-        """Of the summary: rows of a name, a number and what it counts."""
+        """A counter of the summary, whose rows consist of a name, a number and a description."""
         rows = re.findall(r"^(\w+) +(\d+)\b", self.out, re.MULTILINE)
         assert name in dict(rows), self.out
         return int(dict(rows)[name])
 
 
 class Companion:
-    """One process at a time, in the loop's time; start() again after an end is a restart.
+    """One process at a time, in the loop's time; start() after an end is a restart.
 
-    `waits` counts how often the process waited for something to come.
+    `waits` counts how often the process waited for input.
     """
 
     def __init__(self, loop: Loop, folder: Path, settings: Settings, camera: str) -> None:
@@ -102,14 +102,14 @@ class Companion:
         self.until_us = self.waits = 0
         self.unix_ahead_us = UNIX_AHEAD_US
         self.control: socket.socket | None = None
-        self.on_written: Callable[[int], None] | None = None  # called with all bytes so far that it wrote to terminals
+        self.on_written: Callable[[int], None] | None = None  # called with the number of bytes written to terminals
         self.configuration.write_text(ini(settings), encoding="utf-8")
         (folder / "camera.ini").write_text(camera, encoding="utf-8")
         self.process: subprocess.Popen[bytes] | None = None
         self.ends: list[Ended] = []
 
     def start(self, stdin: int = subprocess.DEVNULL, arguments: Sequence[str] = ()) -> None:
-        """Returns once it waits for something to come, or has ended."""
+        """Returns once the process waits for input, or has ended."""
         self.control, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self.control.settimeout(HANG_S)
         environment = {
@@ -134,21 +134,21 @@ class Companion:
 
     def wait_until_idle(self) -> None:
         try:
-            told = self.control.recv(IDLE.size) if self.control else b""
+            received = self.control.recv(IDLE.size) if self.control else b""
         except ConnectionResetError:
-            told = b""
-        if not told:  # it ends
+            received = b""
+        if not received:  # the process ends
             self._let_go()
             if self.process:
                 self.process.wait(timeout=HANG_S)
             return
-        self.until_us, self.waits, written = IDLE.unpack(told)
+        self.until_us, self.waits, written = IDLE.unpack(received)
         assert self.until_us > self.loop.now_us, "it does not wait: a busy loop"
         if self.on_written:
             self.on_written(written)
 
     def _let_go(self) -> None:
-        """Of a process that has ended, or is to."""
+        """For a process that has ended or is about to end."""
         self.loop.leave(self)
         if self.control:
             self.control.close()
@@ -166,7 +166,7 @@ class Companion:
         return self.process is not None and self.process.poll() is None
 
     def interrupt(self, number: int) -> int:
-        """Sends this signal, and waits for the end; its exit status."""
+        """Sends this signal and waits for the end. Returns the exit status."""
         assert self.process
         if self.alive():
             self.process.send_signal(number)
@@ -176,7 +176,7 @@ class Companion:
         return status
 
     def stop(self, number: int = signal.SIGINT) -> Ended:
-        """Interrupts it, and waits for what it has to say."""
+        """Interrupts the process and collects its output."""
         assert self.process
         try:
             status = self.interrupt(number)
@@ -194,7 +194,7 @@ class Companion:
         return self.ends[-1]
 
     def rss_kib(self) -> int:
-        """Resident memory; 0: it has ended."""
+        """Resident memory; 0 after its end."""
         try:
             lines = Path(f"/proc/{self.pid}/status").read_text(encoding="ascii").splitlines()
         except OSError:
@@ -202,7 +202,7 @@ class Companion:
         return next((int(line.split()[1]) for line in lines if line.startswith("VmRSS:")), 0)
 
     def processor_s(self) -> float:
-        """Processor time so far, user's and system's."""
+        """User and system time so far."""
         fields = Path(f"/proc/{self.pid}/schedstat").read_text(encoding="ascii").split()
         return int(fields[0]) * 1e-9
 

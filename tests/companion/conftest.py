@@ -1,4 +1,4 @@
-"""The dialect of the companion, made as its build makes it, and fleets of flights."""
+"""The companion's dialect, generated as its build does, and fleets of flights."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from companion import ROOT
 
 pymavlink = pytest.importorskip("pymavlink", reason="pymavlink is not installed")
 
-from flights import Fleet, MakeFleet, Plan  # noqa: E402 - needs what is skipped for
+from flights import Fleet, MakeFleet, Plan  # noqa: E402 - after the checks that skip
 
 OWN = (ROOT / "port" / "companion" / "companion.xml", ROOT / "port" / "mavlink" / "goe.xml")
 COMMON = ("minimal.xml", "standard.xml", "common.xml")
-# What the companion sends besides: one message of a dialect that would bring many, and one that pymavlink has not yet.
+# Two more messages that the companion sends: one from a dialect with many others, one that pymavlink does not have yet.
 ARDUPILOT_ONE = "OBSTACLE_DISTANCE_3D"
 TARGET_ABSOLUTE = {
     "timestamp": "uint64_t",
@@ -38,7 +38,7 @@ TARGET_ABSOLUTE = {
 
 
 def with_more(definitions: Path) -> str:
-    """A dialect of companion.xml and these two messages, without the enumerations that they name."""
+    """A dialect of companion.xml and these two messages, without the enumerations that they refer to."""
     root = ElementTree.Element("mavlink")
     ElementTree.SubElement(root, "include").text = "companion.xml"
     messages = ElementTree.SubElement(root, "messages")
@@ -54,7 +54,7 @@ def with_more(definitions: Path) -> str:
 
 
 def generate(folder: Path) -> Path:
-    """A Python module from companion.xml and what it includes, which mavgen looks for beside it."""
+    """A Python module from companion.xml and its includes, which mavgen expects in the same folder."""
     from pymavlink.generator import mavgen
 
     definitions = Path(pymavlink.__file__).parent / "dialects" / "v20"
@@ -84,7 +84,7 @@ def dialect(tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
 
 @pytest.fixture(scope="module")
 def make_fleet(dialect: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> Iterator[MakeFleet]:
-    """Fleets whose processes end with the module, whatever happened."""
+    """Makes fleets whose processes end with the module in any case."""
     fleets: list[Fleet] = []
 
     def make(plans: Sequence[Plan]) -> Fleet:

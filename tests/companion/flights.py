@@ -1,4 +1,4 @@
-"""A flight past a mast, put together: autopilot, camera, detector, companion; and fleets of them at the same time."""
+"""A complete flight past a mast with autopilot, camera, detector and companion; and fleets of simultaneous flights."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ from links import WIRES, Faults, SerialWire
 from loop import Loop
 
 Lines = Union[UdpLines, FifoLines, PipeLines]
-FAR_M = 3.44  # two-dimensional sigmas that hold 99.7 %
+FAR_M = 3.44  # size of the 99.7 % ellipse in two-dimensional sigmas
 
 
 @dataclass
 class Plan:
-    """What distinguishes one flight from another. `source`: udp, fifo, stdin, or the time base of GOE_FEATURES."""
+    """Options of one flight. `source`: udp, fifo, stdin, or the time base of GOE_FEATURES."""
 
     name: str
     link: str = "udpin"
@@ -79,8 +79,8 @@ class Flight:
         self.companion = Companion(loop, folder, self._settings(), cameras)
         if isinstance(self.autopilot.wire, SerialWire):
             self.companion.on_written = self.autopilot.wire.wait_for_written
-        tell = FeaturesSender(self.autopilot, camera, plan.source) if isinstance(plan.source, int) else self._tell
-        self.detector = Detector(loop, self.autopilot, tell, plan.obstacles, camera, **plan.detector)
+        report = FeaturesSender(self.autopilot, camera, plan.source) if isinstance(plan.source, int) else self._report
+        self.detector = Detector(loop, self.autopilot, report, plan.obstacles, camera, **plan.detector)
         self.ended: Ended | None = None
 
     def _lines(self, folder: Path, source: str | int) -> Lines | None:
@@ -92,7 +92,7 @@ class Flight:
         return PipeLines(self.loop) if source == "stdin" else None
 
     def _settings(self) -> dict[str, dict[str, Any]]:
-        """Of the plan, over what every flight needs."""
+        """The plan's settings, added to those of every flight."""
         settings: dict[str, dict[str, Any]] = {
             "link": {"autopilot": self.autopilot.wire.setting},
             "detections": {"from": self.lines.setting if self.lines else "none"},
@@ -104,7 +104,7 @@ class Flight:
             settings.setdefault(section, {}).update(keys)
         return settings
 
-    def _tell(self, image: Image) -> None:
+    def _report(self, image: Image) -> None:
         assert self.lines
         data = self.plan.line(image, self.plan.clock).encode()
         for delay_s in self.plan.detector_faults.copies() if self.plan.detector_faults else [0.0]:
@@ -114,7 +114,7 @@ class Flight:
                 self.put(data)
 
     def put(self, data: bytes) -> None:
-        """To the companion's detections, whatever it is."""
+        """Sends any data to the companion's input for detections."""
         assert self.lines
         self.lines.put(data)
 
@@ -144,33 +144,34 @@ class Flight:
         return self.of("GOE_STATUS")
 
     def found(self, obstacle: Obstacle | None = None, since_s: float = 0.0) -> list[Found]:
-        """Every GOE_OBSTACLE since a time, of what is nearest to the (shifted) truth."""
+        """Every GOE_OBSTACLE since a time whose nearest obstacle is this one, against its (shifted) truth."""
         obstacle = obstacle or self.plan.obstacles[0]
-        told = [heard for heard in self.autopilot.heard_of("GOE_OBSTACLE") if heard.time_s >= since_s]
-        mine = [heard for heard in told if self._nearest(heard) == obstacle]
+        reports = [heard for heard in self.autopilot.heard_of("GOE_OBSTACLE") if heard.time_s >= since_s]
+        mine = [heard for heard in reports if self._nearest(heard) == obstacle]
         return [self._against(heard, obstacle) for heard in mine]
 
     def _nearest(self, heard: Heard) -> Obstacle:
-        """Of those of the plan."""
+        """The nearest obstacle of the plan."""
         return min(self.plan.obstacles, key=lambda obstacle: self._against(heard, obstacle).error_m)
 
     def _against(self, heard: Heard, obstacle: Obstacle) -> Found:
-        told = heard.message
+        reports = heard.message
         shift = self.autopilot.shift
-        error = np.array([told.north - obstacle.north_m - shift[0], told.east - obstacle.east_m - shift[1]])
-        nn, ne, ee = told.covariance
+        error = np.array([reports.north - obstacle.north_m - shift[0], reports.east - obstacle.east_m - shift[1]])
+        nn, ne, ee = reports.covariance
         covariance = np.array([[nn, ne], [ne, ee]])
         sigmas = float(np.sqrt(max(error @ np.linalg.pinv(covariance) @ error, 0.0)))
         return Found(heard.time_s, float(np.hypot(*error)), sigmas, obstacle.north_m - heard.north_m)
 
     def assert_found(self, obstacle: Obstacle | None = None, since_s: float = 0.0, least: int = 10) -> None:
-        """Seen in time, and where it is: within three sigma always, within 10 % of the range from 100 m on."""
+        """Detected in time and at the right position: within three sigma always, within 10 % of the range from 100 m
+        on."""
         ahead = [found for found in self.found(obstacle, since_s) if found.range_m > 20.0]
         assert len(ahead) >= least, f"{len(ahead)} reports; {self.ended}"
         wrong = [found for found in ahead if not found.sigmas <= FAR_M]
         assert not wrong, (wrong[:3], self.ended)
         near = [found for found in ahead if found.range_m < 100.0]
-        assert near, "nothing is told within 100 m"
+        assert near, "nothing is reported within 100 m"
         wrong = [found for found in near if not found.error_m <= max(0.1 * found.range_m, 4.0)]
         assert not wrong, (wrong[:3], self.ended)
 
@@ -179,7 +180,7 @@ class Flight:
 
 
 class Fleet:
-    """Flights of the same time, each with a companion of its own."""
+    """Simultaneous flights, each with its own companion."""
 
     def __init__(self, dialect: ModuleType, folder: Path, plans: Sequence[Plan]) -> None:
         self.loop = Loop()

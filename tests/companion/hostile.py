@@ -1,4 +1,4 @@
-"""What a companion may be sent that no autopilot and no detector would send."""
+"""Input for the companion that no regular autopilot or detector sends."""
 
 from __future__ import annotations
 
@@ -13,11 +13,12 @@ from typing import Any
 
 from autopilot import Autopilot
 
-STRANGER_ID = 42  # system that is not the autopilot's
+STRANGER_ID = 42  # a system other than the autopilot's
 
 
 def frame_faults(dialect: ModuleType, dice: random.Random) -> Iterator[bytes]:
-    """Bytes that are no frames, for ever: noise, torn and damaged ones, unknown messages, old and signed forms."""
+    """Endless bytes that are no valid frames: noise, torn and damaged frames, unknown messages, old and signed
+    forms."""
     mavlink = dialect.MAVLink(None, srcSystem=1, srcComponent=1)
     message = dialect.MAVLink_attitude_quaternion_message(1, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     good, other = (message.pack(sender) for sender in (mavlink, dialect.MAVLink(None, srcSystem=STRANGER_ID)))
@@ -37,7 +38,7 @@ def frame_faults(dialect: ModuleType, dice: random.Random) -> Iterator[bytes]:
 
 
 def stranger(dialect: ModuleType, dice: random.Random, ms: int) -> list[Any]:
-    """Well-formed messages of another system that claims to be elsewhere, and of another time."""
+    """Well-formed messages of another system with another position and another time."""
     far, turned = dice.uniform(-1e6, 1e6), math.sqrt(0.5)
     return [
         dialect.MAVLink_heartbeat_message(2, 3, 0xD1, 4, 4, 3),
@@ -55,7 +56,7 @@ def stranger(dialect: ModuleType, dice: random.Random, ms: int) -> list[Any]:
 
 
 def poison(dialect: ModuleType, ms: int) -> list[Any]:
-    """Messages of the autopilot itself that hold what is no number, or none of this world."""
+    """Messages of the autopilot itself with NaN, infinite or impossible values."""
     d, nan, unit = dialect, math.nan, (1.0, 0.0, 0.0, 0.0)
     attitude, position = d.MAVLink_attitude_quaternion_message, d.MAVLink_local_position_ned_message
     return [
@@ -77,7 +78,7 @@ def poison(dialect: ModuleType, ms: int) -> list[Any]:
 
 
 def bad_features(dialect: ModuleType) -> list[Any]:
-    """GOE_FEATURES with a clock, a camera, a size and sides that there are none of."""
+    """GOE_FEATURES with an invalid clock, camera, size and sides."""
     usual: dict[str, Any] = dict(
         time_usec=2**64 - 1,
         age_usec=2**32 - 1,
@@ -86,7 +87,7 @@ def bad_features(dialect: ModuleType) -> list[Any]:
         time_sd=65535,
         image_width=1280,
         image_height=720,
-        seen=0xFFFF,
+        visible=0xFFFF,
         camera_id=0,
         time_base=2,
         number=1,
@@ -110,7 +111,7 @@ BOX = '"box": [600, 300, 640, 420]'
 
 
 def bad_lines() -> list[bytes]:
-    """Lines that cannot be understood; each is told, and none holds an obstacle."""
+    """Malformed lines. Each is reported, and none contains an obstacle."""
     texts = [
         "{",
         "}",
@@ -161,7 +162,7 @@ def bad_lines() -> list[bytes]:
 
 
 def escapes() -> list[bytes]:
-    """Lines that would steer a terminal, if it were sent what is wrong with them as it stands."""
+    """Lines that would control a terminal if their error message quoted them verbatim."""
     return [
         b"\x1b[2J\x1b]0;title\x07",
         b'{"clock": "\x1b[31m", "time": 1, "detections": []}',
@@ -170,7 +171,7 @@ def escapes() -> list[bytes]:
 
 
 def odd_lines() -> list[bytes]:
-    """Lines of good form whose numbers are of no use. What of them is taken is the program's affair."""
+    """Well-formed lines with useless numbers. The program decides what it accepts of them."""
     name = "x" * 5000
     texts = [
         '{"time": 1e300, "detections": []}',
@@ -199,7 +200,7 @@ def odd_lines() -> list[bytes]:
 
 
 def crowd(dice: random.Random, number: int, score: float) -> bytes:
-    """More detections in one line than anyone could follow."""
+    """More detections in one line than the companion can follow."""
     found = []
     for k in range(number):
         left, top = dice.uniform(0, 1200), dice.uniform(0, 600)
@@ -209,7 +210,8 @@ def crowd(dice: random.Random, number: int, score: float) -> bytes:
 
 
 def in_turn(autopilot: Autopilot, make: Callable[[int], list[Any]], mavlink: Any) -> Callable[[], None]:
-    """One after the other of a list that is made anew with the autopilot's time, over the autopilot's wire."""
+    """Sends the entries of a list one after the other over the autopilot's wire. The list is made again with the
+    autopilot's time."""
     number = itertools.count()
 
     def send() -> None:

@@ -1,4 +1,4 @@
-"""Wires between the simulated autopilot and the companion: UDP, TCP and a serial line, and what goes wrong on them."""
+"""Connections between the simulated autopilot and the companion: UDP, TCP and a serial line, with their faults."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _ports = itertools.count(random.randrange(20000, 30000))
 
 
 def free_port(kind: int = socket.SOCK_DGRAM) -> int:
-    """Below those that the system hands out by itself: nobody takes it until the companion does."""
+    """A port below the range of the system's automatic assignment, which therefore stays free for the companion."""
     while True:
         port = 20000 + next(_ports) % 12000
         with socket.socket(socket.AF_INET, kind) as probe:
@@ -39,7 +39,7 @@ def free_port(kind: int = socket.SOCK_DGRAM) -> int:
 
 @dataclass
 class Faults:
-    """What a bad link does to datagrams: shares of all, and the longest delay of each."""
+    """Faults of a bad link for datagrams: probabilities, and the longest delay."""
 
     lost: float = 0.0
     doubled: float = 0.0
@@ -47,7 +47,7 @@ class Faults:
     dice: random.Random = field(default_factory=lambda: random.Random(7))
 
     def copies(self) -> list[float]:
-        """The delay of each copy of one datagram; empty: it is lost."""
+        """The delay of each copy of one datagram; empty if it is lost."""
         if self.dice.random() < self.lost:
             return []
         number = 2 if self.dice.random() < self.doubled else 1
@@ -55,11 +55,11 @@ class Faults:
 
 
 class Wire:
-    """One end of a link. `setting` is what the companion's configuration calls the other end."""
+    """One end of a link. `setting` is the companion's configuration of the other end."""
 
     setting: str
     sent = 0
-    dropped = 0  # of those sent
+    dropped = 0  # datagrams sent
 
     def __init__(self, loop: Loop, receive: Receive, faults: Faults | None = None) -> None:
         self.loop, self.receive, self.faults = loop, receive, faults
@@ -84,14 +84,14 @@ class Wire:
         raise NotImplementedError
 
     def reopen(self) -> None:
-        """The device behind it restarts."""
+        """Restarts the device behind it."""
 
     def close(self) -> None:
         raise NotImplementedError
 
 
 class UdpWire(Wire):
-    """A socket of its own that sends to the companion's port; after reopen() another one."""
+    """Sends from a socket to the companion's port; after reopen() from another socket."""
 
     def __init__(self, loop: Loop, receive: Receive, faults: Faults | None = None) -> None:
         super().__init__(loop, receive, faults)
@@ -108,7 +108,7 @@ class UdpWire(Wire):
     def _read(self) -> None:
         try:
             data = self.socket.recv(65536)
-        except OSError:  # nobody listens there yet
+        except OSError:  # the companion does not listen yet
             return
         self._got(data)
 
@@ -126,7 +126,7 @@ class UdpWire(Wire):
 
 
 class UdpServerWire(Wire):
-    """Waits on a port and answers where it was last heard from. It opens late: the companion has to bear that."""
+    """Waits on a port and answers to the latest sender. It opens late, which the companion has to tolerate."""
 
     def __init__(self, loop: Loop, receive: Receive, faults: Faults | None = None, late_s: float = 1.5) -> None:
         super().__init__(loop, receive, faults)
@@ -161,7 +161,7 @@ class UdpServerWire(Wire):
 
 
 class TcpWire(Wire):
-    """Listens, as a simulated autopilot does; after reopen() the companion has to call again."""
+    """Listens like a simulated autopilot; after reopen() the companion has to connect again."""
 
     def __init__(self, loop: Loop, receive: Receive, faults: Faults | None = None) -> None:
         super().__init__(loop, receive, faults)
@@ -212,13 +212,13 @@ class TcpWire(Wire):
 
 
 def unread(terminal: int) -> int:
-    """Bytes that have arrived there."""
+    """Number of bytes that wait in the input."""
     return struct.unpack("i", fcntl.ioctl(terminal, termios.FIONREAD, bytes(4)))[0]
 
 
 def wait_for_bytes(terminal: int, number: int) -> None:
-    """The system hands over what was written to a terminal only after the write has ended. No more than 4 KiB arrive
-    before some are read."""
+    """The system delivers data written to a terminal only after the write has ended. At most 4 KiB arrive before some
+    are read."""
     end_s = time.monotonic() + HANG_S
     while unread(terminal) < min(number, 4000):
         if time.monotonic() > end_s:
@@ -227,11 +227,11 @@ def wait_for_bytes(terminal: int, number: int) -> None:
 
 
 class SerialWire(Wire):
-    """The master's side of a pseudo terminal."""
+    """The master side of a pseudo terminal."""
 
     def __init__(self, loop: Loop, receive: Receive, faults: Faults | None = None) -> None:
         super().__init__(loop, receive, faults)
-        self.master, self.slave = pty.openpty()  # the slave is held open, as a cable is: no hang-up
+        self.master, self.slave = pty.openpty()  # the slave is kept open, as by a cable: no hang-up
         tty.setraw(self.master)
         os.set_blocking(self.master, False)
         self.setting = f"serial:{os.ttyname(self.slave)}:115200"
@@ -250,7 +250,7 @@ class SerialWire(Wire):
             wait_for_bytes(self.slave, before + os.write(self.master, data))
 
     def wait_for_written(self, written: int) -> None:
-        """Until all that the companion has written so far is here."""
+        """Waits until all bytes that the companion has written so far have arrived."""
         wait_for_bytes(self.master, written - self.got)
 
     def close(self) -> None:

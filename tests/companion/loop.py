@@ -1,7 +1,7 @@
-"""One thread for a whole fleet, in simulated time: what is due at a time, what a socket brings, processes that wait.
+"""One thread for a whole fleet in simulated time: timed calls, sockets with input, processes that wait.
 
-Time stands still until everything of one moment is done, however long the machine takes for it: no result depends on
-the speed of the machine, or on its load.
+Time stands still until all work of one moment is done, however long the machine takes. No result depends on the speed
+or the load of the machine.
 """
 
 from __future__ import annotations
@@ -14,25 +14,25 @@ from typing import Any, Protocol
 
 Action = Callable[[], None]
 US_PER_S = 1_000_000
-HANG_S = 300  # of real time: only a guard against what hangs
-BEGIN_US = 5_000 * US_PER_S  # of the monotonic clock
+HANG_S = 300  # real time, guard against a hang
+BEGIN_US = 5_000 * US_PER_S  # monotonic clock
 UNIX_AHEAD_US = 1_790_000_000 * US_PER_S + 123_456  # UNIX time minus monotonic time
 
 
 class Process(Protocol):
-    """A process whose clocks are those of the loop."""
+    """A process with the loop's clocks."""
 
-    until_us: int  # it waits until then, at the longest
+    until_us: int  # the process waits until then at the longest
 
     def go_on(self, now_us: int) -> None:
-        """Ends its wait."""
+        """Ends the process's wait."""
 
     def wait_until_idle(self) -> None:
-        """Returns once it waits again, and has read and written all that it can."""
+        """Returns once the process waits again and has read and written all available data."""
 
 
 class Loop:
-    """Calls what is due, and what has something to read, until a time. `now_s` is the time of the monotonic clock."""
+    """Runs timed calls and readers of sockets until a time. `now_s` is the time of the monotonic clock."""
 
     def __init__(self) -> None:
         self.now_us = BEGIN_US
@@ -50,7 +50,7 @@ class Loop:
         return (self.now_us + UNIX_AHEAD_US) / US_PER_S
 
     def at(self, due_s: float, action: Action) -> None:
-        """At that time; at once, after what is under way, if it is past."""
+        """Calls at that time. If the time is past, it calls as soon as the present work is done."""
         heapq.heappush(self._due, (max(round(due_s * US_PER_S), self.now_us), next(self._number), action))
 
     def after(self, delay_s: float, action: Action) -> None:
@@ -72,7 +72,7 @@ class Loop:
         self._selector.unregister(file)
 
     def join(self, process: Process) -> None:
-        """One that waits already."""
+        """Adds a process that waits already."""
         self._processes.append(process)
 
     def leave(self, process: Process) -> None:
@@ -90,9 +90,9 @@ class Loop:
                 return
 
     def _finish_this_moment(self) -> None:
-        """Until nothing is due, nothing is to be read and all processes wait for a later time."""
+        """Returns when nothing is due, no input is left, and all processes wait for a later time."""
         while True:
-            acted = self._call_what_is_due() + self._read()
+            acted = self._call_due() + self._read()
             awake = [process for process in self._processes if acted or process.until_us <= self.now_us]
             if not awake and not acted:
                 return
@@ -101,7 +101,7 @@ class Loop:
             for process in awake:
                 process.wait_until_idle()
 
-    def _call_what_is_due(self) -> int:
+    def _call_due(self) -> int:
         called = 0
         while self._due and self._due[0][0] <= self.now_us:
             heapq.heappop(self._due)[2]()

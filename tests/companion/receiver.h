@@ -1,4 +1,4 @@
-/* Where a part of the companion sends to: a socket of the test's. SPDX-License-Identifier: MIT */
+/* A socket of the test that receives what a part of the companion sends. SPDX-License-Identifier: MIT */
 #ifndef RECEIVER_H
 #define RECEIVER_H
 
@@ -15,10 +15,10 @@
 typedef struct {
     int socket;
     uint8_t bytes[512];
-    ssize_t size, next; /* of the datagram that is being read */
+    ssize_t size, next; /* of the current datagram */
 } receiver_t;
 
-/* A socket on loopback, its port in *port. */
+/* Opens a socket on loopback and writes its port to *port. */
 static inline int receiver_socket(int *port) {
     struct sockaddr_in address;
     socklen_t size = sizeof address;
@@ -42,7 +42,7 @@ static inline void receiver_open(receiver_t *receiver, wire_t *wire) {
     TEST_ASSERT_NOT_NULL_MESSAGE(wire->link, fault);
     wire->system = 1;
     wire->component = 196;
-    wire->heard = 1;
+    wire->autopilot_system = 1;
 }
 
 static inline void receiver_close(receiver_t *receiver, wire_t *wire) {
@@ -50,7 +50,7 @@ static inline void receiver_close(receiver_t *receiver, wire_t *wire) {
     (void)close(receiver->socket);
 }
 
-/* The next message that has come; false: there is none. */
+/* The next message; false: none has arrived. */
 static inline bool receiver_next(receiver_t *receiver, mavlink_message_t *message) {
     mavlink_status_t status;
     for (;;) {

@@ -1,8 +1,9 @@
-/* Preloaded into goe_companion, so that its clocks show the time of a test and not that of the machine. Where the program would wait
- * in poll() for something to come, it reports that to the test, and continues when the test sends the time. SPDX-License-Identifier: MIT
+/* Preloaded into goe_companion, so that its clocks show the time of a test and not of the machine. Where the program would wait
+ * in poll() for input, it reports that to the test, and continues when the test sends the time. SPDX-License-Identifier: MIT
  *
- * GOE_STEPPED_TIME in the environment: the descriptor of a socket of packets to the test; the time of CLOCK_MONOTONIC in
- * microseconds; by how much CLOCK_REALTIME is ahead of it. Without it nothing is changed. */
+ * GOE_STEPPED_TIME in the environment contains three numbers: the descriptor of a socket of packets to the test, the time of
+ * CLOCK_MONOTONIC in
+ * microseconds, and the lead of CLOCK_REALTIME over it. Without the variable nothing is changed. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -18,14 +19,14 @@
 #define US_PER_S 1000000
 #define US_PER_MS 1000
 #define NS_PER_US 1000
-#define AT_ONCE_MAX 10000 /* calls of poll() at one time: more of them are a busy loop */
+#define AT_ONCE_MAX 10000 /* more calls of poll() at one time are a busy loop */
 #define ABANDONED 4       /* exit status: the test has ended */
 
-/* What the test reads: see stepped.py. */
+/* Read by the test: see companion.py. */
 typedef struct {
-    int64_t until_us; /* the program waits until then, at the longest */
+    int64_t until_us; /* the program waits until then at the longest */
     int64_t waits;    /* so far */
-    int64_t written;  /* bytes so far to terminals: they arrive later than the write ends */
+    int64_t written;  /* bytes written to terminals so far; they arrive after the end of the write */
 } idle_t;
 
 typedef int poll_t(struct pollfd *, nfds_t, int);
@@ -38,8 +39,8 @@ static idle_t idle;
 static int at_once;
 
 __attribute__((constructor)) static void begin(void) {
-    const char *told = getenv("GOE_STEPPED_TIME");
-    if (told != NULL && sscanf(told, "%d %" SCNd64 " %" SCNd64, &control, &now_us, &unix_ahead_us) != 3) {
+    const char *setting = getenv("GOE_STEPPED_TIME");
+    if (setting != NULL && sscanf(setting, "%d %" SCNd64 " %" SCNd64, &control, &now_us, &unix_ahead_us) != 3) {
         abort();
     }
 }
@@ -55,7 +56,7 @@ int clock_gettime(clockid_t clock, struct timespec *time) {
     return 0;
 }
 
-/* -1: a signal came first. */
+/* -1: a signal came first */
 static int wait_for_time(int64_t until_us) {
     idle.until_us = until_us;
     idle.waits++;
@@ -89,7 +90,7 @@ int poll(struct pollfd *files, nfds_t number, int timeout_ms) {
     return real(files, number, 0);
 }
 
-/* What hardened compilers make of poll(). */
+/* The name that hardened compilers use for poll(). */
 int __poll_chk(struct pollfd *files, nfds_t number, int timeout_ms, size_t size);
 int __poll_chk(struct pollfd *files, nfds_t number, int timeout_ms, size_t size) {
     (void)size;

@@ -1,4 +1,4 @@
-/* Samples, resets and restarts as messages show them. SPDX-License-Identifier: MIT */
+/* Samples, resets and restarts derived from messages. SPDX-License-Identifier: MIT */
 #include <math.h>
 #include <string.h>
 
@@ -16,7 +16,7 @@ static companion_config_t config;
 static goe_flight_t flight;
 static wire_t wire;
 static autopilot_t autopilot;
-static int64_t own_us; /* the companion's clock: any start */
+static int64_t own_us; /* the companion's clock, with an arbitrary start */
 static uint32_t boot_ms;
 static float north_m, jump_m, turn_rad;
 
@@ -63,7 +63,7 @@ static void send_position(uint8_t system, float north, float down) {
     autopilot_take(&autopilot, &message, own_us);
 }
 
-/* So many samples of a straight flight to the north, with what has jumped since. */
+/* Sends `count` samples of a straight flight to the north, including the jumps so far. */
 static void fly(int samples) {
     for (int k = 0; k < samples; k++) {
         own_us += 1000 * PERIOD_MS;
@@ -103,7 +103,7 @@ static void nothing_is_taken_before_a_heartbeat_or_from_another_system(void) {
     TEST_ASSERT_EQUAL_UINT32(0, (uint32_t)autopilot.jumps);
 }
 
-/* The history is moved along, so that an image from before the step still has its pose in the new frame. */
+/* The history is moved along: an image from before the step still has its pose in the new frame. */
 static void a_step_of_the_position_is_a_known_jump(void) {
     fly(20);
     jump_m = 7.0f;
@@ -118,7 +118,7 @@ static void losses_and_turns_of_an_aircraft_are_no_steps(void) {
     fly(20);
     boot_ms += 600;
     own_us += 600000;
-    north_m += SPEED_M_S * 0.6f + 1.5f; /* it has accelerated meanwhile */
+    north_m += SPEED_M_S * 0.6f + 1.5f; /* it has accelerated in the meantime */
     fly(20);
     jump_m = 0.5f; /* a filter that corrects itself */
     fly(20);
@@ -133,8 +133,8 @@ static void a_turn_that_no_rate_explains_ends_the_tracks(void) {
     TEST_ASSERT_EQUAL_UINT16(1, flight.counters.lost);
 }
 
-/* GIVEN an attitude about any axis, which is held, by either sign of the quaternion THEN there is no jump, and the heading is its own;
- * another one about that axis is a jump. */
+/* GIVEN a constant attitude about any axis, by either sign of the quaternion THEN there is no jump, and the heading is correct;
+ * another attitude about that axis is a jump. */
 static void an_attitude_about_any_axis_is_compared(void) {
     static const float none[4] = {0.0f, 0.0f, 0.0f, 0.0f};
     for (int axis = 1; axis < 4; axis++) {
@@ -158,8 +158,8 @@ static void an_attitude_about_any_axis_is_compared(void) {
     }
 }
 
-/* Home lies at its own down, as PX4 sends it; of ArduPilot, whose down counts from there, at the difference of the altitudes of origin and
- * home. What is too far off is no ground. */
+/* PX4's home has its own down. ArduPilot's down counts from home, so the difference of the altitudes of origin and home applies. A home
+ * that is too far off is not used as ground. */
 static void home_is_the_ground_by_the_autopilots_own_count(void) {
     static const float none[4] = {0.0f, 0.0f, 0.0f, 0.0f};
     for (int kind = 0; kind < 2; kind++) {
@@ -208,16 +208,16 @@ static void a_restart_of_the_autopilot_begins_a_new_clock(void) {
     TEST_ASSERT_EQUAL_UINT32(2, (uint32_t)autopilot.restarts);
 }
 
-/* An answer to the latest question, asked just now, by a clock that has slipped against the companion's. */
+/* An answer to the latest question, sent just now, by a clock that has drifted against the companion's. */
 static void answer(int32_t slipped_ms) {
     mavlink_message_t message;
-    autopilot.asked_us[0] = own_us;
+    autopilot.question_us[0] = own_us;
     (void)mavlink_msg_timesync_pack(SYSTEM, MAV_COMP_ID_AUTOPILOT1, &message,
                                     ((int64_t)boot_ms + slipped_ms) * 1000000 + 1000, own_us * 1000);
     autopilot_take(&autopilot, &message, own_us);
 }
 
-/* Poses and tracks are of the autopilot's clock alone: what slips is where this computer's images lie in it. */
+/* Poses and tracks use the autopilot's clock alone: a drift changes only the times of this computer's images. */
 static void a_clock_that_slips_ends_nothing(void) {
     fly(50);
     for (int k = 0; k < 8; k++) {
@@ -261,7 +261,7 @@ static void messages_that_come_twice_or_late_change_nothing(void) {
     TEST_ASSERT_EQUAL_UINT32(0, (uint32_t)(autopilot.jumps + autopilot.restarts));
 }
 
-/* One sample from the future does not reach the flight layer, which would refuse all that follow until then. */
+/* A sample from the future does not reach the flight layer, which would refuse all samples until that time. */
 static void a_time_ahead_of_the_clock_is_not_taken(void) {
     fly(20);
     const uint64_t attitudes = autopilot.attitudes, positions = autopilot.positions;
@@ -277,7 +277,7 @@ static void a_time_ahead_of_the_clock_is_not_taken(void) {
     TEST_ASSERT_EQUAL_UINT32(0, (uint32_t)flight.counters.refused);
 }
 
-static void tell_resets(uint8_t resets) {
+static void report_resets(uint8_t resets) {
     mavlink_message_t message;
     mavlink_odometry_t odometry;
     (void)memset(&odometry, 0, sizeof odometry);
@@ -286,7 +286,7 @@ static void tell_resets(uint8_t resets) {
     autopilot_take(&autopilot, &message, own_us);
 }
 
-/* So many samples, with what the companion does between them. */
+/* Runs so many samples, with the companion's work between them. */
 static void go_on(int samples) {
     for (int k = 0; k < samples; k++) {
         fly(1);
@@ -296,23 +296,23 @@ static void go_on(int samples) {
 
 static void odometry_counts_resets_that_show_no_step(void) {
     go_on(10);
-    tell_resets(4);
+    report_resets(4);
     go_on(30);
     TEST_ASSERT_EQUAL_UINT16(0, flight.counters.lost);
-    tell_resets(5);
+    report_resets(5);
     go_on(30);
     TEST_ASSERT_EQUAL_UINT16(1, flight.counters.lost);
 }
 
-/* Before the step or behind it: it is one reset, and its size is known. */
-static void a_counter_that_rises_with_a_step_tells_nothing_new(void) {
+/* Before or after the step: both are one reset of known size. */
+static void a_counter_that_rises_with_a_step_adds_no_reset(void) {
     go_on(10);
-    tell_resets(4);
+    report_resets(4);
     jump_m = 7.0f;
     go_on(5);
-    tell_resets(5);
+    report_resets(5);
     go_on(40);
-    tell_resets(6);
+    report_resets(6);
     go_on(5);
     jump_m = 3.0f;
     go_on(40);
@@ -367,7 +367,7 @@ static void approach_and_touchdown_are_read(void) {
     TEST_ASSERT_FALSE(autopilot.landing || autopilot.on_ground);
 }
 
-/* ArduPlane's texts and states in the order in which they come. */
+/* ArduPlane's texts and states in their order. */
 static void the_flare_is_read_from_its_text(void) {
     TEST_ASSERT_EQUAL_UINT8(GOE_FLIGHT_FLYING, autopilot_phase(&autopilot));
     show_landed_state(MAV_LANDED_STATE_LANDING);
@@ -390,7 +390,7 @@ static void a_flare_that_is_broken_off_is_none(void) {
     TEST_ASSERT_EQUAL_UINT8(GOE_FLIGHT_APPROACH, autopilot_phase(&autopilot));
 }
 
-/* Without EXTENDED_SYS_STATE nothing would end it. */
+/* Without EXTENDED_SYS_STATE no message would end it. */
 static void a_flare_without_a_landing_is_none(void) {
     show_text("Flare 3.8m sink=1.27 speed=14.1 dist=38.9");
     TEST_ASSERT_EQUAL_UINT8(GOE_FLIGHT_FLYING, autopilot_phase(&autopilot));
@@ -412,8 +412,8 @@ static void the_place_that_it_flies_to_is_kept(void) {
     TEST_ASSERT_EQUAL_UINT(2, autopilot.targets);
 }
 
-/* Its messages are asked for again, each at the rate that is wanted. */
-static void a_restart_of_the_autopilot_asks_for_everything_again(void) {
+/* After a restart each message is requested again at its configured rate. */
+static void a_restart_of_the_autopilot_renews_all_requests(void) {
     config.link_request_rates = 1;
     config.link_attitude_hz = config.link_position_hz = 25.0;
     go_on(20);
@@ -425,10 +425,10 @@ static void a_restart_of_the_autopilot_asks_for_everything_again(void) {
     CHECK_CLOSE(0.01, 25.0, autopilot.rates.rate[0].hz);
 }
 
-/* -------------------------------------------------------------------------------------------------------------- asks -- */
+/* ---------------------------------------------------------------------------------------------------------- requests -- */
 
-/* The first messages to an autopilot that was just heard: the question for its clock, the first rate, its origin and its home. */
-static void what_is_asked_for_is_named(void) {
+/* The first messages to a new autopilot: the question for its clock, the first rate, its origin and its home. */
+static void requests_have_the_right_target_and_content(void) {
     receiver_t receiver;
     mavlink_message_t message;
     unsigned clocks = 0, origins = 0, homes = 0, rates = 0;
@@ -448,17 +448,17 @@ static void what_is_asked_for_is_named(void) {
             continue;
         }
         TEST_ASSERT_EQUAL_UINT32(MAVLINK_MSG_ID_COMMAND_LONG, message.msgid);
-        mavlink_command_long_t asked;
-        mavlink_msg_command_long_decode(&message, &asked);
-        TEST_ASSERT_EQUAL_UINT8(SYSTEM, asked.target_system);
-        TEST_ASSERT_EQUAL_UINT8(MAV_COMP_ID_AUTOPILOT1, asked.target_component);
-        CHECK_SAME(0.0f, asked.param7);
-        const bool is_request = asked.command == MAV_CMD_REQUEST_MESSAGE;
-        origins += is_request && asked.param1 == (float)MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN ? 1u : 0u;
-        homes += is_request && asked.param1 == (float)MAVLINK_MSG_ID_HOME_POSITION ? 1u : 0u;
-        if (asked.command == MAV_CMD_SET_MESSAGE_INTERVAL) {
-            CHECK_SAME((float)MAVLINK_MSG_ID_ATTITUDE_QUATERNION, asked.param1);
-            CHECK_SAME(25000.0f, asked.param2);
+        mavlink_command_long_t request;
+        mavlink_msg_command_long_decode(&message, &request);
+        TEST_ASSERT_EQUAL_UINT8(SYSTEM, request.target_system);
+        TEST_ASSERT_EQUAL_UINT8(MAV_COMP_ID_AUTOPILOT1, request.target_component);
+        CHECK_SAME(0.0f, request.param7);
+        const bool is_request = request.command == MAV_CMD_REQUEST_MESSAGE;
+        origins += is_request && request.param1 == (float)MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN ? 1u : 0u;
+        homes += is_request && request.param1 == (float)MAVLINK_MSG_ID_HOME_POSITION ? 1u : 0u;
+        if (request.command == MAV_CMD_SET_MESSAGE_INTERVAL) {
+            CHECK_SAME((float)MAVLINK_MSG_ID_ATTITUDE_QUATERNION, request.param1);
+            CHECK_SAME(25000.0f, request.param2);
             rates++;
         }
     }
@@ -469,8 +469,8 @@ static void what_is_asked_for_is_named(void) {
     (void)close(receiver.socket);
 }
 
-/* What an autopilot of each kind is asked for. */
-static void each_kind_is_asked_for_its_own_messages(void) {
+/* The requests for an autopilot of each kind. */
+static void each_kind_gets_its_own_requests(void) {
     static const uint32_t both[] = {MAVLINK_MSG_ID_ATTITUDE_QUATERNION, MAVLINK_MSG_ID_LOCAL_POSITION_NED,
                                     MAVLINK_MSG_ID_DISTANCE_SENSOR,     MAVLINK_MSG_ID_EXTENDED_SYS_STATE,
                                     MAVLINK_MSG_ID_HOME_POSITION,       MAVLINK_MSG_ID_ODOMETRY,
@@ -500,14 +500,14 @@ static void each_kind_is_asked_for_its_own_messages(void) {
 /* The companion is a component of the autopilot's system. */
 static void the_companion_takes_the_autopilots_system(void) {
     TEST_ASSERT_EQUAL_UINT8(SYSTEM, wire.system);
-    TEST_ASSERT_EQUAL_UINT8(SYSTEM, wire.heard);
+    TEST_ASSERT_EQUAL_UINT8(SYSTEM, wire.autopilot_system);
     autopilot_init(&autopilot, &config, &flight, &wire);
     beat(OTHER_SYSTEM);
     TEST_ASSERT_EQUAL_UINT8(OTHER_SYSTEM, wire.system);
-    TEST_ASSERT_EQUAL_UINT8(OTHER_SYSTEM, wire.heard);
+    TEST_ASSERT_EQUAL_UINT8(OTHER_SYSTEM, wire.autopilot_system);
 }
 
-/* Each number of a position beyond its range, either way. */
+/* Each number of a position beyond its range, in both directions. */
 static void a_position_out_of_range_is_counted(void) {
     fly(5);
     for (int i = 0; i < 6; i++) {
@@ -527,7 +527,7 @@ static void a_position_out_of_range_is_counted(void) {
     }
 }
 
-/* A step down or up is one like any other. */
+/* A vertical step counts like a horizontal one. */
 static void a_step_of_the_height_is_a_known_jump(void) {
     for (int sign = -1; sign <= 1; sign += 2) {
         tearDown();
@@ -545,7 +545,7 @@ static void a_step_of_the_height_is_a_known_jump(void) {
     }
 }
 
-/* Terrain is taken where it is known, and for two seconds. */
+/* Terrain data are used where they are known, and for two seconds. */
 static void terrain_is_the_ground_while_it_is_fresh(void) {
     for (int known = 0; known < 2; known++) {
         mavlink_message_t message;
@@ -567,8 +567,8 @@ static void terrain_is_the_ground_while_it_is_fresh(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(what_is_asked_for_is_named);
-    RUN_TEST(each_kind_is_asked_for_its_own_messages);
+    RUN_TEST(requests_have_the_right_target_and_content);
+    RUN_TEST(each_kind_gets_its_own_requests);
     RUN_TEST(the_companion_takes_the_autopilots_system);
     RUN_TEST(a_position_out_of_range_is_counted);
     RUN_TEST(a_step_of_the_height_is_a_known_jump);
@@ -587,7 +587,7 @@ int main(void) {
     RUN_TEST(messages_that_come_twice_or_late_change_nothing);
     RUN_TEST(a_time_ahead_of_the_clock_is_not_taken);
     RUN_TEST(odometry_counts_resets_that_show_no_step);
-    RUN_TEST(a_counter_that_rises_with_a_step_tells_nothing_new);
+    RUN_TEST(a_counter_that_rises_with_a_step_adds_no_reset);
     RUN_TEST(a_range_finder_is_taken_upright);
     RUN_TEST(the_end_of_an_avoidance_is_read_from_its_text);
     RUN_TEST(approach_and_touchdown_are_read);
@@ -595,6 +595,6 @@ int main(void) {
     RUN_TEST(a_flare_that_is_broken_off_is_none);
     RUN_TEST(a_flare_without_a_landing_is_none);
     RUN_TEST(the_place_that_it_flies_to_is_kept);
-    RUN_TEST(a_restart_of_the_autopilot_asks_for_everything_again);
+    RUN_TEST(a_restart_of_the_autopilot_renews_all_requests);
     return UNITY_END();
 }

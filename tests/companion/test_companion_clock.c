@@ -1,11 +1,11 @@
-/* The autopilot's clock, by questions and without. SPDX-License-Identifier: MIT */
+/* The autopilot's clock, with and without answers to questions. SPDX-License-Identifier: MIT */
 #include <math.h>
 #include <stdlib.h>
 
 #include "check.h"
 #include "clock_sync.h"
 
-#define OFFSET_US 123456789 /* of the autopilot's clock before the own one */
+#define OFFSET_US 123456789 /* lead of the autopilot's clock over the own one */
 #define ONE_WAY_SD_US 5000.0
 
 static check_random_t any;
@@ -19,12 +19,12 @@ void tearDown(void) {}
 
 static int64_t delay_us(void) { return 300 + (int64_t)(-2000.0 * log(check_random_between(&any, 1e-6, 1.0))); }
 
-/* A question at this own time; its answer takes a random time on either way. The autopilot's clock gains `ppm`. */
+/* A question at this own time; question and answer take random times. The autopilot's clock gains `ppm`. */
 static bool exchange(int64_t own_us, int64_t offset_us, double ppm) {
     const int64_t there_us = delay_us(), back_us = delay_us();
     const int64_t at_us = own_us + there_us;
-    const int64_t told_us = at_us + offset_us + (int64_t)(ppm * 1e-6 * (double)at_us);
-    return clock_sync_answer(&sync, own_us, at_us + back_us, told_us);
+    const int64_t answered_us = at_us + offset_us + (int64_t)(ppm * 1e-6 * (double)at_us);
+    return clock_sync_answer(&sync, own_us, at_us + back_us, answered_us);
 }
 
 static double off_us(int64_t own_us, int64_t offset_us, double ppm) {
@@ -38,7 +38,7 @@ static void nothing_is_known_before_the_first_message(void) {
     TEST_ASSERT_TRUE(clock_sync_known(&sync));
 }
 
-static void without_answers_the_least_delay_of_the_poses_stands_for_the_clock(void) {
+static void without_answers_the_least_delay_of_the_poses_replaces_the_clock(void) {
     int64_t least_us = INT64_MAX;
     for (int k = 0; k < 400; k++) {
         const int64_t own_us = 20000 * k, late_us = delay_us();
@@ -49,7 +49,7 @@ static void without_answers_the_least_delay_of_the_poses_stands_for_the_clock(vo
     TEST_ASSERT_TRUE(clock_sync_sd_us(&sync, ONE_WAY_SD_US) >= ONE_WAY_SD_US);
 }
 
-/* Two sigmas hold the truth, for clocks that run apart by what crystals do, over ten minutes. */
+/* The truth is within two sigmas, for clocks that drift apart like crystals, over ten minutes. */
 static void answers_find_the_clock_within_its_sigma(void) {
     const double ppms[] = {0.0, 40.0, -40.0};
     for (size_t i = 0; i < sizeof ppms / sizeof ppms[0]; i++) {
@@ -90,7 +90,7 @@ static void one_strange_answer_is_passed_over_and_three_are_a_jump(void) {
     CHECK_CLOSE(10000.0, 0.0, off_us(6250000, 0, 0.0));
 }
 
-/* A link that stalls for half a second tells nothing of the clock, and an answer before its question is none. */
+/* A link that stalls for half a second contains no information on the clock, and an answer before its question is ignored. */
 static void slow_and_impossible_answers_change_nothing(void) {
     TEST_ASSERT_TRUE(exchange(0, OFFSET_US, 0.0));
     const clock_sync_t before = sync;
@@ -102,7 +102,7 @@ static void slow_and_impossible_answers_change_nothing(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(nothing_is_known_before_the_first_message);
-    RUN_TEST(without_answers_the_least_delay_of_the_poses_stands_for_the_clock);
+    RUN_TEST(without_answers_the_least_delay_of_the_poses_replaces_the_clock);
     RUN_TEST(answers_find_the_clock_within_its_sigma);
     RUN_TEST(poses_do_not_move_a_clock_that_answers_found);
     RUN_TEST(one_strange_answer_is_passed_over_and_three_are_a_jump);

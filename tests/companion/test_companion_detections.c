@@ -1,4 +1,4 @@
-/* Lines of JSON into images. SPDX-License-Identifier: MIT */
+/* Conversion of JSON lines into images. SPDX-License-Identifier: MIT */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -9,7 +9,7 @@
 #define NOW_US 900000000 /* of the autopilot's clock */
 #define UNIX_US 1700000000000000
 #define MONOTONIC_US 55000000
-#define SD_US 3000.0 /* of the offset between both clocks */
+#define SD_US 3000.0 /* sigma of the offset between both clocks */
 
 static companion_config_t config;
 static camera_image_t image;
@@ -31,14 +31,14 @@ static bool reads(const char *line) {
     return detection_text_read(line, strlen(line), &config, &now, &image, &fault);
 }
 
-/* A line with these members beside its detections. */
+/* A line with these members in addition to its detections. */
 static bool reads_with(const char *members) {
     char line[256];
     (void)snprintf(line, sizeof line, "{%s%s\"detections\": []}", members, *members != '\0' ? ", " : "");
     return reads(line);
 }
 
-/* The time by any clock is that of the exposure, in the autopilot's. */
+/* The time by any clock becomes the time of the exposure by the autopilot's clock. */
 static void a_time_is_of_its_clock(void) {
     static const char *const clocks[] = {"unix", "monotonic", "age", "autopilot"};
     static const double times[] = {1e-6 * UNIX_US - 0.25, 1e-6 * MONOTONIC_US - 0.25, 0.25, 1e-6 * NOW_US - 0.25};
@@ -51,10 +51,10 @@ static void a_time_is_of_its_clock(void) {
         TEST_ASSERT_EQUAL_UINT32(image.frame.capture_us, image.frame.sent_us);
         TEST_ASSERT_EQUAL_UINT32(NOW_US, image.frame.arrival_us);
         TEST_ASSERT_EQUAL_UINT8(GOE_FLIGHT_AUTOPILOT_CLOCK, image.frame.time_base);
-        /* 4 ms of the sender's, 3 ms of the clocks where they are two */
+        /* 4 ms of the sender, 3 ms of the offset if there are two clocks */
         TEST_ASSERT_UINT32_WITHIN(1u, k == 3 ? 4000u : 5000u, image.frame.time_sd_us);
         TEST_ASSERT_EQUAL_UINT8(0, image.frame.number);
-        config.detections_clock = (line_clock_t)k; /* as usual, so that no line tells it */
+        config.detections_clock = (line_clock_t)k; /* the default, so no line has it */
         (void)snprintf(members, sizeof members, "\"time\": %.6f", times[k]);
         TEST_ASSERT_TRUE(reads_with(members));
         TEST_ASSERT_UINT32_WITHIN(1u, NOW_US - 250000u, image.frame.capture_us);
@@ -64,7 +64,7 @@ static void a_time_is_of_its_clock(void) {
     TEST_ASSERT_FALSE(reads_with("\"clock\": 1, \"time\": 1"));
 }
 
-/* Without a time the delay of the configuration counts. */
+/* Without a time the configured delay applies. */
 static void a_line_without_a_time_has_the_usual_delay(void) {
     TEST_ASSERT_TRUE(reads_with(""));
     TEST_ASSERT_EQUAL_UINT32(NOW_US - 80000u, image.frame.capture_us);
@@ -75,7 +75,7 @@ static void a_line_without_a_time_has_the_usual_delay(void) {
     TEST_ASSERT_EQUAL_UINT32(NOW_US - 80000u, image.frame.capture_us);
 }
 
-/* Neither of the future by more than two clocks may be apart, nor of long ago; an uncertainty is never nothing, nor beyond a second. */
+/* Refused: a time farther in the future than two clocks may differ, and an old time. An uncertainty is never 0, and at most a second. */
 static void a_time_is_of_the_last_minute(void) {
     static const struct {
         const char *members;
@@ -113,7 +113,7 @@ static void a_camera_is_one_of_those_there_are(void) {
     TEST_ASSERT_FALSE(reads_with("\"camera\": -1"));
 }
 
-/* Every member of a detection, by its name and by the other one. */
+/* Every member of a detection, by its name and by its alternative name. */
 static void a_detection_is_read_whole(void) {
     TEST_ASSERT_TRUE_MESSAGE(
         reads("[{\"id\": 4294967295, \"score\": 0.25, \"pixel_sd\": 2.5, \"box\": [1, 2, 3.5, 4],"
@@ -130,11 +130,11 @@ static void a_detection_is_read_whole(void) {
     CHECK_SAME(0.25f, d[0].score);
     CHECK_SAME(2.5f, d[0].pixel_px);
     for (int i = 0; i < 6; i++) {
-        TEST_ASSERT_TRUE(points[i]->seen);
+        TEST_ASSERT_TRUE(points[i]->visible);
         CHECK_SAME(10.0f + 2.0f * (float)i, points[i]->u_px);
         CHECK_SAME(11.0f + 2.0f * (float)i, points[i]->v_px);
     }
-    TEST_ASSERT_EQUAL_HEX8(GOE_SEES_BOX, d[0].box.seen);
+    TEST_ASSERT_EQUAL_HEX8(GOE_SIDES_ALL, d[0].box.sides);
     CHECK_SAME(1.0f, d[0].box.left_px);
     CHECK_SAME(2.0f, d[0].box.top_px);
     CHECK_SAME(3.5f, d[0].box.right_px);
@@ -143,10 +143,10 @@ static void a_detection_is_read_whole(void) {
     CHECK_SAME(0.5f, d[1].score);
     CHECK_SAME(7.0f, d[1].box.right_px);
     CHECK_SAME(8.0f, d[1].box.bottom_px);
-    TEST_ASSERT_FALSE(d[1].left.seen);
-    CHECK_SAME(1.0f, d[2].score); /* a detector without scores is sure */
+    TEST_ASSERT_FALSE(d[1].left.visible);
+    CHECK_SAME(1.0f, d[2].score); /* without a score it is certain */
     TEST_ASSERT_EQUAL_UINT32(0u, d[2].id);
-    TEST_ASSERT_EQUAL_HEX8(0, d[2].box.seen);
+    TEST_ASSERT_EQUAL_HEX8(0, d[2].box.sides);
 }
 
 static void what_is_no_detection_is_refused(void) {
@@ -185,7 +185,7 @@ static void what_is_no_detection_is_refused(void) {
     }
 }
 
-/* Where classes are named only these count, as whole words. */
+/* If classes are named, only these count, as whole words. */
 static void classes_that_are_not_wanted_are_left_out(void) {
     static const char line[] =
         "[{\"class\": \"mast\", \"box\": [1, 2, 3, 4]}, {\"name\": \"tree\", \"box\": [1, 2, 3, 4]},"

@@ -1,4 +1,4 @@
-"""Bad links and bad senders: the companion goes on, finds the mast, does not grow, and says what it lost."""
+"""Bad links and bad senders: the companion keeps running, finds the mast, does not grow, and reports its losses."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from links import HOST, Faults
 pytestmark = pytest.mark.skipif(is_missing(), reason=f"{PROGRAM} is not built")
 
 FLIGHT_S = 12.8
-BEGIN_S = 1.5  # the autopilot is known by then: it is the first that was heard
+BEGIN_S = 1.5  # the autopilot is known by then, because its messages came first
 GROWTH_KIB = 512
 
 LOSSY, SHUFFLED, DOUBLED, BAD = "lossy", "shuffled", "doubled", "lossy, shuffled and doubled"
@@ -40,7 +40,8 @@ FOUND = [*LINKS, *HOSTILE]
 
 def plans() -> list[Plan]:
     bad_links = [
-        Plan(name, faults=Faults(**told), detector_faults=Faults(**told), recorded=True) for name, told in LINKS.items()
+        Plan(name, faults=Faults(**reported), detector_faults=Faults(**reported), recorded=True)
+        for name, reported in LINKS.items()
     ]
     return [
         *bad_links,
@@ -58,7 +59,7 @@ def plans() -> list[Plan]:
 
 
 class Attack:
-    """Everything that is sent besides what autopilot and detector send."""
+    """All data that are sent in addition to those of autopilot and detector."""
 
     def __init__(self, fleet: Fleet, dialect: Any) -> None:
         self.fleet, self.dialect, self.dice = fleet, dialect, random.Random(3)
@@ -102,7 +103,7 @@ class Attack:
 
 @pytest.fixture(scope="module", name="sizes")
 def resident_sizes() -> dict[str, tuple[int, int]]:
-    """KiB of each companion, midway and at the end."""
+    """KiB of each companion, in the middle and at the end."""
     return {}
 
 
@@ -141,7 +142,7 @@ def test_it_goes_on_until_it_is_interrupted(fleet: Fleet, name: str) -> None:
 def test_it_does_not_grow(fleet: Fleet, sizes: dict[str, tuple[int, int]], name: str) -> None:
     before, after = sizes[name]
     if before > SANITIZED_KIB:
-        pytest.skip("a sanitizer keeps what was freed")
+        pytest.skip("a sanitizer keeps freed memory")
     assert before > 0, "it has ended"
     assert 0 < after <= before + GROWTH_KIB
 
@@ -159,34 +160,34 @@ def test_the_status_goes_on(fleet: Fleet, name: str) -> None:
 
 
 @pytest.mark.parametrize("name", [LOSSY, BAD])
-def test_it_says_what_was_lost(fleet: Fleet, name: str) -> None:
-    """About as many as were: by the running numbers of the autopilot's messages."""
+def test_losses_are_reported(fleet: Fleet, name: str) -> None:
+    """About as many as were lost, by the sequence numbers of the autopilot's messages."""
     wire = fleet[name].autopilot.wire
     assert wire.dropped > 100
     assert counted(fleet[name], "messages_lost") == pytest.approx(wire.dropped, rel=0.2, abs=30)
 
 
 @pytest.mark.parametrize("name", [SHUFFLED, DOUBLED, UNDISTURBED])
-def test_what_was_not_lost_is_not_told(fleet: Fleet, name: str) -> None:
-    """A late or doubled message is no gap of 255."""
+def test_messages_out_of_order_are_no_losses(fleet: Fleet, name: str) -> None:
+    """A late or doubled message does not count as a gap of 255."""
     flight = fleet[name]
     assert counted(flight, "messages_lost") <= 0.05 * flight.autopilot.wire.sent
 
 
 @pytest.mark.parametrize("name", [STRANGER, FRAMES])
 def test_strangers_are_not_counted_as_losses(fleet: Fleet, name: str) -> None:
-    """Their numbers run by themselves."""
+    """They have their own sequence numbers."""
     assert counted(fleet[name], "messages_lost") <= 0.05 * fleet[name].autopilot.wire.sent
 
 
 @pytest.mark.parametrize("name", [LINES, PIPED, HUGE])
-def test_bad_lines_are_told_with_their_number(fleet: Fleet, name: str) -> None:
+def test_bad_lines_are_reported_with_their_number(fleet: Fleet, name: str) -> None:
     ended = fleet[name].ended
     assert ended and re.search(r"line \d+", ended.said), ended
 
 
 def test_bad_lines_are_quoted_harmlessly(fleet: Fleet) -> None:
-    """What a stranger sends does not steer the operator's terminal."""
+    """Text of a stranger does not control the operator's terminal."""
     ended = fleet[ESCAPES].ended
     assert ended and re.search(r"line \d+", ended.said)
     strange = {character for character in ended.said if not character.isprintable() and character != "\n"}
@@ -195,13 +196,13 @@ def test_bad_lines_are_quoted_harmlessly(fleet: Fleet) -> None:
 
 @pytest.mark.parametrize("name", [LINES, PIPED])
 def test_bad_lines_are_counted(fleet: Fleet, name: str) -> None:
-    """All of those that are bad beyond doubt."""
+    """At least those that are certainly malformed."""
     rounds = int((FLIGHT_S - BEGIN_S) / 0.02 / (len(bad_lines()) + len(odd_lines()) + 1))
     assert 0.8 * rounds * len(bad_lines()) <= counted(fleet[name], "images_unread") <= 800
 
 
 def test_a_line_without_end_is_one_line(fleet: Fleet) -> None:
-    """Two of them were sent, and nothing else that could not be understood."""
+    """Two were sent, and no other malformed line."""
     assert counted(fleet[HUGE], "images_unread") == 2
 
 
@@ -211,14 +212,14 @@ def test_bad_frames_are_counted(fleet: Fleet) -> None:
 
 
 @pytest.mark.parametrize("name", [LINES, PIPED, FRAMES, POISON, STRANGER])
-def test_what_it_says_has_an_end(fleet: Fleet, name: str) -> None:
+def test_the_amount_of_output_is_limited(fleet: Fleet, name: str) -> None:
     """Hundreds of faults do not fill the disk: less than ten lines a second."""
     ended = fleet[name].ended
     assert ended and ended.said.count("\n") < 10 * FLIGHT_S + 60, ended.said[-2000:]
 
 
 def test_poison_is_counted(fleet: Fleet) -> None:
-    """And it ends no track, and moves none."""
+    """The messages end no track and move none."""
     last = fleet[POISON].statuses()[-1]
     assert last.refused > 20
     assert (last.lost, last.resets) == (0, 0)
@@ -226,13 +227,13 @@ def test_poison_is_counted(fleet: Fleet) -> None:
 
 
 def test_a_stranger_changes_nothing(fleet: Fleet) -> None:
-    """Neither pose nor clock, origin, system or where answers go to."""
+    """Pose, clock, origin, system and the address of answers stay as they are."""
     flight = fleet[STRANGER]
     last = flight.statuses()[-1]
     assert (last.lost, last.resets) == (0, 0)
     assert {heard.message.get_srcSystem() for heard in flight.autopilot.heard} == {1}
-    told = [status.delay_mean for status in flight.statuses()[3:]]
-    assert statistics.median(told) == pytest.approx(1e3 * statistics.median(flight.detector.delays), abs=15.0)
+    reported = [status.delay_mean for status in flight.statuses()[3:]]
+    assert statistics.median(reported) == pytest.approx(1e3 * statistics.median(flight.detector.delays), abs=15.0)
 
 
 @pytest.mark.parametrize("name", [FRAMES, STRANGER])
@@ -252,12 +253,12 @@ def test_lost_images_lose_nothing_else(fleet: Fleet, name: str) -> None:
 
 @pytest.mark.parametrize("name", LINKS)
 def test_the_log_of_a_bad_link_is_replayed(fleet: Fleet, name: str) -> None:
-    """Images that came twice or in another order are no bad input."""
+    """Doubled images and images out of order are valid input."""
     assert any(row["status"] == "ok" for row in replay(fleet[name].log))
 
 
 def test_a_log_ends_at_its_largest_size(fleet: Fleet) -> None:
-    """With a word, and whole: its last line is one."""
+    """The end is reported, and the log is complete: its last line is whole."""
     flight = fleet[CROWD]
     text = (flight.log / "frames.csv").read_text(encoding="utf-8")
     assert 0.9e6 < len(text) < 1.1e6 and text.endswith("\n")

@@ -1,4 +1,4 @@
-"""Undisturbed flights at a mast, one for each way that poses and detections can come: all of the same time."""
+"""Undisturbed flights towards a mast, one for each way of sending poses and detections, all simultaneous."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ NEAR = 0.35  # three sigmas of the range, about 12 % at 100 m
 pytestmark = pytest.mark.skipif(is_missing(), reason=f"{PROGRAM} is not built")
 
 FLIGHT_S = 12.8  # the mast is reached at 12.5
-WRAP_S = 2.0**32 * 1e-6  # where the autopilot's 32 bit microseconds begin anew
+WRAP_S = 2.0**32 * 1e-6  # the autopilot's 32-bit microseconds wrap here
 ALL = "obstacle_distance obstacle_distance_3d collision target_absolute"
 TWO = (MAST, Obstacle(280.0, 70.0, 10.0, 35.0))
 PLANS = [
@@ -83,19 +83,19 @@ def plain_flight(fleet: Fleet) -> Flight:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_the_mast_is_found(fleet: Fleet, name: str) -> None:
-    """Whichever way poses and detections come: where it is, within what the sigmas tell."""
+    """For each way of sending poses and detections the error is within the reported sigmas."""
     fleet[name].assert_found()
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_the_hazard_rises(fleet: Fleet, name: str) -> None:
-    """On course at the mast: sure of it before it is reached, and its time counts down."""
+    """On a course towards the mast the probability becomes high in time, and the time to it counts down."""
     worst = [hazard for hazard in fleet[name].of("GOE_HAZARD") if hazard.flags & 8]
-    ahead = [hazard for hazard in worst if hazard.time_to > 1.0]
+    ahead = [hazard for hazard in worst if hazard.tcpa > 1.0]
     assert len(ahead) >= 10
-    assert max(hazard.violation for hazard in ahead[-5:]) > 0.95
-    assert ahead[-1].violation >= ahead[0].violation
-    assert ahead[-1].time_to < 4.0 < ahead[0].time_to
+    assert max(hazard.conflict_probability for hazard in ahead[-5:]) > 0.95
+    assert ahead[-1].conflict_probability >= ahead[0].conflict_probability
+    assert ahead[-1].tcpa < 4.0 < ahead[0].tcpa
 
 
 @pytest.mark.parametrize("name", [*NAMES, *(plan.name for plan in OTHERS)])
@@ -109,7 +109,7 @@ def test_the_status_comes_once_a_second(fleet: Fleet, name: str) -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_the_status_tells_what_comes_in(fleet: Fleet, name: str) -> None:
+def test_the_status_reports_the_inputs(fleet: Fleet, name: str) -> None:
     statuses = fleet[name].statuses()
     middle, last = statuses[len(statuses) // 2], statuses[-1]
     assert middle.alive == 3 and middle.self_check == 0 and middle.obstacles == len(fleet[name].plan.obstacles)
@@ -127,7 +127,7 @@ def test_an_interrupt_ends_it_with_a_summary(fleet: Fleet, name: str) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_no_command_is_sent_unless_allowed(fleet: Fleet, name: str) -> None:
-    """reaction.mode is off by default: with a collision ahead nothing moves the aircraft."""
+    """reaction.mode is off by default: with a collision ahead the companion sends no command."""
     assert fleet[name].autopilot.commands() == []
     assert fleet[name].of("ADSB_VEHICLE") == []
 
@@ -139,43 +139,43 @@ def test_no_command_is_sent_unless_allowed(fleet: Fleet, name: str) -> None:
     "name", [name for name in NAMES if name not in ("age", "bare list", "as printed", "features with their age")]
 )
 def test_the_delay_is_the_real_one(fleet: Fleet, name: str) -> None:
-    """The autopilot's clock is found: exposures turned into it are as old as they are."""
+    """The companion determines the autopilot's clock, so the ages of exposures are right."""
     flight = fleet[name]
-    told = [status.delay_mean for status in flight.statuses()[3:] if status.delay_mean != 65535]
-    assert len(told) >= 5
+    reported = [status.delay_mean for status in flight.statuses()[3:] if status.delay_mean != 65535]
+    assert len(reported) >= 5
     real_ms = 1e3 * statistics.median(flight.detector.delays)
-    assert statistics.median(told) == pytest.approx(real_ms, abs=15.0)
+    assert statistics.median(reported) == pytest.approx(real_ms, abs=15.0)
     assert statistics.median(status.delay_max for status in flight.statuses()[3:]) < real_ms + 60.0
 
 
 def test_without_a_time_the_delay_is_the_configured_one(fleet: Fleet) -> None:
-    told = [status.delay_mean for status in fleet["bare list"].statuses()[3:]]
-    assert told and statistics.median(told) == pytest.approx(100.0, abs=10.0)
+    reported = [status.delay_mean for status in fleet["bare list"].statuses()[3:]]
+    assert reported and statistics.median(reported) == pytest.approx(100.0, abs=10.0)
 
 
-def test_it_asks_for_the_clock_four_times_a_second(plain: Flight) -> None:
-    asked = [message for message in plain.of("TIMESYNC") if message.tc1 == 0]
-    assert len(asked) == pytest.approx(4 * FLIGHT_S, abs=12)
-    assert len({message.ts1 for message in asked}) == len(asked)
+def test_it_requests_the_clock_four_times_a_second(plain: Flight) -> None:
+    requested = [message for message in plain.of("TIMESYNC") if message.tc1 == 0]
+    assert len(requested) == pytest.approx(4 * FLIGHT_S, abs=12)
+    assert len({message.ts1 for message in requested}) == len(requested)
 
 
 @pytest.mark.parametrize("name", ["unix", "tcp", "serial", "stdin"])
 def test_it_answers_the_autopilots_questions(fleet: Fleet, name: str) -> None:
-    """Each once, with the time that was asked with, from its own steady clock."""
+    """Each once, with the time in the question and a time of its own steady clock."""
     autopilot = fleet[name].autopilot
-    assert set(autopilot.answers) <= set(autopilot.asked)
-    assert len(autopilot.answers) >= len(autopilot.asked) - 3
+    assert set(autopilot.answers) <= set(autopilot.questions)
+    assert len(autopilot.answers) >= len(autopilot.questions) - 3
     assert set(autopilot.answers.values()) == {1}
     times = [message.tc1 for message in fleet[name].of("TIMESYNC") if message.tc1 != 0]
     steps = [1e-9 * (after - before) for before, after in zip(times, times[1:])]
     assert statistics.median(steps) == pytest.approx(1.0, abs=0.1)
 
 
-# -------------------------------------------------------------------------------------------------------- what is sent
+# ------------------------------------------------------------------------------------------------------- sent messages
 
 
 def test_who_it_is(plain: Flight) -> None:
-    """System of the autopilot, component 196, a heartbeat a second."""
+    """System of the autopilot, component 196, one heartbeat a second."""
     assert {(m.get_srcSystem(), m.get_srcComponent()) for m in (heard.message for heard in plain.autopilot.heard)} == {
         (1, 196)
     }
@@ -184,15 +184,15 @@ def test_who_it_is(plain: Flight) -> None:
 
 
 def test_its_frames_are_numbered(plain: Flight) -> None:
-    """So that the receiver can tell its losses."""
+    """The receiver can count its losses."""
     numbers = [heard.message.get_seq() for heard in plain.autopilot.heard]
     assert all((after - before) % 256 == 1 for before, after in zip(numbers, numbers[1:]))
 
 
-def test_it_asks_for_its_rates(plain: Flight) -> None:
-    asked = {m.param1: m.param2 for m in plain.of("COMMAND_LONG") if m.command == SET_MESSAGE_INTERVAL}
+def test_it_requests_its_rates(plain: Flight) -> None:
+    requested = {m.param1: m.param2 for m in plain.of("COMMAND_LONG") if m.command == SET_MESSAGE_INTERVAL}
     for message in (31, 32):  # ATTITUDE_QUATERNION, LOCAL_POSITION_NED
-        assert asked[message] == pytest.approx(40000.0)
+        assert requested[message] == pytest.approx(40000.0)
     assert len([m for m in plain.of("COMMAND_LONG") if m.command in ASKING]) < 60
 
 
@@ -203,21 +203,21 @@ def test_obstacles_come_as_often_as_configured(plain: Flight) -> None:
     assert statistics.median(steps) == pytest.approx(0.2, abs=0.03)
 
 
-def test_what_an_obstacle_tells(plain: Flight) -> None:
-    """Beside the place: latitude and longitude of it, its size, and that it is in view."""
-    told = [heard.message for heard in plain.autopilot.heard_of("GOE_OBSTACLE") if 100 < 250 - heard.north_m < 180]
-    assert told
-    for message in told:
+def test_content_of_an_obstacle_message(plain: Flight) -> None:
+    """Position with latitude and longitude, size, and the flag that it is in view."""
+    reported = [heard.message for heard in plain.autopilot.heard_of("GOE_OBSTACLE") if 100 < 250 - heard.north_m < 180]
+    assert reported
+    for message in reported:
         assert local_m(message.lat, message.lon) == pytest.approx((message.north, message.east), abs=0.5)
         assert message.ground_down == pytest.approx(0.0, abs=1.0)
         assert abs(message.height - MAST.height_m) < 3.0 * message.height_sd
         assert 0.0 <= message.age < 1.0 and message.id == 1
         assert message.flags & 4 and not message.flags & 2
-    assert len({message.slot for message in told}) == 1
+    assert len({message.slot for message in reported}) == 1
 
 
 def test_times_are_of_the_autopilots_clock(fleet: Fleet) -> None:
-    """Not wrapping in 64 bits, where 32 do."""
+    """It does not wrap in 64 bits, where 32 bits do."""
     for name in ("unix", "drift and wrap"):
         flight = fleet[name]
         clock = flight.autopilot.clock
@@ -228,7 +228,7 @@ def test_times_are_of_the_autopilots_clock(fleet: Fleet) -> None:
 
 
 def test_only_wanted_classes_are_taken(fleet: Fleet) -> None:
-    """The detector is alive none the less."""
+    """The detector counts as alive nevertheless."""
     flight = fleet["other class"]
     assert flight.of("GOE_OBSTACLE") == []
     assert flight.statuses()[-2].alive == 3
@@ -254,40 +254,41 @@ def test_standard_messages_only_where_named(plain: Flight) -> None:
 
 
 def test_obstacle_distance(fleet: Fleet) -> None:
-    """Sectors of 5 degrees, the first one north: the mast in the one ahead, nothing known behind.
+    """Sectors of 5 degrees, the first one north: the mast is in the sector ahead, the sectors behind are unknown.
 
-    The body's frame turned back by the heading, which is 0: ArduPilot takes any message for one of the body's.
+    The body frame is turned back by the heading, which is 0, because ArduPilot takes any message as one in the body
+    frame.
     """
-    told = near(fleet["standard"], "OBSTACLE_DISTANCE")
-    assert told
-    for message, range_m in told:
+    reported = near(fleet["standard"], "OBSTACLE_DISTANCE")
+    assert reported
+    for message, range_m in reported:
         assert message.frame == 12 and message.angle_offset == pytest.approx(0.0, abs=0.5)
         assert 5 in (message.increment, message.increment_f)
         assert 0.01 * message.distances[0] == pytest.approx(range_m - 4.0, rel=NEAR)
         assert message.distances[36] == 65535
-        assert message.distances[4] == message.max_distance + 1  # seen, and nothing there
+        assert message.distances[4] == message.max_distance + 1  # visible, and clear
 
 
 def test_obstacle_distance_3d(fleet: Fleet) -> None:
     """Body frame: ahead."""
-    told = near(fleet["standard"], "OBSTACLE_DISTANCE_3D")
-    assert told
-    for message, range_m in told:
+    reported = near(fleet["standard"], "OBSTACLE_DISTANCE_3D")
+    assert reported
+    for message, range_m in reported:
         assert message.x == pytest.approx(range_m - 4.0, rel=NEAR) and abs(message.y) < 0.1 * range_m
 
 
 def test_collision(fleet: Fleet) -> None:
-    told = near(fleet["standard"], "COLLISION")
-    assert told
-    for message, range_m in told:
+    reported = near(fleet["standard"], "COLLISION")
+    assert reported
+    for message, range_m in reported:
         assert message.threat_level == 2
         assert message.time_to_minimum_delta == pytest.approx(range_m / 20.0, rel=NEAR)
 
 
 def test_target_absolute(fleet: Fleet) -> None:
-    told = near(fleet["standard"], "TARGET_ABSOLUTE")
-    assert told
-    for message, range_m in told:
+    reported = near(fleet["standard"], "TARGET_ABSOLUTE")
+    assert reported
+    for message, range_m in reported:
         north, east = local_m(message.lat, message.lon)
         assert math.hypot(north - MAST.north_m, east - MAST.east_m) < 0.12 * range_m
         assert message.alt == pytest.approx(ALT_M, abs=3.0)
@@ -306,7 +307,7 @@ def rows_of(log: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
-def test_the_log_holds_every_detection(fleet: Fleet, log: Path) -> None:
+def test_the_log_contains_every_detection(fleet: Fleet, log: Path) -> None:
     assert {file.name for file in log.iterdir()} == {"camera.ini", "frames.csv", "orders.csv"}
     rows = rows_of(log)
     assert len(rows) > 0.9 * len(fleet["recorded"].detector.poses) - 5
@@ -328,7 +329,7 @@ def test_the_log_has_times_and_poses_of_the_exposure(fleet: Fleet, log: Path) ->
 
 @pytest.mark.parametrize("name", ["recorded", "no ids", "drift and wrap"])
 def test_the_log_is_replayed(fleet: Fleet, name: str) -> None:
-    """goe_replay takes it as it is, and finds the mast: also without ids, and where 32 bits of time wrap."""
+    """goe_replay accepts it unchanged and finds the mast, also without ids and where 32 bits of time wrap."""
     found = [row for row in replay(fleet[name].log) if row["status"] == "ok"]
     places = [(float(row["center_n_m"]), float(row["center_e_m"])) for row in found]
     assert min(math.dist(place, (MAST.north_m, MAST.east_m)) for place in places[-40:]) < 10.0
@@ -346,10 +347,10 @@ def test_images_are_counted_and_not_their_messages(fleet: Fleet) -> None:
 
 
 def test_the_status_line(fleet: Fleet) -> None:
-    """Every ten seconds where there is no terminal."""
+    """Every ten seconds if there is no terminal."""
     for name in ("unix", "stdin"):
         line = status_line(fleet[name])
-        for told in (
+        for reported in (
             ("PX4" if name == "unix" else "ArduP"),
             r"pose 5\d Hz|pose 4\d Hz",
             r"clock \d+\.\d+ ms",
@@ -357,17 +358,17 @@ def test_the_status_line(fleet: Fleet) -> None:
             r"obstacles 1  id 1: \d+ \+- \d+ m, \d+\.\d s, 100 %",
             r"lost \d",
         ):
-            assert re.search(told, line), (told, line)
+            assert re.search(reported, line), (reported, line)
 
 
-def test_changes_are_told(fleet: Fleet) -> None:
-    """On lines of their own: whom it found."""
+def test_changes_are_reported(fleet: Fleet) -> None:
+    """On lines of their own; the first names the autopilot."""
     ended = fleet["stdin"].ended
     assert ended and re.search(r"ArduP\w+ found", ended.said)
 
 
 def test_the_readme_has_every_key() -> None:
-    """The example is the contract: sections of the README's table are those of the file."""
+    """The README's table lists the sections of the example file."""
     folder = ROOT / "port" / "companion"
     example, readme = ((folder / name).read_text(encoding="utf-8") for name in ("companion.ini", "README.md"))
     sections = [line.strip("[]") for line in example.splitlines() if line.startswith("[")]

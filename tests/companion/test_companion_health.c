@@ -1,4 +1,4 @@
-/* Doubt about where the aircraft is, and the margins that follow it. SPDX-License-Identifier: MIT */
+/* Doubt about the aircraft's position, and the margins that follow from it. SPDX-License-Identifier: MIT */
 #include <math.h>
 #include <string.h>
 
@@ -22,13 +22,13 @@ void setUp(void) {
     (void)memset(&ekf, 0, sizeof ekf);
     now_us = 1000000;
     estimator.flags = ekf.flags = GOOD;
-    estimator.hagl_ratio = 9.0f; /* not looked at */
+    estimator.hagl_ratio = 9.0f; /* not checked */
     fix = GPS_FIX_TYPE_3D_FIX;
     gps_comes = true;
 }
 void tearDown(void) {}
 
-/* So many half seconds, of PX4's messages or of ArduPilot's. */
+/* Sends messages for so many half seconds, PX4's or ArduPilot's. */
 static void go_on(int steps, bool px4) {
     for (int k = 0; k < steps; k++) {
         mavlink_message_t message;
@@ -58,7 +58,7 @@ static void a_lost_fix_is_a_doubt_until_it_is_back_for_a_while(void) {
     go_on(4, true);
     fix = GPS_FIX_TYPE_2D_FIX;
     go_on(2, true);
-    TEST_ASSERT_EQUAL_HEX32(0, health.doubts); /* of a moment */
+    TEST_ASSERT_EQUAL_HEX32(0, health.doubts); /* for a moment */
     go_on(1, true);
     TEST_ASSERT_EQUAL_HEX32(HEALTH_NO_FIX, health.doubts);
     fix = GPS_FIX_TYPE_RTK_FIXED;
@@ -79,7 +79,7 @@ static void faults_of_moments_make_no_doubt(void) {
     TEST_ASSERT_EQUAL_HEX32(0, health.doubts);
 }
 
-/* As indoors, where something else gives the place. */
+/* As indoors, where another system measures the position. */
 static void who_never_had_a_fix_has_lost_none(void) {
     fix = GPS_FIX_TYPE_NO_GPS;
     go_on(20, true);
@@ -115,7 +115,7 @@ static void each_flag_of_the_filter_counts(void) {
     TEST_ASSERT_EQUAL_HEX32(HEALTH_FILTER, doubts_of(false));
 }
 
-/* The makes give the same bits other meanings. */
+/* The same bits have other meanings for each make. */
 static void what_each_make_has_of_its_own(void) {
     estimator.flags = GOOD | ESTIMATOR_GPS_GLITCH;
     TEST_ASSERT_EQUAL_HEX32(HEALTH_GLITCH, doubts_of(true));
@@ -127,7 +127,7 @@ static void what_each_make_has_of_its_own(void) {
     TEST_ASSERT_EQUAL_HEX32(HEALTH_GLITCH, doubts_of(false));
 }
 
-/* One of four measurements, the others 0: as a test ratio of PX4's and as a variance of ArduPilot's. */
+/* One of four measurements, the others 0: as a test ratio of PX4 and as a variance of ArduPilot. */
 static void measure(int which, float off) {
     const float value[4] = {which == 0 ? off : 0.0f, which == 1 ? off : 0.0f, which == 2 ? off : 0.0f,
                             which == 3 ? off : 0.0f};
@@ -160,7 +160,7 @@ static void the_gravest_fault_is_named_first(void) {
     TEST_ASSERT_EQUAL_STRING("filter is far off its sensors", health_text(0x10u));
 }
 
-/* A new run of the autopilot has faults of its own; the doubt of the last one ends as any other. */
+/* A new run of the autopilot has its own faults; the doubt of the last run ends as usual. */
 static void a_restart_of_the_autopilot_ends_its_faults(void) {
     go_on(4, true);
     fix = GPS_FIX_TYPE_NO_FIX;

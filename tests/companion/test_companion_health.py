@@ -1,4 +1,4 @@
-"""What the pilot reads, and what the companion does when the autopilot doubts where it is: flights of the same time."""
+"""The pilot's messages and the companion's behavior when the autopilot doubts its position: simultaneous flights."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def texts(flight: Flight) -> list[str]:
 
 
 def aside_m(flight: Flight) -> float:
-    """Of the first order."""
+    """Lateral distance of the first order."""
     first = next(m for m in flight.of("COMMAND_INT") if m.command == DO_REPOSITION)
     return abs(local_m(first.x, first.y)[1])
 
@@ -72,16 +72,16 @@ def test_it_ends_well(fleet: Fleet, name: str) -> None:
     fleet[name].assert_ended_well()
 
 
-def test_health_is_asked_for(fleet: Fleet) -> None:
-    """GPS_RAW_INT of both makes, and of each the message about its filter."""
+def test_health_messages_are_requested(fleet: Fleet) -> None:
+    """GPS_RAW_INT for both makes, and the filter message of each."""
     for name, messages in ((HEALTHY, {24, 230, 331}), (PLANE, {24, 193, 331})):
-        asked = [m for m in fleet[name].of("COMMAND_LONG") if m.command == SET_MESSAGE_INTERVAL]
-        assert messages <= {int(m.param1) for m in asked}
+        requests = [m for m in fleet[name].of("COMMAND_LONG") if m.command == SET_MESSAGE_INTERVAL]
+        assert messages <= {int(m.param1) for m in requests}
 
 
 @pytest.mark.parametrize("name", [LOST, SILENT, PLANE, AGAIN])
 def test_a_loss_of_gps_is_reported(fleet: Fleet, name: str) -> None:
-    """To whoever reads the events, and to the pilot, within seconds."""
+    """In the events and to the pilot, within seconds."""
     flight = fleet[name]
     assert flight.ended and "GPS" in flight.ended.err
     heard = [h for h in flight.autopilot.heard_of("STATUSTEXT") if "GPS" in h.message.text]
@@ -110,7 +110,7 @@ def test_a_restart_of_the_autopilot_ends_its_faults(fleet: Fleet) -> None:
 
 @pytest.mark.parametrize("name", [LOST, SILENT, FILTER])
 def test_doubt_widens_the_margin(fleet: Fleet, name: str) -> None:
-    """By half of 15 m, the default of flight.doubt."""
+    """By half of 15 m, the default of flight.suspect_factor."""
     assert aside_m(fleet[name]) > aside_m(fleet[HEALTHY]) + 5.0
 
 
@@ -122,7 +122,7 @@ def test_a_doubt_ends_no_track(fleet: Fleet) -> None:
 
 @pytest.mark.parametrize("name", [HEALTHY, PLANE])
 def test_orders_are_on_the_screen(fleet: Fleet, name: str) -> None:
-    """From the companion, with the obstacle's time; and their end."""
+    """The companion sends texts with the obstacle's time, and reports the end of the order."""
     shown = [text for text in texts(fleet[name]) if "order" in text or "traffic" in text]
     assert re.search(r"\d s", shown[0]) and "end" in shown[-1], shown
     assert {m.get_srcComponent() for m in fleet[name].of("STATUSTEXT")} == {196}
@@ -134,7 +134,7 @@ def test_without_reactions_the_pilot_is_warned(fleet: Fleet) -> None:
 
 @pytest.mark.parametrize("name", [plan.name for plan in PLANS])
 def test_the_screen_is_not_flooded(fleet: Fleet, name: str) -> None:
-    """At most two lines a second, none of them cut."""
+    """At most two lines a second, none of them truncated."""
     times = [heard.time_s for heard in fleet[name].autopilot.heard_of("STATUSTEXT")]
     assert all(after - before > 0.45 for before, after in zip(times, times[1:])) and len(times) < 20
     assert all(len(text) < 50 for text in texts(fleet[name]))

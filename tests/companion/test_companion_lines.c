@@ -1,4 +1,4 @@
-/* Lines of JSON: what they come to, what is refused, and that nothing breaks. SPDX-License-Identifier: MIT */
+/* JSON lines: parsed content, refused lines, robustness. SPDX-License-Identifier: MIT */
 #include <stdio.h>
 #include <string.h>
 
@@ -43,7 +43,7 @@ static void check_capture(const char *line, uint32_t age_us, uint32_t sd_us) {
     TEST_ASSERT_EQUAL_UINT8(GOE_FLIGHT_AUTOPILOT_CLOCK, image.frame.time_base);
 }
 
-static void a_line_holds_what_the_readme_says(void) {
+static void a_line_has_the_fields_of_the_readme(void) {
     TEST_ASSERT_TRUE(
         read_line("{\"time\": 1789999999.9, \"camera\": 1, \"detections\": [{\"id\": 3, \"score\": 0.875, \"box\": "
                   "[612.5, 400, 660, 512.5], \"base_near\": [630, 511], \"pixel_sd\": 2.5}]}"));
@@ -58,10 +58,10 @@ static void a_line_holds_what_the_readme_says(void) {
     CHECK_SAME(400.0f, d->box.top_px);
     CHECK_SAME(660.0f, d->box.right_px);
     CHECK_SAME(512.5f, d->box.bottom_px);
-    TEST_ASSERT_EQUAL_UINT8(GOE_SEES_BOX, d->box.seen);
-    TEST_ASSERT_TRUE(d->base_near.seen);
+    TEST_ASSERT_EQUAL_UINT8(GOE_SIDES_ALL, d->box.sides);
+    TEST_ASSERT_TRUE(d->base_near.visible);
     CHECK_SAME(511.0f, d->base_near.v_px);
-    TEST_ASSERT_FALSE(d->left.seen);
+    TEST_ASSERT_FALSE(d->left.visible);
 }
 
 static void other_programs_keys_are_understood(void) {
@@ -130,7 +130,7 @@ static void more_detections_than_a_frame_can_count_are_cut(void) {
     TEST_ASSERT_EQUAL_UINT8(CAMERA_IMAGE_DETECTIONS, image.frame.number);
 }
 
-/* A good line with some bytes changed: it is read or refused, and what is read is within the ranges. */
+/* A good line with some changed bytes is read or refused, and all values read are within the ranges. */
 static void changed_lines_never_break_anything(void) {
     static const char good[] =
         "{\"time\": 0.1, \"clock\": \"age\", \"camera\": 0, \"detections\": [{\"id\": 3, \"score\": 0.8, "
@@ -152,17 +152,17 @@ static void changed_lines_never_break_anything(void) {
         }
     }
     check_report("changed lines that were read, per cent", read / 1000.0);
-    TEST_ASSERT_TRUE(read > 1000); /* the test is not of refusals alone */
+    TEST_ASSERT_TRUE(read > 1000); /* not all lines were refused */
 }
 
 /* -------------------------------------------------------------------------------------------------------- line reader -- */
 
-static char seen[256];
+static char lines_read[256];
 
 static void keep(void *user, const char *line, size_t length) {
     (void)user;
-    const size_t used = strlen(seen);
-    (void)snprintf(seen + used, sizeof seen - used, "%.*s|", (int)length, line);
+    const size_t used = strlen(lines_read);
+    (void)snprintf(lines_read + used, sizeof lines_read - used, "%.*s|", (int)length, line);
 }
 
 static void lines_come_out_whole_however_they_are_cut(void) {
@@ -170,11 +170,11 @@ static void lines_come_out_whole_however_they_are_cut(void) {
     for (size_t cut = 0; cut < sizeof text; cut++) {
         static line_reader_t reader;
         (void)memset(&reader, 0, sizeof reader);
-        seen[0] = '\0';
+        lines_read[0] = '\0';
         line_reader_take(&reader, text, cut, keep, NULL);
         line_reader_take(&reader, text + cut, sizeof text - 1u - cut, keep, NULL);
         line_reader_end(&reader, keep, NULL);
-        TEST_ASSERT_EQUAL_STRING("one|two\r|three|", seen);
+        TEST_ASSERT_EQUAL_STRING("one|two\r|three|", lines_read);
         TEST_ASSERT_EQUAL_UINT32(3, (uint32_t)reader.line);
     }
 }
@@ -182,19 +182,19 @@ static void lines_come_out_whole_however_they_are_cut(void) {
 static void check_texts(const char *bytes, const char *expected) {
     static line_reader_t reader;
     (void)memset(&reader, 0, sizeof reader);
-    seen[0] = '\0';
+    lines_read[0] = '\0';
     line_reader_take(&reader, bytes, strlen(bytes), keep, NULL);
-    TEST_ASSERT_EQUAL_STRING(expected, seen);
+    TEST_ASSERT_EQUAL_STRING(expected, lines_read);
 }
 
-/* As json.dumps(..., indent=2) prints: complete with its last bracket, so that no image waits for the next one. */
+/* As json.dumps(..., indent=2) prints: complete with the last bracket, so no image waits for the next one. */
 static void an_indented_text_goes_over_several_lines(void) {
     check_texts("[\n  {\n    \"a\": \"]}\\\"\"\n  }\n]\n", "[\n  {\n    \"a\": \"]}\\\"\"\n  }\n]|");
     check_texts("[\n]\n[\n]\n", "[\n]|[\n]|");
     check_texts("[\n\n  1]\n", "[\n\n  1]|");
 }
 
-/* What is broken costs itself alone. */
+/* A malformed detection does not affect others. */
 static void a_text_that_is_left_open_ends_where_another_one_begins(void) {
     check_texts("[{\n{}\n", "[{\n|{}|");
     check_texts("[\"open\n{}\n", "[\"open\n|{}|");
@@ -205,18 +205,18 @@ static void a_line_without_end_is_passed_over_and_the_next_one_is_read(void) {
     static line_reader_t reader;
     static char flood[4096];
     (void)memset(flood, 'x', sizeof flood);
-    seen[0] = '\0';
+    lines_read[0] = '\0';
     for (int i = 0; i < 1000; i++) {
         line_reader_take(&reader, flood, sizeof flood, keep, NULL);
     }
     line_reader_take(&reader, "\nnext\n", 6, keep, NULL);
-    TEST_ASSERT_EQUAL_STRING("next|", seen);
+    TEST_ASSERT_EQUAL_STRING("next|", lines_read);
     TEST_ASSERT_EQUAL_UINT32(1, (uint32_t)reader.cut);
 }
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(a_line_holds_what_the_readme_says);
+    RUN_TEST(a_line_has_the_fields_of_the_readme);
     RUN_TEST(other_programs_keys_are_understood);
     RUN_TEST(every_clock_gives_the_same_exposure);
     RUN_TEST(classes_are_picked);

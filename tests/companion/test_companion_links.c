@@ -1,4 +1,4 @@
-/* Whom a link hears, and the time of signatures. SPDX-License-Identifier: MIT */
+/* Senders that a link accepts, and the time of signatures. SPDX-License-Identifier: MIT */
 #include <inttypes.h>
 #include <stdlib.h>
 
@@ -17,7 +17,7 @@ static link_t *own;
 void setUp(void) {
     char where[64], fault[128];
     int port = 0;
-    const int probe = receiver_socket(&own_port); /* a port that is free */
+    const int probe = receiver_socket(&own_port); /* a free port */
     (void)close(probe);
     friend_socket = receiver_socket(&port);
     stranger_socket = receiver_socket(&port);
@@ -42,7 +42,7 @@ static void send_from(int from, char what) {
     (void)sendto(from, &what, 1, 0, (struct sockaddr *)&to, sizeof to);
 }
 
-/* What comes next; 0: nothing. */
+/* The next message; 0: none. */
 static char heard(void) {
     uint8_t bytes[16];
     return link_read(own, bytes, sizeof bytes) == 1 ? (char)bytes[0] : '\0';
@@ -130,7 +130,7 @@ static void pass_over(void *user, const mavlink_message_t *message) {
     (void)message;
 }
 
-/* Its checksum is not known, and the parser says so before it has read the signature: that is half a frame. */
+/* Its checksum is unknown, and the parser reports that before it has read the signature: half a frame. */
 static void a_signed_message_of_an_unknown_kind_counts_once(void) {
     static wire_t wire;
     uint8_t frame[MAVLINK_NUM_HEADER_BYTES + 1u + 2u + MAVLINK_SIGNATURE_BLOCK_LEN] = {
@@ -142,7 +142,7 @@ static void a_signed_message_of_an_unknown_kind_counts_once(void) {
     to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     to.sin_port = htons((uint16_t)own_port);
     wire.link = own;
-    wire.heard = 1;
+    wire.autopilot_system = 1;
     for (uint8_t number = 0; number < 3; number++) {
         frame[4] = number;
         (void)sendto(friend_socket, frame, sizeof frame, 0, (struct sockaddr *)&to, sizeof to);
@@ -181,7 +181,7 @@ static void a_time_that_is_none_is_passed_over(void) {
     TEST_ASSERT_EQUAL_UINT64(NOW_TICKS, begin(&signing, UNIX_US));
 }
 
-static void a_time_that_cannot_be_kept_holds_nothing_up(void) {
+static void a_time_that_cannot_be_kept_blocks_nothing(void) {
     signing_t signing;
     wire_t wire;
     const uint8_t key[KEY_BYTES] = {0};
@@ -204,7 +204,7 @@ int main(void) {
     RUN_TEST(a_signed_message_of_an_unknown_kind_counts_once);
     RUN_TEST(times_of_signatures_never_go_back);
     RUN_TEST(a_time_that_is_none_is_passed_over);
-    RUN_TEST(a_time_that_cannot_be_kept_holds_nothing_up);
+    RUN_TEST(a_time_that_cannot_be_kept_blocks_nothing);
     (void)remove(time_path);
     (void)rmdir(folder);
     return UNITY_END();

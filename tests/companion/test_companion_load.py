@@ -50,7 +50,7 @@ def flown(make_fleet: MakeFleet) -> Iterator[Load]:
 
 
 def test_it_was_loaded(load: Load) -> None:
-    """What the figures are of: as many poses as they say, and every image taken."""
+    """Checks the load behind the figures: the number of poses, and every image taken."""
     assert load.flight.autopilot.wire.sent > 0.8 * 400 * (WARM_S + LOAD_S)
     assert len(load.flight.detector.delays) > 0.8 * 30 * (WARM_S + LOAD_S)
     assert load.flight.statuses()[-1].taken > 0.95 * len(load.flight.detector.delays) - 40
@@ -58,7 +58,7 @@ def test_it_was_loaded(load: Load) -> None:
 
 def test_it_does_not_grow(load: Load) -> None:
     if load.before_kib > SANITIZED_KIB:
-        pytest.skip("a sanitizer keeps what was freed")
+        pytest.skip("a sanitizer keeps freed memory")
     assert 0 < load.after_kib <= load.before_kib + GROWTH_KIB
     assert load.files_after == load.files_before
 

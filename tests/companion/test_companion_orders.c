@@ -1,4 +1,4 @@
-/* Orders: when a command goes out, when none does, and when the mode before comes back. SPDX-License-Identifier: MIT */
+/* Orders: when commands are sent, when none is, and when the previous mode is restored. SPDX-License-Identifier: MIT */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,10 +25,10 @@ static orders_t orders;
 static goe_flight_assessment_t assessment;
 static goe_mavlink_own_t own;
 static int64_t now_us;
-static receiver_t receiver;      /* where the companion's messages arrive */
-static mavlink_message_t latest; /* command that arrived */
+static receiver_t receiver;      /* receives the companion's messages */
+static mavlink_message_t latest; /* the latest received command */
 static bool has_arrived[256];    /* traffic, by the last byte of its address */
-static int arrived;              /* messages of traffic */
+static int arrived;              /* traffic messages */
 
 void setUp(void) {
     const char *bad = NULL;
@@ -61,7 +61,7 @@ void setUp(void) {
 
 void tearDown(void) { receiver_close(&receiver, &wire); }
 
-/* How many commands of this number have come since the last call, the latest of them in `latest`. */
+/* The number of commands of this kind since the last call; the latest is in `latest`. */
 static int count_commands(uint16_t number) {
     int count = 0;
     mavlink_message_t message;
@@ -82,7 +82,7 @@ static int count_commands(uint16_t number) {
     return count;
 }
 
-/* How many messages of traffic have come since the last call. */
+/* The number of traffic messages since the last call. */
 static int count_traffic(void) {
     arrived = 0;
     (void)memset(has_arrived, 0, sizeof has_arrived);
@@ -90,7 +90,7 @@ static int count_traffic(void) {
     return arrived;
 }
 
-/* The flight layer's order, about the obstacle in slot 0. */
+/* Gives the flight layer's order, about the obstacle in slot 0. */
 static void decide(goe_flight_action_t action) {
     assessment.action = action;
     assessment.avoided = action == GOE_FLIGHT_NONE ? -1 : 0;
@@ -99,7 +99,7 @@ static void decide(goe_flight_action_t action) {
     assessment.target_ned_m[2] = -30.0f;
 }
 
-/* So many assessments, with a heartbeat of this mode each second. */
+/* Runs so many assessments, with a heartbeat of this mode each second. */
 static void go_on(int assessments, uint32_t mode) {
     for (int k = 0; k < assessments; k++) {
         now_us += STEP_US;
@@ -118,7 +118,7 @@ static void answer(uint16_t command, uint8_t result) {
     orders_take(&orders, &message);
 }
 
-/* An obstacle as the flight layer knows it, or one that it has given up. */
+/* An obstacle in the flight layer, or one that it has given up. */
 static void know_obstacle(bool known) {
     goe_flight_attitude_t attitude = {5000000, {1.0f, 0.0f, 0.0f, 0.0f}, 0};
     goe_flight_position_t position;
@@ -139,7 +139,7 @@ static void ordered(void) {
     TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_REPOSITION));
 }
 
-static void ordered_anew(void) {
+static void ordered_again(void) {
     autopilot.custom_mode = MISSION;
     ordered();
 }
@@ -147,10 +147,10 @@ static void ordered_anew(void) {
 static void an_order_is_repeated_until_it_is_acknowledged(void) {
     decide(GOE_FLIGHT_LEFT);
     go_on(21, MISSION);
-    TEST_ASSERT_EQUAL_INT(5, count_commands(MAV_CMD_DO_REPOSITION)); /* at once and each half second */
+    TEST_ASSERT_EQUAL_INT(5, count_commands(MAV_CMD_DO_REPOSITION)); /* at once, and every half second */
     TEST_ASSERT_EQUAL_INT32(474000000, mavlink_msg_command_int_get_x(&latest));
     TEST_ASSERT_EQUAL_UINT8(MAV_FRAME_GLOBAL_INT, mavlink_msg_command_int_get_frame(&latest));
-    answer(MAV_CMD_DO_SET_MODE, MAV_RESULT_ACCEPTED); /* somebody else's */
+    answer(MAV_CMD_DO_SET_MODE, MAV_RESULT_ACCEPTED); /* of another sender */
     go_on(6, MISSION);
     TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_REPOSITION));
     answer(MAV_CMD_DO_REPOSITION, MAV_RESULT_ACCEPTED);
@@ -169,7 +169,7 @@ static void a_target_that_moves_is_sent_once_a_second_at_most(void) {
     TEST_ASSERT_TRUE(sent >= 2 && sent <= 4);
 }
 
-static void what_is_denied_is_not_asked_for_again(void) {
+static void a_denied_order_is_not_repeated(void) {
     decide(GOE_FLIGHT_LEFT);
     go_on(1, MISSION);
     answer(MAV_CMD_DO_REPOSITION, MAV_RESULT_DENIED);
@@ -200,8 +200,8 @@ static void nothing_goes_out_to_whom_it_is_not_for(void) {
     }
 }
 
-/* GIVEN a landing, in whose mode no side is flown, WHEN the order to a side becomes one to go around THEN that is sent; a pilot who
- * took over meanwhile is left alone. */
+/* GIVEN a landing, in whose mode no side is flown, WHEN the order to a side becomes one to go around THEN the go-around is sent; a pilot
+ * who has taken over in the meantime is not overridden. */
 static void a_side_that_was_not_sent_does_not_silence_a_go_around(void) {
     autopilot.custom_mode = LAND;
     decide(GOE_FLIGHT_LEFT);
@@ -214,14 +214,14 @@ static void a_side_that_was_not_sent_does_not_silence_a_go_around(void) {
     TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_GO_AROUND));
     decide(GOE_FLIGHT_NONE);
     go_on(1, MISSION);
-    ordered_anew();
+    ordered_again();
     go_on(20, POSITION);
     decide(GOE_FLIGHT_GO_AROUND);
     go_on(20, POSITION);
     TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_GO_AROUND));
 }
 
-/* Also where the target moves, and for the mode afterwards. */
+/* Also if the target moves, and for the mode afterwards. */
 static void a_pilot_is_not_fought(void) {
     know_obstacle(true);
     ordered();
@@ -243,10 +243,10 @@ static void the_mode_before_comes_back_once_the_obstacle_is_passed(void) {
     CHECK_SAME(4.0f, mavlink_msg_command_long_get_param2(&latest));
     CHECK_SAME(4.0f, mavlink_msg_command_long_get_param3(&latest));
     go_on(100, LOITER);
-    TEST_ASSERT_EQUAL_INT(4, count_commands(MAV_CMD_DO_SET_MODE)); /* five times in all */
+    TEST_ASSERT_EQUAL_INT(4, count_commands(MAV_CMD_DO_SET_MODE)); /* five in total */
 }
 
-/* Out of sight, or turned away from: it may lie ahead on the way back. */
+/* It is out of sight, or the aircraft has turned away: the obstacle may lie ahead on the way back. */
 static void the_aircraft_stays_where_the_obstacle_is_not_known_to_be_passed(void) {
     know_obstacle(true);
     ordered();
@@ -255,8 +255,8 @@ static void the_aircraft_stays_where_the_obstacle_is_not_known_to_be_passed(void
     go_on(30, LOITER);
     TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_SET_MODE));
     know_obstacle(true);
-    ordered_anew();
-    flight.slot[0].valid = 0; /* the track ended, as by a reset of the heading: the slot waits for images */
+    ordered_again();
+    flight.slot[0].valid = 0; /* a reset of the heading, for example, has ended the track: the slot waits for images */
     decide(GOE_FLIGHT_NONE);
     go_on(30, LOITER);
     TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_SET_MODE));
@@ -269,8 +269,8 @@ static void the_aircraft_stays_where_the_obstacle_is_not_known_to_be_passed(void
     TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_SET_MODE));
 }
 
-/* A heartbeat a second tells the mode late: the loiter of the order before is not the mode that this one began in, and the mission
- * that comes back is no pilot's choice. */
+/* With one heartbeat a second the mode is known late: the loiter of the previous order is not the mode before the new one, and the
+ * mission that returns is not a pilot's choice. */
 static void a_second_order_within_a_heartbeat_of_the_first(void) {
     know_obstacle(true);
     ordered();
@@ -291,7 +291,7 @@ static void a_second_order_within_a_heartbeat_of_the_first(void) {
     CHECK_SAME(4.0f, mavlink_msg_command_long_get_param3(&latest));
 }
 
-static void an_autopilot_that_starts_anew_knows_of_no_order(void) {
+static void a_restarted_autopilot_knows_of_no_order(void) {
     know_obstacle(true);
     ordered();
     autopilot.restarts++;
@@ -310,7 +310,7 @@ static void nothing_at_all_goes_out_while_reactions_are_off(void) {
     TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_REPOSITION));
 }
 
-/* What forbids an order is looked at again for as long as the order stands. */
+/* Conditions that forbid an order are checked as long as the order is active. */
 static void what_hinders_an_order_may_end(void) {
     for (int k = 0; k < 3; k++) {
         orders_init(&orders, &wire, &config, &autopilot, &flight);
@@ -332,7 +332,7 @@ static void what_hinders_an_order_may_end(void) {
     }
 }
 
-/* Also what begins to hinder it. */
+/* Also conditions that arise later. */
 static void an_order_that_is_disarmed_is_not_repeated(void) {
     decide(GOE_FLIGHT_LEFT);
     go_on(1, MISSION);
@@ -342,7 +342,7 @@ static void an_order_that_is_disarmed_is_not_repeated(void) {
     TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_REPOSITION));
 }
 
-/* After touchdown no landing is broken off; a bounce is a flight again. */
+/* After touchdown a landing is not aborted; a bounce is flight again. */
 static void nothing_is_sent_on_the_ground(void) {
     autopilot.custom_mode = LAND;
     autopilot.on_ground = true;
@@ -354,8 +354,8 @@ static void nothing_is_sent_on_the_ground(void) {
     TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_GO_AROUND));
 }
 
-/* GIVEN an order that has led to its mode, WHEN the pilot goes back to the mode before, and the target moves, THEN the order is not
- * repeated over him, and no mode is asked for. */
+/* GIVEN an order that has led to its mode, WHEN the pilot returns to the previous mode, and the target moves, THEN the order is not
+ * repeated against the pilot, and no mode is requested. */
 static void the_mode_before_may_be_the_pilots_choice(void) {
     know_obstacle(true);
     ordered();
@@ -372,10 +372,10 @@ static void the_mode_before_may_be_the_pilots_choice(void) {
     TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_SET_MODE));
 }
 
-/* GIVEN an order, WHEN the autopilot flies to another place, as of a pilot's Hold or reposition, THEN it is left to him. */
+/* GIVEN an order, WHEN the autopilot flies to another place, for example by a pilot's Hold or reposition, THEN the pilot keeps control. */
 static void a_place_that_the_pilot_chose_is_left_to_him(void) {
     ordered();
-    autopilot.target_lat_e7 = assessment.target_lat_e7 + 100; /* a metre: rounding */
+    autopilot.target_lat_e7 = assessment.target_lat_e7 + 100; /* one meter: rounding */
     autopilot.target_lon_e7 = assessment.target_lon_e7;
     autopilot.targets++;
     go_on(30, LOITER);
@@ -391,7 +391,7 @@ static void a_place_that_the_pilot_chose_is_left_to_him(void) {
     TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_REPOSITION));
 }
 
-/* An autopilot may acknowledge the mode and refuse the place, as for its fence: that is no pilot's choice. */
+/* An autopilot may acknowledge the mode and refuse the place, for example outside its fence: that is no pilot's choice. */
 static void a_place_that_was_never_flown_to_is_no_choice(void) {
     ordered();
     autopilot.target_lat_e7 = assessment.target_lat_e7 + 10000;
@@ -403,7 +403,7 @@ static void a_place_that_was_never_flown_to_is_no_choice(void) {
     TEST_ASSERT_FALSE(orders.silenced);
 }
 
-/* The old place may be reported for a while after another was sent. */
+/* The autopilot may report the old place for a while after a new one was sent. */
 static void a_place_that_is_reported_late_is_no_choice(void) {
     ordered();
     autopilot.target_lat_e7 = assessment.target_lat_e7;
@@ -420,7 +420,7 @@ static void a_place_that_is_reported_late_is_no_choice(void) {
     TEST_ASSERT_FALSE(orders.silenced);
 }
 
-/* GIVEN an acknowledgement that comes late WHEN the next heartbeat still shows the mode before THEN that is no pilot's choice. */
+/* GIVEN an acknowledgement that comes late WHEN the next heartbeat still shows the previous mode THEN that is no pilot's choice. */
 static void a_late_acknowledgement_gives_the_mode_its_time(void) {
     decide(GOE_FLIGHT_LEFT);
     go_on(60, MISSION);
@@ -441,7 +441,7 @@ static void another_action_may_be_accepted_where_one_was_denied(void) {
     TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_REPOSITION));
 }
 
-/* The top over home, with the clearance: what the flight layer's target holds. */
+/* The top above home plus the clearance, as in the flight layer's target. */
 static void a_go_around_carries_the_height_that_the_top_requires(void) {
     know_obstacle(true);
     flight.slot[0].valid |= GOE_HAS_HEIGHT;
@@ -473,7 +473,7 @@ static void fly_arduplane(void) {
     decide(GOE_FLIGHT_LEFT);
 }
 
-/* ArduPlane's avoidance does nothing in its landing: that is broken off first, up to over the top, and traffic turns it away then. */
+/* ArduPlane's avoidance does nothing in a landing. So the landing is aborted up to above the top; then traffic turns the aircraft away. */
 static void a_side_breaks_a_landing_off(void) {
     fly_arduplane();
     flight.slot[0].valid |= GOE_HAS_HEIGHT;
@@ -482,9 +482,9 @@ static void a_side_breaks_a_landing_off(void) {
     flight.slot[0].ground_down_m = 1.0f;
     autopilot.has_home = autopilot.landing = true;
     autopilot.home_down_m = 2.0f;
-    assessment.target_ned_m[2] = -20.0f; /* of a side: the present height */
+    assessment.target_ned_m[2] = -20.0f; /* for a side: the present height */
     go_on(12, AUTO);
-    TEST_ASSERT_EQUAL_INT(3, count_commands(MAV_CMD_DO_GO_AROUND)); /* at once and each half second */
+    TEST_ASSERT_EQUAL_INT(3, count_commands(MAV_CMD_DO_GO_AROUND)); /* at once, and every half second */
     CHECK_CLOSE(1e-3, 2.0f - 1.0f + 45.0f + 2.0f * 1.5f + config.flight.clearance_m,
                 mavlink_msg_command_long_get_param1(&latest));
     TEST_ASSERT_TRUE(arrived > 0);
@@ -521,7 +521,7 @@ static void a_pilots_mode_ends_traffic(void) {
     go_on(50, CRUISE);
     TEST_ASSERT_EQUAL_INT(0, count_traffic());
     go_on(50, AUTO);
-    TEST_ASSERT_EQUAL_INT(0, count_traffic()); /* it is the pilot's, until all orders have ended */
+    TEST_ASSERT_EQUAL_INT(0, count_traffic()); /* the pilot is in control until all orders have ended */
     decide(GOE_FLIGHT_NONE);
     go_on(1, AUTO);
     decide(GOE_FLIGHT_RIGHT);
@@ -529,7 +529,7 @@ static void a_pilots_mode_ends_traffic(void) {
     TEST_ASSERT_TRUE(count_traffic() > 0);
 }
 
-/* Out of the autopilot's avoidance back into the mode before it. */
+/* Out of the autopilot's avoidance back into the previous mode. */
 static void a_pilots_way_out_of_avoidance_ends_traffic(void) {
     fly_arduplane();
     go_on(20, AUTO);
@@ -558,8 +558,7 @@ static void an_avoidance_that_the_autopilot_ends_goes_on(void) {
     TEST_ASSERT_EQUAL_INT(0, count_traffic());
 }
 
-/* ArduPlane reports the end of its avoidance also where a pilot has taken the aircraft out of it before: to a mode that no recovery
- * leads to. */
+/* ArduPlane reports the end of its avoidance also if a pilot has ended it before, by a mode that no recovery leads to. */
 static void a_pilots_mode_before_the_report_of_the_end_is_the_pilots(void) {
     fly_arduplane();
     go_on(20, AUTO);
@@ -572,7 +571,7 @@ static void a_pilots_mode_before_the_report_of_the_end_is_the_pilots(void) {
     TEST_ASSERT_TRUE(orders.overruled);
 }
 
-/* As AVD_F_RCVRY 3 out of CRUISE: it loiters, and the next avoidance comes from there. */
+/* As AVD_F_RCVRY 3 out of CRUISE: the aircraft loiters, and the next avoidance starts from there. */
 static void a_recovery_into_another_mode_is_the_autopilots(void) {
     fly_arduplane();
     go_on(20, CRUISE);
@@ -592,7 +591,7 @@ static void a_recovery_into_another_mode_is_the_autopilots(void) {
 
 /* --------------------------------------------------------------------------------------------------------- restarts -- */
 
-static const order_left_t left = {.stands = true,
+static const order_left_t left = {.active = true,
                                   .action = GOE_FLIGHT_LEFT,
                                   .mode_before = MISSION,
                                   .boot_us = 900000,
@@ -634,7 +633,7 @@ static void a_restarted_companion_goes_back_once_the_logged_obstacle_is_passed(v
     TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_SET_MODE));
 }
 
-/* Another boot of the autopilot, and a pilot who has taken over meanwhile. */
+/* After another boot of the autopilot, and after a pilot has taken over in the meantime. */
 static void an_order_of_another_flight_is_not_taken_over(void) {
     take_over(230.0f, 60000000);
     TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_SET_MODE));
@@ -646,8 +645,8 @@ static void an_order_of_another_flight_is_not_taken_over(void) {
     TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_SET_MODE));
 }
 
-/* An order that was left to the pilot is not resumed; a row that was torn does not count. */
-static void the_log_tells_whether_an_order_stands(void) {
+/* An order that was left to the pilot is not resumed; a torn row does not count. */
+static void the_log_shows_whether_an_order_is_active(void) {
     char folder[] = "/tmp/goe_orders_XXXXXX", path[64];
     order_log_t log = {NULL};
     order_left_t read;
@@ -681,8 +680,8 @@ static void the_log_tells_whether_an_order_stands(void) {
     (void)rmdir(folder);
 }
 
-/* GIVEN a companion that is restarted twice, and no new order between, THEN the second log still has the order; its end is there, too. */
-static void an_order_that_was_taken_over_stands_in_the_next_log(void) {
+/* GIVEN a companion that is restarted twice without a new order in between THEN the second log still contains the order and its end. */
+static void an_order_that_was_taken_over_is_in_the_next_log(void) {
     char folder[] = "/tmp/goe_orders_XXXXXX", path[64];
     order_log_t log = {NULL};
     order_left_t read;
@@ -710,9 +709,9 @@ static void an_order_that_was_taken_over_stands_in_the_next_log(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(an_order_that_was_taken_over_stands_in_the_next_log);
+    RUN_TEST(an_order_that_was_taken_over_is_in_the_next_log);
     RUN_TEST(a_recovery_into_another_mode_is_the_autopilots);
-    RUN_TEST(the_log_tells_whether_an_order_stands);
+    RUN_TEST(the_log_shows_whether_an_order_is_active);
     RUN_TEST(what_hinders_an_order_may_end);
     RUN_TEST(an_order_that_is_disarmed_is_not_repeated);
     RUN_TEST(nothing_is_sent_on_the_ground);
@@ -735,14 +734,14 @@ int main(void) {
     RUN_TEST(an_order_of_another_flight_is_not_taken_over);
     RUN_TEST(an_order_is_repeated_until_it_is_acknowledged);
     RUN_TEST(a_target_that_moves_is_sent_once_a_second_at_most);
-    RUN_TEST(what_is_denied_is_not_asked_for_again);
+    RUN_TEST(a_denied_order_is_not_repeated);
     RUN_TEST(nothing_goes_out_to_whom_it_is_not_for);
     RUN_TEST(a_side_that_was_not_sent_does_not_silence_a_go_around);
     RUN_TEST(a_pilot_is_not_fought);
     RUN_TEST(the_mode_before_comes_back_once_the_obstacle_is_passed);
     RUN_TEST(the_aircraft_stays_where_the_obstacle_is_not_known_to_be_passed);
     RUN_TEST(a_second_order_within_a_heartbeat_of_the_first);
-    RUN_TEST(an_autopilot_that_starts_anew_knows_of_no_order);
+    RUN_TEST(a_restarted_autopilot_knows_of_no_order);
     RUN_TEST(nothing_at_all_goes_out_while_reactions_are_off);
     return UNITY_END();
 }

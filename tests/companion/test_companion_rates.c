@@ -8,8 +8,8 @@ static wire_t wire;
 static receiver_t receiver;
 static message_rates_t rates;
 static int64_t now_us;
-static int message_asked;
-static double hz_asked;
+static int requested_message;
+static double requested_hz;
 
 void setUp(void) {
     (void)memset(&wire, 0, sizeof wire);
@@ -21,7 +21,7 @@ void setUp(void) {
 }
 void tearDown(void) { receiver_close(&receiver, &wire); }
 
-/* How many requests come within so many tenths of a second. */
+/* The number of requests within so many tenths of a second. */
 static int go_on(int steps) {
     int count = 0;
     for (int k = 0; k < steps; k++) {
@@ -30,8 +30,8 @@ static int go_on(int steps) {
         message_rates_ask(&rates, &wire, 1, now_us);
         while (receiver_next(&receiver, &message)) {
             TEST_ASSERT_EQUAL_UINT16(MAV_CMD_SET_MESSAGE_INTERVAL, mavlink_msg_command_long_get_command(&message));
-            message_asked = (int)mavlink_msg_command_long_get_param1(&message);
-            hz_asked = 1e6 / (double)mavlink_msg_command_long_get_param2(&message);
+            requested_message = (int)mavlink_msg_command_long_get_param1(&message);
+            requested_hz = 1e6 / (double)mavlink_msg_command_long_get_param2(&message);
             count++;
         }
     }
@@ -39,11 +39,11 @@ static int go_on(int steps) {
 }
 
 static void expect(int message, double hz) {
-    TEST_ASSERT_EQUAL_INT(message, message_asked);
-    CHECK_CLOSE(0.01, hz, hz_asked);
+    TEST_ASSERT_EQUAL_INT(message, requested_message);
+    CHECK_CLOSE(0.01, hz, requested_hz);
 }
 
-static void each_message_is_asked_for_once_if_it_is_accepted(void) {
+static void each_message_is_requested_once_if_it_is_accepted(void) {
     TEST_ASSERT_EQUAL_INT(1, go_on(5));
     expect(31, 25.0);
     message_rates_answer(&rates, MAV_RESULT_ACCEPTED);
@@ -56,23 +56,23 @@ static void each_message_is_asked_for_once_if_it_is_accepted(void) {
 }
 
 static void what_is_refused_goes_down_to_5_hz_and_is_given_up(void) {
-    static const double asked_hz[] = {25.0, 20.0, 10.0, 5.0};
+    static const double expected_hz[] = {25.0, 20.0, 10.0, 5.0};
     for (size_t i = 0; i < 4; i++) {
         TEST_ASSERT_EQUAL_INT(1, go_on(1));
-        expect(31, asked_hz[i]);
+        expect(31, expected_hz[i]);
         message_rates_answer(&rates, MAV_RESULT_FAILED);
     }
     TEST_ASSERT_EQUAL_INT(1, go_on(1));
     expect(32, 10.0);
 }
 
-static void a_silent_autopilot_is_asked_five_times_for_each(void) {
+static void a_silent_autopilot_gets_five_requests_for_each(void) {
     TEST_ASSERT_EQUAL_INT(10, go_on(150));
     expect(32, 10.0);
     TEST_ASSERT_TRUE(message_rates_done(&rates));
 }
 
-/* A refusal is an answer: the tries begin again. */
+/* A refusal is an answer: the tries start again. */
 static void a_refusal_begins_the_tries_again(void) {
     TEST_ASSERT_EQUAL_INT(4, go_on(31));
     message_rates_answer(&rates, MAV_RESULT_DENIED);
@@ -90,7 +90,7 @@ static void an_answer_that_nobody_awaits_changes_nothing(void) {
     TEST_ASSERT_EQUAL_INT(0, go_on(4));
 }
 
-static void a_second_round_keeps_what_was_accepted(void) {
+static void a_second_round_keeps_accepted_rates(void) {
     (void)go_on(1);
     message_rates_answer(&rates, MAV_RESULT_FAILED);
     (void)go_on(1);
@@ -108,7 +108,7 @@ static void a_second_round_keeps_what_was_accepted(void) {
     expect(32, 10.0);
 }
 
-static void no_more_messages_than_there_is_room_for(void) {
+static void no_more_messages_than_fit(void) {
     for (uint32_t i = 0; i < 100; i++) {
         message_rates_want(&rates, i, "more", 1.0);
     }
@@ -117,12 +117,12 @@ static void no_more_messages_than_there_is_room_for(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(each_message_is_asked_for_once_if_it_is_accepted);
+    RUN_TEST(each_message_is_requested_once_if_it_is_accepted);
     RUN_TEST(what_is_refused_goes_down_to_5_hz_and_is_given_up);
-    RUN_TEST(a_silent_autopilot_is_asked_five_times_for_each);
+    RUN_TEST(a_silent_autopilot_gets_five_requests_for_each);
     RUN_TEST(a_refusal_begins_the_tries_again);
     RUN_TEST(an_answer_that_nobody_awaits_changes_nothing);
-    RUN_TEST(a_second_round_keeps_what_was_accepted);
-    RUN_TEST(no_more_messages_than_there_is_room_for);
+    RUN_TEST(a_second_round_keeps_accepted_rates);
+    RUN_TEST(no_more_messages_than_fit);
     return UNITY_END();
 }

@@ -1,4 +1,4 @@
-"""How often the companion asks for poses, and what it does when the autopilot refuses: flights of the same time."""
+"""The requested rates of poses, and the reactions to an autopilot's refusal: simultaneous flights."""
 
 from __future__ import annotations
 
@@ -46,23 +46,23 @@ def flown(make_fleet: MakeFleet) -> Iterator[Fleet]:
     yield fleet
 
 
-def asked_hz(flight: Flight, message: int) -> list[float]:
-    asked = [m for m in flight.of("COMMAND_LONG") if m.command == SET_MESSAGE_INTERVAL and int(m.param1) == message]
-    return [round(1e6 / m.param2, 1) for m in asked]
+def requested_hz(flight: Flight, message: int) -> list[float]:
+    requests = [m for m in flight.of("COMMAND_LONG") if m.command == SET_MESSAGE_INTERVAL and int(m.param1) == message]
+    return [round(1e6 / m.param2, 1) for m in requests]
 
 
 @pytest.mark.parametrize("name", [plan.name for plan in PLANS])
 def test_poses_come(fleet: Fleet, name: str) -> None:
-    """And the mast is found by them."""
+    """The mast is found by these poses."""
     flight = fleet[name]
     flight.assert_ended_well()
     assert len(flight.found()) > 5
 
 
 def test_it_starts_at_25_hz(fleet: Fleet) -> None:
-    """What a stock ArduPlane accepts is asked for once."""
-    assert asked_hz(fleet[STOCK], ATTITUDE) == [25.0]
-    assert asked_hz(fleet[STOCK], POSITION) == [25.0]
+    """A stock ArduPlane accepts it, so one request is enough."""
+    assert requested_hz(fleet[STOCK], ATTITUDE) == [25.0]
+    assert requested_hz(fleet[STOCK], POSITION) == [25.0]
     assert fleet[STOCK].ended and "refuses ATT" not in fleet[STOCK].ended.err
 
 
@@ -71,30 +71,30 @@ LOWERED += [(name, [25.0, 20.0, 10.0]) for name in (TEMPORARILY, DENYING)]
 
 
 @pytest.mark.parametrize("name, rates", LOWERED)
-def test_what_is_refused_is_asked_for_less_often(fleet: Fleet, name: str, rates: list[float]) -> None:
+def test_a_refused_rate_is_lowered(fleet: Fleet, name: str, rates: list[float]) -> None:
     flight = fleet[name]
-    assert asked_hz(flight, ATTITUDE) == rates
-    assert asked_hz(flight, POSITION) == rates
+    assert requested_hz(flight, ATTITUDE) == rates
+    assert requested_hz(flight, POSITION) == rates
     assert flight.ended and flight.ended.err.count("ATTITUDE_QUATERNION") == 1, flight.ended.err
     assert f"ATTITUDE_QUATERNION at {rates[0]:.0f} Hz is refused: {rates[-1]:.0f} Hz" in flight.ended.err
 
 
-def test_what_is_not_answered_is_asked_for_again(fleet: Fleet) -> None:
-    assert asked_hz(fleet[SILENT], ATTITUDE) == 4 * [25.0]
+def test_an_unanswered_request_is_repeated(fleet: Fleet) -> None:
+    assert requested_hz(fleet[SILENT], ATTITUDE) == 4 * [25.0]
 
 
-def test_what_was_refused_is_asked_for_again_while_no_poses_come(fleet: Fleet) -> None:
-    assert asked_hz(fleet[STUBBORN], ATTITUDE) == [25.0, 20.0, 10.0, 5.0, 25.0]
+def test_a_refused_request_is_repeated_while_no_poses_come(fleet: Fleet) -> None:
+    assert requested_hz(fleet[STUBBORN], ATTITUDE) == [25.0, 20.0, 10.0, 5.0, 25.0]
     assert fleet[STUBBORN].ended and fleet[STUBBORN].ended.err.count("does not send ATTITUDE_QUATERNION") == 1
 
 
-def test_an_autopilot_that_restarts_is_asked_again(fleet: Fleet) -> None:
-    """Without poses its new clock is not seen at once: then once more."""
-    assert asked_hz(fleet[REBOOT], ATTITUDE) in (2 * [25.0], 3 * [25.0])
+def test_requests_are_repeated_after_a_restart_of_the_autopilot(fleet: Fleet) -> None:
+    """Without poses the new clock is noticed late: the requests are repeated once more."""
+    assert requested_hz(fleet[REBOOT], ATTITUDE) in (2 * [25.0], 3 * [25.0])
 
 
-def test_odometry_is_asked_of_every_autopilot(fleet: Fleet) -> None:
-    """Whoever does not have it is asked for no rate twice, and that is reported once."""
-    assert asked_hz(fleet["px4"], ODOMETRY) == [10.0]
-    assert asked_hz(fleet[STOCK], ODOMETRY) == [10.0, 5.0]
+def test_odometry_is_requested_of_every_autopilot(fleet: Fleet) -> None:
+    """An autopilot without it gets no second request, and the refusal is reported once."""
+    assert requested_hz(fleet["px4"], ODOMETRY) == [10.0]
+    assert requested_hz(fleet[STOCK], ODOMETRY) == [10.0, 5.0]
     assert fleet[STOCK].ended and fleet[STOCK].ended.err.count("ODOMETRY") == 1

@@ -1,4 +1,4 @@
-"""What the companion has the autopilot do, each way of each autopilot: flights of the same time."""
+"""The companion's orders to the autopilot, for each kind of reaction and autopilot: simultaneous flights."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ POSITION = 3 << 16  # PX4: POSCTL
 ICAO = 0xABC120
 LOW = Obstacle(250.0, height_m=22.0)
 ASIDE = (Obstacle(250.0, 90.0),)
-STOPS = {"loiter_m": 0}  # the simulated vehicle is asked for nothing more
+STOPS = {"loiter_m": 0}  # the simulated vehicle receives no further command
 TO_PX4 = {"reaction": {"mode": "px4"}, "flight": STOPS}
 TO_ARDUPLANE = {"reaction": {"mode": "arduplane"}}
 AVOIDS, STAYS, PAST = "px4", "px4 without resume", "px4, mast aside"
@@ -55,7 +55,7 @@ PLANS = [
 
 
 class Pilot:
-    """Takes over, once, so long after the order."""
+    """Takes over once, `after_s` after the order."""
 
     def __init__(self, flight: Flight, after_s: float) -> None:
         self.autopilot, self.after_s, self.loop = flight.autopilot, after_s, flight.loop
@@ -73,11 +73,12 @@ class Pilot:
 
 
 class Avoidance:
-    """Of ArduPlane's: into AVOID_ADSB when traffic comes, and after 2 s back, once. By itself it says so."""
+    """ArduPlane's avoidance: into AVOID_ADSB when traffic comes, and back after 2 s, once. ArduPlane reports that it
+    does so."""
 
     def __init__(self, flight: Flight, by_itself: bool) -> None:
         self.flight, self.by_itself = flight, by_itself
-        self.since_s = math.inf  # of the way back
+        self.since_s = math.inf  # on the way back
         self.seen = False
         flight.loop.every(0.05, self._look)
 
@@ -96,7 +97,7 @@ class Avoidance:
 
 
 class Killer:
-    """Kills the companion, once, so long after the order, and starts it again."""
+    """Kills the companion once, a set time after the order, and restarts it."""
 
     def __init__(self, flight: Flight, after_s: float) -> None:
         self.flight, self.after_s = flight, after_s
@@ -142,8 +143,8 @@ def orders(flight: Flight) -> list[Heard]:
 
 
 def mode_changes(flight: Flight) -> list[Any]:
-    told = [m for m in flight.of("COMMAND_LONG") if m.command == DO_SET_MODE]
-    return told + flight.of("SET_MODE")
+    sent = [m for m in flight.of("COMMAND_LONG") if m.command == DO_SET_MODE]
+    return sent + flight.of("SET_MODE")
 
 
 @pytest.mark.parametrize("name", [plan.name for plan in PLANS])
@@ -155,7 +156,7 @@ def test_it_ends_well(fleet: Fleet, name: str) -> None:
 
 
 def test_px4_is_sent_past_the_mast(fleet: Fleet) -> None:
-    """DO_REPOSITION as COMMAND_INT, with change of mode, to a place beside the mast at the aircraft's height."""
+    """DO_REPOSITION as COMMAND_INT with change of mode, to a place next to the mast at the aircraft's height."""
     first = orders(fleet[AVOIDS])[0].message
     assert first.get_type() == "COMMAND_INT" and (first.target_system, first.target_component) == (1, 1)
     assert int(first.param2) & 1
@@ -167,37 +168,37 @@ def test_px4_is_sent_past_the_mast(fleet: Fleet) -> None:
 
 
 def test_the_order_comes_in_time_and_not_at_once(fleet: Fleet) -> None:
-    """At 20 m/s the mast is 12.5 s away; the rule is: once little is left of what the turn needs."""
+    """At 20 m/s the mast is 12.5 s away. The order comes once little more time is left than the turn needs."""
     range_m = MAST.north_m - orders(fleet[AVOIDS])[0].north_m
     assert 60.0 < range_m < 240.0
 
 
 def test_the_order_is_repeated_until_it_is_acknowledged(fleet: Fleet) -> None:
-    """And no more after that, as long as its target stays."""
-    told = orders(fleet[AVOIDS])
-    assert len(told) > IGNORED
-    steps = [after.time_s - before.time_s for before, after in zip(told[: IGNORED + 1], told[1 : IGNORED + 1])]
+    """And not afterwards, as long as its target stays."""
+    sent = orders(fleet[AVOIDS])
+    assert len(sent) > IGNORED
+    steps = [after.time_s - before.time_s for before, after in zip(sent[: IGNORED + 1], sent[1 : IGNORED + 1])]
     assert all(0.05 < step < 2.5 for step in steps), steps
-    places = [local_m(h.message.x, h.message.y) for h in told[IGNORED:]]
+    places = [local_m(h.message.x, h.message.y) for h in sent[IGNORED:]]
     assert all(math.dist(before, after) > 4.5 for before, after in zip(places, places[1:])), places
 
 
 def test_the_aircraft_passes_clear(fleet: Fleet) -> None:
-    """By a good part of the margin, as it flies to the target and no farther."""
+    """By a good part of the margin: the aircraft flies to the target and no farther."""
     for name in (AVOIDS, STAYS):
         least = min(math.dist(heard.place, (250.0, 0.0)) for heard in fleet[name].autopilot.heard)
         assert least > MAST.width_m / 2 + 0.5 * MARGIN_M
 
 
 def test_the_mode_is_restored(fleet: Fleet) -> None:
-    """Behind the mast, and again if the autopilot does not answer at once."""
+    """Behind the mast, and repeatedly if the autopilot does not answer at once."""
     pilot = fleet[AVOIDS].autopilot
     assert pilot.modes == [MODES[PX4], LOITER, MODES[PX4]]
     assert 1 < len(mode_changes(fleet[AVOIDS])) < 8
 
 
-def test_the_hazard_tells_the_action(fleet: Fleet) -> None:
-    """The same target as the order's."""
+def test_the_hazard_reports_the_action(fleet: Fleet) -> None:
+    """The target equals that of the order."""
     flight = fleet[AVOIDS]
     acting = [m for m in flight.of("GOE_HAZARD") if m.action]
     assert acting and all(m.action in (1, 2) and m.flags & 0x20 for m in acting)
@@ -214,23 +215,23 @@ def test_without_resume_the_mode_stays(fleet: Fleet) -> None:
 
 
 @pytest.mark.parametrize("name", [OVERRULED, AT_ONCE])
-def test_what_the_pilot_chose_is_not_ended(fleet: Fleet, name: str) -> None:
-    """The mode is restored only from where the order put it, also if no heartbeat told of that."""
+def test_a_mode_that_the_pilot_chose_is_not_ended(fleet: Fleet, name: str) -> None:
+    """The mode is restored only from the mode of the order, even if no heartbeat reported that."""
     flight = fleet[name]
     assert flight.autopilot.modes[:3] == [MODES[PX4], LOITER, POSITION]
     assert mode_changes(flight) == []
 
 
 @pytest.mark.parametrize("name", [OVERRULED, AT_ONCE])
-def test_what_the_pilot_chose_is_not_taken_from_him(fleet: Fleet, pilots: dict[str, Pilot], name: str) -> None:
-    """Once the companion can know of it: no order that changes the mode again."""
+def test_a_mode_that_the_pilot_chose_is_not_overridden(fleet: Fleet, pilots: dict[str, Pilot], name: str) -> None:
+    """Once the companion can know of it, it sends no order that changes the mode again."""
     since_s = pilots[name].since_s + 1.2
     assert [heard.time_s - since_s for heard in orders(fleet[name]) if heard.time_s > since_s] == []
     assert fleet[name].autopilot.modes == [MODES[PX4], LOITER, POSITION]
 
 
 def test_after_a_restart_in_an_order_the_mode_comes_back(fleet: Fleet) -> None:
-    """By the log of the companion that was killed; without one it stays where it loiters."""
+    """From the log of the killed companion; without a log the aircraft keeps loitering."""
     assert fleet[KILLED].autopilot.modes == [MODES[PX4], LOITER, MODES[PX4]]
     assert fleet[FORGETFUL].autopilot.modes == [MODES[PX4], LOITER]
     assert [m.text for m in fleet[KILLED].of("STATUSTEXT") if "restarted in an order" in m.text]
@@ -242,7 +243,7 @@ def log_rows(folder: Path) -> list[dict[str, str]]:
 
 
 def test_the_log_has_the_orders(fleet: Fleet) -> None:
-    """With both clocks, the mode before and what was sent."""
+    """With both clocks, the previous mode and the sent command."""
     log = fleet[KILLED].log
     rows = log_rows(log)
     assert [row["event"] for row in rows][:3] == ["order", "reposition", "acknowledged"]
@@ -264,17 +265,17 @@ def test_a_mast_aside_is_passed(fleet: Fleet, name: str) -> None:
 
 @pytest.mark.parametrize("name", [LANDING, LANDING_PLANE])
 def test_on_approach_it_goes_around(fleet: Fleet, name: str) -> None:
-    """What can be climbed over is, once the autopilot says that it lands."""
-    told = fleet[name].autopilot.commands()
-    assert [m.command for m in told if m.get_type().startswith("COMMAND")][:1] == [DO_GO_AROUND]
+    """A climb over the obstacle is used once the autopilot reports that it lands."""
+    sent = fleet[name].autopilot.commands()
+    assert [m.command for m in sent if m.get_type().startswith("COMMAND")][:1] == [DO_GO_AROUND]
     assert orders(fleet[name]) == []
 
 
 @pytest.mark.parametrize("name", [LANDING, LANDING_PLANE])
 def test_the_go_around_carries_its_height(fleet: Fleet, name: str) -> None:
-    """Over home: the mast's top and the clearance of 10 m, with what the top is uncertain by."""
-    told = [m for m in fleet[name].autopilot.commands() if m.command == DO_GO_AROUND]
-    assert LOW.height_m + 9.0 < told[0].param1 < LOW.height_m + 40.0
+    """Above home: the mast's top, its uncertainty and the clearance of 10 m."""
+    sent = [m for m in fleet[name].autopilot.commands() if m.command == DO_GO_AROUND]
+    assert LOW.height_m + 9.0 < sent[0].param1 < LOW.height_m + 40.0
 
 
 # ------------------------------------------------------------------------------------------------------------ arduplane
@@ -285,11 +286,11 @@ def ahead(flight: Flight) -> list[Heard]:
 
 
 @pytest.mark.parametrize("name", [TRAFFIC, LOW_TRAFFIC])
-def test_the_mast_is_traffic_that_stands(fleet: Fleet, name: str) -> None:
-    """A point obstacle without a velocity, where the mast is."""
-    told = ahead(fleet[name])
-    assert len(told) >= 4
-    for heard in told:
+def test_the_mast_is_stationary_traffic(fleet: Fleet, name: str) -> None:
+    """A point obstacle without a velocity, at the position of the mast."""
+    sent = ahead(fleet[name])
+    assert len(sent) >= 4
+    for heard in sent:
         message = heard.message
         assert message.emitter_type == 19
         assert (message.hor_velocity, message.ver_velocity) == (0, 0)
@@ -300,14 +301,14 @@ def test_the_mast_is_traffic_that_stands(fleet: Fleet, name: str) -> None:
 
 
 def test_traffic_is_sent_at_its_rate(fleet: Fleet) -> None:
-    """adsb_hz, by default 2, looked at when the hazard is."""
+    """adsb_hz, by default 2, checked when the hazard is."""
     times = [heard.time_s for heard in ahead(fleet[TRAFFIC])]
     steps = [after - before for before, after in zip(times, times[1:])]
     assert 0.4 < statistics.median(steps) < 0.7 and min(steps) > 0.35, steps
 
 
 def test_a_high_mast_lies_just_below_the_aircraft(fleet: Fleet) -> None:
-    """min(top, own - 1 m): here the own."""
+    """min(top, own - 1 m): here the aircraft's own height."""
     for heard in ahead(fleet[TRAFFIC]):
         assert 1e-3 * heard.message.altitude == pytest.approx(ALT_M + 29.0, abs=0.5)
 
@@ -320,13 +321,13 @@ def test_a_low_mast_lies_at_its_top(fleet: Fleet) -> None:
 
 
 def test_traffic_has_the_configured_address(fleet: Fleet) -> None:
-    """The first obstacle has that of `icao`."""
+    """The first obstacle has the address of `icao`."""
     assert {heard.message.ICAO_address for heard in ahead(fleet[TRAFFIC])} == {ICAO}
     assert {heard.message.ICAO_address for heard in ahead(fleet[LOW_TRAFFIC])} == {0xF0E000}
 
 
 def test_traffic_ends_behind_the_mast(fleet: Fleet) -> None:
-    """It is passed at 250 m, and behind by its radius and the margin soon after."""
+    """The mast is passed at 250 m, and soon after is behind by its radius and the margin."""
     for name in (TRAFFIC, LOW_TRAFFIC):
         flight = fleet[name]
         assert max(h.north_m for h in flight.autopilot.heard) > 320.0
@@ -335,12 +336,12 @@ def test_traffic_ends_behind_the_mast(fleet: Fleet) -> None:
 
 @pytest.mark.parametrize("name", [TRAFFIC, LOW_TRAFFIC])
 def test_arduplane_is_given_no_order(fleet: Fleet, name: str) -> None:
-    """Its own avoidance turns away."""
+    """Its own avoidance turns the aircraft away."""
     assert fleet[name].autopilot.commands() == []
 
 
 def test_a_pilot_who_ends_the_avoidance_gets_no_more_traffic(fleet: Fleet, avoidances: dict[str, Avoidance]) -> None:
-    """Once two heartbeats have shown it."""
+    """Once two heartbeats have shown the pilot's mode."""
     since_s = avoidances[PILOT_OUT].since_s
     times = [heard.time_s for heard in fleet[PILOT_OUT].autopilot.heard_of("ADSB_VEHICLE")]
     assert since_s < math.inf and max(times) < since_s + 2.3

@@ -1,4 +1,4 @@
-"""Clocks that jump, and restarts of either side in flight: each of a flight of its own, all of the same time."""
+"""Jumping clocks, and restarts of either side in flight: one flight for each, all simultaneous."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from flights import Fleet, Flight, MakeFleet, Plan
 pytestmark = pytest.mark.skipif(is_missing(), reason=f"{PROGRAM} is not built")
 
 FLIGHT_S = 14.5
-EVENT_S = 5.05  # no message is of this very moment
+EVENT_S = 5.05  # no message has exactly this time
 FAR = (Obstacle(300.0),)  # reached after 15 s
 SHIFT = (15.0, -10.0, 0.0)
 
@@ -24,9 +24,9 @@ BACK, FORWARD, REBOOT = "clock back to 0", "clock 3 s forward", "autopilot resta
 INTERRUPTED, KILLED = "companion restarts", "companion is killed"
 BLIND, UNIX, NO_POSE = "detector dies", "detector's clock jumps", "poses cease"
 TCP, FIFO = "tcp peer restarts", "fifo's writer restarts"
-STEP, TOLD, TURN = "position jumps", "ODOMETRY tells of a reset", "heading jumps"
+STEP, ODOMETRY_RESET, TURN = "position jumps", "ODOMETRY reports a reset", "heading jumps"
 RESTARTED = [BACK, FORWARD, REBOOT]
-ALL = [*RESTARTED, INTERRUPTED, KILLED, BLIND, UNIX, NO_POSE, TCP, FIFO, STEP, TOLD, TURN]
+ALL = [*RESTARTED, INTERRUPTED, KILLED, BLIND, UNIX, NO_POSE, TCP, FIFO, STEP, ODOMETRY_RESET, TURN]
 
 PLANS = [
     Plan(BACK, obstacles=FAR, recorded=True),
@@ -40,20 +40,20 @@ PLANS = [
     Plan(TCP, link="tcp", obstacles=FAR),
     Plan(FIFO, source="fifo", obstacles=FAR),
     Plan(STEP, obstacles=FAR, recorded=True),
-    Plan(TOLD, obstacles=FAR),
+    Plan(ODOMETRY_RESET, obstacles=FAR),
     Plan(TURN, obstacles=FAR),
 ]
 
 
 class Events:
-    """What happens in flight, and when it happened."""
+    """Triggers the events in flight, and stores their times."""
 
     def __init__(self, fleet: Fleet) -> None:
         self.fleet = fleet
         self.begin_s = self.end_s = 0.0
 
     def prepare(self) -> None:
-        self.fleet[TOLD].autopilot.reset_counter = 3
+        self.fleet[ODOMETRY_RESET].autopilot.reset_counter = 3
         self.fleet[TURN].autopilot.yaw_shift = math.radians(12.0)  # wrong until the jump
 
     def now(self) -> None:
@@ -65,7 +65,7 @@ class Events:
         fleet[TCP].autopilot.wire.reopen()
         fleet[TURN].autopilot.yaw_shift = 0.0
         fleet[STEP].autopilot.shift = SHIFT
-        fleet[TOLD].autopilot.reset_counter = 4
+        fleet[ODOMETRY_RESET].autopilot.reset_counter = 4
         self._for_a_while(self._blind, 3.0)
         self._restart_companion(INTERRUPTED, signal.SIGINT)
         self._restart_companion(KILLED, signal.SIGKILL)
@@ -124,7 +124,7 @@ def test_it_goes_on_until_it_is_interrupted(fleet: Fleet, name: str) -> None:
 
 @pytest.mark.parametrize("name", ALL)
 def test_the_mast_is_known_before_and_after(fleet: Fleet, events: Events, name: str) -> None:
-    """Nothing that is told between is wrong either, once the aircraft's own jump is over."""
+    """No report in between is wrong either, once the aircraft's own jump is over."""
     assert before(fleet[name], events)
     fleet[name].assert_found(since_s=events.begin_s + (0.5 if name in (STEP, TURN) else 0.0))
 
@@ -139,7 +139,7 @@ def test_it_is_found_again_soon(fleet: Fleet, events: Events, name: str) -> None
 
 @pytest.mark.parametrize("name", RESTARTED)
 def test_a_clock_that_jumps_ends_all_tracks(fleet: Fleet, name: str) -> None:
-    """And the companion says so, once: not for every message of the new time."""
+    """The companion reports it once, not for every message with the new time."""
     flight = fleet[name]
     assert 1 <= flight.statuses()[-1].lost <= 3
     assert flight.ended and re.search(r"restart|jump|anew", flight.ended.said), flight.ended
@@ -151,15 +151,15 @@ def test_times_are_of_the_new_clock(fleet: Fleet, events: Events, name: str) -> 
     heard = [h for h in flight.autopilot.heard_of("GOE_STATUS") if h.time_s > events.begin_s + 4.0]
     assert heard
     for status in heard:
-        told = 1e-3 * status.message.time_boot_ms
-        assert told == pytest.approx(flight.autopilot.clock.at(status.time_s), abs=1.0)
+        reported = 1e-3 * status.message.time_boot_ms
+        assert reported == pytest.approx(flight.autopilot.clock.at(status.time_s), abs=1.0)
     assert heard[-1].message.alive == 3
 
 
 def test_delays_are_right_again_after_a_restart(fleet: Fleet) -> None:
     for name in RESTARTED:
-        told = [status.delay_mean for status in fleet[name].statuses()[-4:]]
-        assert all(60 <= delay <= 160 for delay in told), (name, told)
+        reported = [status.delay_mean for status in fleet[name].statuses()[-4:]]
+        assert all(60 <= delay <= 160 for delay in reported), (name, reported)
 
 
 def test_the_first_run_of_a_restarted_companion_ended_well(fleet: Fleet) -> None:
@@ -168,7 +168,7 @@ def test_the_first_run_of_a_restarted_companion_ended_well(fleet: Fleet) -> None
 
 
 def test_a_rebooted_autopilot_is_answered_where_it_is_now(fleet: Fleet, events: Events) -> None:
-    """It comes back from another port."""
+    """The autopilot comes back from another port."""
     heard = [h.time_s for h in fleet[REBOOT].autopilot.heard_of("HEARTBEAT") if h.time_s > events.begin_s + 2.0]
     assert heard and heard[0] < events.begin_s + 5.0 and len(heard) >= 4
 
@@ -180,7 +180,7 @@ def test_the_companion_calls_its_tcp_peer_again(fleet: Fleet, events: Events) ->
     assert heard and heard[0] < events.begin_s + 4.0
 
 
-# -------------------------------------------------------------------------------------------------------- what is alive
+# --------------------------------------------------------------------------------------------------------- alive inputs
 
 
 def alive_between(flight: Flight, bit: int, begin_s: float, end_s: float) -> list[bool]:
@@ -189,8 +189,9 @@ def alive_between(flight: Flight, bit: int, begin_s: float, end_s: float) -> lis
 
 
 @pytest.mark.parametrize(("name", "bit"), [(BLIND, 1), (FIFO, 1), (UNIX, 1), (NO_POSE, 2)])
-def test_what_dies_is_told_and_comes_back(fleet: Fleet, events: Events, name: str, bit: int) -> None:
-    """A detector is dead after a second, a pose after half of one; an hour's error of its clock is as good as none."""
+def test_an_input_that_fails_is_reported_and_comes_back(fleet: Fleet, events: Events, name: str, bit: int) -> None:
+    """A detector counts as dead after a second, a pose after half a second; a clock error of an hour has the same
+    effect as no data."""
     flight = fleet[name]
     assert all(alive_between(flight, bit, events.begin_s - 2.0, events.begin_s))
     dead = alive_between(flight, bit, events.begin_s + 1.3, events.end_s)
@@ -200,7 +201,7 @@ def test_what_dies_is_told_and_comes_back(fleet: Fleet, events: Events, name: st
 
 
 def test_obstacle_distance_of_a_dead_detector_is_unknown(fleet: Fleet, events: Events) -> None:
-    """Not clear: nowhere."""
+    """Unknown is not clear."""
     heard = fleet[BLIND].autopilot.heard_of("OBSTACLE_DISTANCE")
     blind = [h.message for h in heard if events.begin_s + 1.3 < h.time_s < events.end_s]
     assert blind
@@ -214,7 +215,7 @@ def test_obstacle_distance_of_a_dead_detector_is_unknown(fleet: Fleet, events: E
 
 
 def test_a_step_is_a_known_jump(fleet: Fleet, events: Events) -> None:
-    """The track goes on: the obstacle moves with the local frame, and no gap comes of it."""
+    """The track continues: the obstacle moves with the local frame, without a gap."""
     flight = fleet[STEP]
     last = flight.statuses()[-1]
     assert (last.resets, last.lost) == (1, 0)
@@ -223,13 +224,13 @@ def test_a_step_is_a_known_jump(fleet: Fleet, events: Events) -> None:
     assert len({message.slot for message in flight.of("GOE_OBSTACLE")}) == 1
 
 
-@pytest.mark.parametrize("name", [TURN, TOLD])
-def test_what_is_not_known_of_a_reset_ends_the_tracks(fleet: Fleet, name: str) -> None:
+@pytest.mark.parametrize("name", [TURN, ODOMETRY_RESET])
+def test_a_reset_of_unknown_size_ends_the_tracks(fleet: Fleet, name: str) -> None:
     """A turn that the rates do not explain, and a counter of ODOMETRY without a step."""
     assert fleet[name].statuses()[-1].lost == 1
 
 
 @pytest.mark.parametrize("name", [BACK, STEP])
 def test_the_log_is_replayed(fleet: Fleet, name: str) -> None:
-    """Also that of a clock that begins anew."""
+    """Also the log of a clock that starts again."""
     assert any(row["status"] == "ok" for row in replay(fleet[name].log)[-30:])

@@ -1,4 +1,4 @@
-/* Texts for the pilot: their order and their rate. SPDX-License-Identifier: MIT */
+/* Texts to the pilot: their order and their rate. SPDX-License-Identifier: MIT */
 #include "receiver.h"
 #include "screen.h"
 
@@ -19,7 +19,7 @@ void setUp(void) {
 }
 void tearDown(void) { receiver_close(&receiver, &wire); }
 
-/* How many texts come within so many tenths of a second, the latest of them in `text`. */
+/* The number of texts within so many tenths of a second; the latest is in `text`. */
 static int go_on(int steps) {
     int count = 0;
     for (int k = 0; k < steps; k++) {
@@ -49,7 +49,7 @@ static void the_most_severe_comes_first(void) {
     TEST_ASSERT_EQUAL_INT(0, go_on(50));
 }
 
-/* One kind of text, ten times a second: one in two seconds, and the last one in the end. */
+/* One kind of text, ten times a second: one is sent in two seconds, and the last one at the end. */
 static void a_kind_that_chatters_is_thinned_to_its_latest(void) {
     int count = 0;
     for (int k = 0; k < 100; k++) {
@@ -73,10 +73,10 @@ static void nothing_is_sent_to_nobody_or_from_a_screen_that_is_off(void) {
     screen_show(&screen, SCREEN_ORDER, MAV_SEVERITY_WARNING, "off");
     TEST_ASSERT_EQUAL_INT(0, go_on(10));
     screen.on = true;
-    wire.heard = 0;
+    wire.autopilot_system = 0;
     screen_show(&screen, SCREEN_ORDER, MAV_SEVERITY_WARNING, "kept");
     TEST_ASSERT_EQUAL_INT(0, go_on(10));
-    wire.heard = 1;
+    wire.autopilot_system = 1;
     TEST_ASSERT_EQUAL_INT(1, go_on(10));
     TEST_ASSERT_EQUAL_STRING("kept", text);
 }

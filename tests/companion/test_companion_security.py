@@ -1,4 +1,5 @@
-"""Whom the companion believes: one address, and on a signed link only who has the key. Flights of the same time."""
+"""Senders that the companion accepts: one address, and on a signed link only senders with the key. Simultaneous
+flights."""
 
 from __future__ import annotations
 
@@ -27,7 +28,7 @@ STRANGERS = {BOUND: "udpin", CONNECTED: "udpout"}
 
 
 def signed(name: str, key: bytes | None, **more: Any) -> Plan:
-    """Times of images are ages: this computer's clock may be wrong."""
+    """Times of images are ages, because this computer's clock may be wrong."""
     return Plan(name, clock="age", settings={"link": {"key_file": "link.key"}}, autopilot={"key": key, **more})
 
 
@@ -45,7 +46,7 @@ PLANS = [
 
 
 class Attack:
-    """From an address of its own, or over the wire of the autopilot and without its key."""
+    """From its own address, or over the autopilot's wire without the key."""
 
     def __init__(self, fleet: Fleet, dialect: Any) -> None:
         self.fleet, self.dialect = fleet, dialect
@@ -74,7 +75,7 @@ class Attack:
         ]
 
     def strike_at_once(self) -> None:
-        """Behind the autopilot's first messages, before the companion has read any."""
+        """After the autopilot's first messages, before the companion has read any."""
         for data in self.forged(self.fleet[BOUND].autopilot):
             self.socket.sendto(data, self.address(BOUND))
 
@@ -90,7 +91,7 @@ class Attack:
             self.replay(data)
 
     def address(self, name: str) -> tuple[str, int]:
-        """Where the companion hears."""
+        """The address on which the companion listens."""
         wire = self.fleet[name].autopilot.wire
         if isinstance(wire, UdpServerWire):
             assert wire.peer
@@ -128,19 +129,19 @@ def flown(make_fleet: MakeFleet, dialect: Any) -> Iterator[Fleet]:
 
 
 @pytest.mark.parametrize("name", [BOUND, CONNECTED, MIXED])
-def test_what_strangers_say_is_not_believed(fleet: Fleet, name: str) -> None:
+def test_messages_of_strangers_are_ignored(fleet: Fleet, name: str) -> None:
     flight = fleet[name]
     flight.assert_ended_well()
     assert flight.ended and flight.ended.count("jumps") == 0
     assert len(flight.found(since_s=flight.loop.now_s - 3.0)) > 5
 
 
-def test_what_came_before_the_system_refused_strangers_is_counted(fleet: Fleet) -> None:
+def test_messages_before_the_system_refused_strangers_are_counted(fleet: Fleet) -> None:
     assert fleet[BOUND].ended and fleet[BOUND].ended.count("strangers") == 2
 
 
 def test_boxes_of_strangers_are_none(fleet: Fleet) -> None:
-    """As many images as the detector sent."""
+    """The number of images is that of the real detector."""
     assert fleet[BOUND].ended and fleet[BOXES].ended
     assert abs(fleet[BOUND].ended.count("images") - fleet[BOXES].ended.count("images")) <= 2
     assert fleet[BOUND].ended.count("images_unread") == 0
@@ -148,7 +149,7 @@ def test_boxes_of_strangers_are_none(fleet: Fleet) -> None:
 
 @pytest.mark.parametrize("name", [SIGNED, MIXED, AGAIN, LATE])
 def test_a_signed_link_works_in_both_directions(fleet: Fleet, name: str) -> None:
-    """The stand-in refuses what is not signed, or whose time goes back."""
+    """The stand-in refuses unsigned messages and messages whose time goes back."""
     flight = fleet[name]
     flight.assert_ended_well()
     since = [heard for heard in flight.autopilot.heard if heard.time_s > flight.loop.now_s - 3.0]
@@ -169,10 +170,10 @@ def test_who_has_no_key_is_not_heard(fleet: Fleet, name: str, row: str) -> None:
     assert flight.ended.count("attitudes") == 0 and flight.autopilot.heard == []
 
 
-def test_what_is_refused_is_counted_and_reported(fleet: Fleet) -> None:
+def test_refused_messages_are_counted_and_reported(fleet: Fleet) -> None:
     ended = fleet[MIXED].ended
     assert ended and ended.count("messages_unsigned") >= 80
-    assert ended.count("messages_forged") >= 80  # replayed: their time is past
+    assert ended.count("messages_forged") >= 80  # replayed, with times in the past
     assert "without a signature" in ended.err
 
 
@@ -202,7 +203,7 @@ def test_the_key_is_not_printed(folder: Path) -> None:
 
 
 def test_it_listens_to_this_computer_alone(folder: Path) -> None:
-    """Unless the file or the call says otherwise."""
+    """Unless the file or the call configures another address."""
     (folder / "companion.ini").write_text("", encoding="utf-8")
     assert "link.autopilot = udpin:127.0.0.1:" in call("--check", folder / "companion.ini").stdout
     wide = call("--check", "--link", "udpin:0.0.0.0:14540", folder / "companion.ini")

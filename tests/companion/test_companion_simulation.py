@@ -1,4 +1,4 @@
-"""The simulated autopilot and camera themselves: what the other tests hold the companion against."""
+"""The simulated autopilot and camera themselves, on which the other tests rely."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def rolled(degrees: float) -> Pose:
 
 
 def test_level_camera_sees_a_mast_where_the_hand_puts_it() -> None:
-    """Middle (640, 360), focal length 800: the nearest points of base and top are 246 m away, the flanks 250."""
+    """Middle (640, 360), focal length 800: the nearest points of base and top are at 246 m, the flanks at 250 m."""
     box = CAMERA.see(LEVEL, MAST, 7)
     assert box and box.id == 7
     assert box.left == pytest.approx(640 - 800 * 4 / math.sqrt(250**2 - 16), abs=0.01)
@@ -33,28 +33,28 @@ def test_level_camera_sees_a_mast_where_the_hand_puts_it() -> None:
 
 
 def test_a_turned_box_shows_its_corners() -> None:
-    """Its length eastwards: 20 m of front, 10 m deep, its front 195 m away."""
+    """Its length axis points east: 20 m of front, 10 m deep, its front at 195 m."""
     box = CAMERA.see(LEVEL, Obstacle(200.0, 0.0, 10.0, 30.0, 20.0, 90.0), 1)
     assert box
     assert (box.left, box.right) == pytest.approx((640 - 800 * 10 / 195, 640 + 800 * 10 / 195))
     assert (box.top, box.bottom) == pytest.approx((360, 360 + 800 * 30 / 195))
 
 
-def test_right_wing_down_lifts_what_is_on_the_right() -> None:
-    """Rolled by 90 degrees to the right the ground is on the image's left, and what was on the right above."""
+def test_right_wing_down_lifts_the_right_side_of_the_image() -> None:
+    """Rolled by 90 degrees to the right, the ground is on the image's left, and the former right is at the top."""
     pixels = CAMERA.project(rolled(90.0), np.array([[100.0, 0.0, 0.0], [100.0, 10.0, -30.0]]))
     assert pixels is not None
     assert pixels[0] == pytest.approx([640 + 800 * 0.3, 360], abs=1e-6)
     assert pixels[1] == pytest.approx([640, 360 - 800 * 0.1], abs=1e-6)
 
 
-def test_what_the_image_cuts_ends_at_its_border() -> None:
+def test_a_cut_box_ends_at_the_border_of_the_image() -> None:
     box = CAMERA.see(Pose((200.0, 0.0, -30.0), *(LEVEL.velocity, LEVEL.angles, LEVEL.rates)), MAST, 1)
     assert box and box.bottom == 719.0 and 0.0 < box.top < 360.0
 
 
 @pytest.mark.parametrize("north_m", [249.0, 260.0])
-def test_what_is_not_ahead_is_not_seen(north_m: float) -> None:
+def test_an_obstacle_that_is_not_ahead_is_not_visible(north_m: float) -> None:
     assert CAMERA.see(Pose((north_m, 0.0, -30.0), *(LEVEL.velocity, LEVEL.angles, LEVEL.rates)), MAST, 1) is None
 
 
@@ -76,7 +76,7 @@ def test_the_aircraft_flies_north_and_rolls() -> None:
 
 @pytest.mark.parametrize("time_s", [0.3, 1.5])
 def test_the_rates_are_those_of_the_angles(time_s: float) -> None:
-    """While it rolls into a turn, and in it."""
+    """While it rolls into a turn, and in the turn."""
     aircraft = Aircraft(time_s=0.0, goal=(300.0, 300.0))
     before, after = aircraft.advance(time_s), aircraft.advance(time_s + 0.001)
     assert (after.angles[0] - before.angles[0]) / 0.001 == pytest.approx(after.rates[0], abs=0.01)
@@ -106,7 +106,7 @@ def test_latitude_and_longitude_of_the_origin() -> None:
     assert local_m(LAT_E7 + 10000, LON_E7)[0] == pytest.approx(111.32, abs=0.01)
 
 
-def test_faults_lose_and_double_as_told() -> None:
+def test_faults_lose_and_double_as_configured() -> None:
     faults = Faults(lost=0.2, doubled=0.5, delay_s=0.03)
     copies = [faults.copies() for _ in range(4000)]
     assert sum(not copy for copy in copies) == pytest.approx(800, abs=100)
@@ -114,7 +114,7 @@ def test_faults_lose_and_double_as_told() -> None:
     assert all(0.0 <= delay <= 0.03 for copy in copies for delay in copy)
 
 
-# ---------------------------------------------------------------------------------------------------- what is sent
+# --------------------------------------------------------------------------------------------------- sent messages
 
 
 def image() -> Image:
@@ -138,8 +138,8 @@ def test_features_are_tenths_from_the_middle(dialect: ModuleType) -> None:
     message = features(dialect, CAMERA, image().boxes[0], 1, times)
     sent = dialect.MAVLink(None).parse_buffer(message.pack(dialect.MAVLink(None)))[0]
     assert list(sent.box) == [-395, -600, round(10 * 10.25), 1400]
-    assert (sent.seen, sent.number, sent.time_base, sent.age_usec) == (0xF, 1, 2, 250000)
-    assert features(dialect, CAMERA, None, 0, times).seen == 0
+    assert (sent.visible, sent.number, sent.time_base, sent.age_usec) == (0xF, 1, 2, 250000)
+    assert features(dialect, CAMERA, None, 0, times).visible == 0
 
 
 @pytest.fixture(name="autopilot")

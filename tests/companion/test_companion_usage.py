@@ -1,4 +1,4 @@
-"""goe_companion as a user calls it: options, configurations, what it refuses, and how it ends."""
+"""goe_companion from a user's view: options, configurations, refused input, ends."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ pytestmark = pytest.mark.skipif(is_missing(), reason=f"{PROGRAM} is not built")
 
 EXAMPLE = ROOT / "port" / "companion" / "companion.ini"
 Make = Callable[[Settings], Companion]
-WAIT_S = 0.01  # the companion waits so long for something to come
+WAIT_S = 0.01  # the companion waits for input that long
 
 
 def usual() -> dict[str, dict[str, object]]:
@@ -41,7 +41,7 @@ def configured_folder(tmp_path: Path) -> Path:
 
 @pytest.fixture(name="make")
 def companions(tmp_path: Path) -> Iterator[Make]:
-    """Processes that end with the test, whatever happened."""
+    """Makes processes that end with the test in any case."""
     made: list[Companion] = []
     loop = Loop()
 
@@ -92,7 +92,7 @@ def test_a_mistyped_option_is_guessed() -> None:
     assert done.stderr.startswith("goe_companion: --chekc: unknown option; did you mean --check?")
 
 
-def test_what_cannot_be_printed_is_told(folder: Path) -> None:
+def test_output_that_cannot_be_printed_is_reported(folder: Path) -> None:
     (folder / "companion.ini").write_text("", encoding="utf-8")
     for words in (["--help"], ["--version"], ["--check", str(folder / "companion.ini")]):
         with open("/dev/full", "w") as full:
@@ -105,7 +105,7 @@ def test_what_cannot_be_printed_is_told(folder: Path) -> None:
 
 
 def test_the_example_is_accepted(folder: Path) -> None:
-    """With a camera.ini beside it; and what comes of it are the defaults."""
+    """With a camera.ini in the same folder; the result are the defaults."""
     shutil.copy(EXAMPLE, folder)
     done = call("--check", folder / "companion.ini")
     assert (done.returncode, done.stderr) == (0, "")
@@ -113,7 +113,7 @@ def test_the_example_is_accepted(folder: Path) -> None:
 
 
 def test_the_example_has_every_key_with_its_default(folder: Path) -> None:
-    """What --check prints and the file tells are the same, up to how numbers are written."""
+    """The output of --check and the file agree, apart from the format of numbers."""
     lines = check(folder, "")[1].splitlines()
     printed = {key.strip(): value.strip() for key, value in (line.split("=", 1) for line in lines if "=" in line)}
     section, missing = "", []
@@ -123,9 +123,11 @@ def test_the_example_has_every_key_with_its_default(folder: Path) -> None:
             section = line.strip("[]")
         elif line:
             key, value = (part.strip() for part in line.split("=", 1))
-            told = printed.pop(f"{section}.{key}", None)
-            if told is None or (value != told and not same_number(value, told) and key != "file"):
-                missing.append(f"{section}.{key}: {value} and {told}")
+            printed_value = printed.pop(f"{section}.{key}", None)
+            if printed_value is None or (
+                value != printed_value and not same_number(value, printed_value) and key != "file"
+            ):
+                missing.append(f"{section}.{key}: {value} and {printed_value}")
     assert missing == []
     # [estimator] and [flight] are documented elsewhere, and the camera in its own file.
     rest = [key for key in printed if key.split(".")[0] in ("link", "detections", "reaction", "reports", "record")]
@@ -141,7 +143,7 @@ def same_number(one: str, other: str) -> bool:
         return False
 
 
-def test_what_is_set_is_printed(folder: Path) -> None:
+def test_settings_are_printed(folder: Path) -> None:
     text = """# blank lines, comments, blanks
 [link]
   autopilot = udpout:127.0.0.1:14550   # a comment
@@ -150,19 +152,19 @@ component=191
 [flight]
 margin_m = 22.5
 [estimator]
-navigation.attitude_bias_deg = 1.25
+navigation.attitude_bias_sd_deg = 1.25
 [reports]
 standard = collision obstacle_distance
 """
     status, out, err = check(folder, text)
     assert (status, err) == (0, "")
-    for told in (
+    for printed_value in (
         "link.autopilot = udpout:127.0.0.1:14550",
         "link.component = 191",
         "flight.margin_m = 22.5",
     ):
-        assert told in out
-    assert re.search(r"navigation.attitude_bias_deg ?= ?1.25", out)
+        assert printed_value in out
+    assert re.search(r"navigation.attitude_bias_sd_deg ?= ?1.25", out)
     assert re.search(r"reports.standard = .*obstacle_distance", out) and "collision" in out
 
 
@@ -187,8 +189,14 @@ BAD_KEYS = {
     "flight, range": ("[flight]\nmargin_m = -1\n", 2, "margin_m"),
     "flight, no number": ("[flight]\nmargin_m = wide\n", 2, "margin_m"),
     "estimator, unknown": ("[estimator]\nnavigation.luck = 1\n", 2, "navigation.luck"),
-    "estimator, range": ("[estimator]\ndetector.box_px = -1\n", 2, "detector.box_px"),
-    "estimator, no number": ("[estimator]\ndetector.box_px = x\n", 2, "detector.box_px"),
+    "estimator, range": ("[estimator]\ndetector.box_noise_px = -1\n", 2, "detector.box_noise_px"),
+    "estimator, no number": ("[estimator]\ndetector.box_noise_px = x\n", 2, "detector.box_noise_px"),
+    "flight, renamed": ("[flight]\ndoubt = 2\n", 2, "unknown setting flight.doubt: now flight.suspect_factor"),
+    "estimator, renamed": (
+        "[estimator]\nnavigation.ground_m = 2\n",
+        2,
+        "unknown setting navigation.ground_m: now navigation.terrain_height_sd_m",
+    ),
     "twice": ("[link]\nsystem = 1\nsystem = 2\n", 3, "system"),
     "no assignment": ("[link]\nautopilot\n", 2, ""),
     "no bracket": ("[link\nsystem = 1\n", 1, ""),
@@ -218,7 +226,7 @@ BAD_WHOLE = {
 
 @pytest.mark.parametrize("name", BAD_WHOLE)
 def test_values_that_are_none_are_errors(folder: Path, name: str) -> None:
-    """Also with --check: it is what one calls before a flight."""
+    """Also with --check, which users run before a flight."""
     text, key = BAD_WHOLE[name]
     status, out, err = check(folder, text)
     assert status == 2 and out == ""
@@ -236,14 +244,14 @@ def test_missing_camera(folder: Path) -> None:
 
 
 def test_bad_camera(folder: Path) -> None:
-    """Told with the camera's file and line."""
+    """Reported with the camera's file and line."""
     (folder / "camera.ini").write_text(Camera().ini() + "camera.zoom = 3\n", encoding="utf-8")
     status, _, err = check(folder, "")
     assert status == 2 and "camera.ini" in err and "zoom" in err
 
 
-def test_the_camera_is_beside_the_configuration(folder: Path) -> None:
-    """Not where the program was called."""
+def test_the_camera_is_in_the_folder_of_the_configuration(folder: Path) -> None:
+    """And not in the folder from which the program was called."""
     (folder / "sub").mkdir()
     (folder / "camera.ini").rename(folder / "sub" / "lens.ini")
     path = folder / "sub" / "companion.ini"
@@ -256,7 +264,7 @@ def test_the_camera_is_beside_the_configuration(folder: Path) -> None:
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_ends_it_with_a_summary(make: Make, number: int) -> None:
-    """Also where nobody was heard at all."""
+    """Also without a message from any autopilot."""
     companion = make(usual())
     companion.start()
     companion.loop.run(0.5)
@@ -267,7 +275,7 @@ def test_a_signal_ends_it_with_a_summary(make: Make, number: int) -> None:
 
 
 def test_nothing_moves_it_to_use_the_processor(make: Make) -> None:
-    """Idle it sleeps: without an autopilot, with a TCP peer that refuses, with a device that is not there."""
+    """It sleeps when idle: without an autopilot, with a TCP peer that refuses, with a missing device."""
     links = (usual()["link"]["autopilot"], f"tcp:{HOST}:{free_port(socket.SOCK_STREAM)}", "serial:/nowhere/tty:57600")
     idle = [make({**usual(), "link": {"autopilot": link}}) for link in links]
     for companion in idle:
@@ -285,7 +293,7 @@ def test_who_hears_nobody_learns_how_to_listen(make: Make) -> None:
     companion.start()
     companion.loop.run(13.0)
     ended = companion.stop()
-    assert ended.err.count("no autopilot is heard") == 1 and "0.0.0.0" in ended.err
+    assert ended.err.count("no message from an autopilot") == 1 and "0.0.0.0" in ended.err
 
 
 @pytest.mark.parametrize("host, warnings", [(HOST, 0), ("0.0.0.0", 2)])
@@ -298,7 +306,7 @@ def test_who_listens_to_every_network_is_warned(make: Make, host: str, warnings:
 
 
 def test_end_of_standard_input_is_no_end(make: Make) -> None:
-    """The autopilot is still told that the detector is silent."""
+    """The autopilot still receives the report that the detector is silent."""
     companion = make({**usual(), "detections": {"from": "stdin"}})
     companion.start()
     companion.loop.run(0.7)
@@ -306,7 +314,7 @@ def test_end_of_standard_input_is_no_end(make: Make) -> None:
     assert companion.stop().status == 0
 
 
-def test_a_port_in_use_is_told(make: Make) -> None:
+def test_a_port_in_use_is_reported(make: Make) -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
         taken.bind((HOST, 0))
         companion = make({"link": {"autopilot": f"udpin:{HOST}:{taken.getsockname()[1]}"}})
@@ -315,13 +323,13 @@ def test_a_port_in_use_is_told(make: Make) -> None:
 
 
 @pytest.mark.parametrize("source", ["fifo:/nowhere/fifo", "fifo:camera.ini"])
-def test_a_fifo_that_is_none_is_told(make: Make, source: str) -> None:
+def test_a_file_that_is_no_fifo_is_reported(make: Make, source: str) -> None:
     done = call(make({**usual(), "detections": {"from": source}}).configuration)
     assert done.returncode > 0 and "fifo:" in done.stderr
 
 
-def test_a_log_that_cannot_be_written_is_told(make: Make, tmp_path: Path) -> None:
-    """And holds nothing up: the aircraft is worth more than its log."""
+def test_a_log_that_cannot_be_written_is_reported(make: Make, tmp_path: Path) -> None:
+    """The companion keeps running: the aircraft is worth more than its log."""
     (tmp_path / "file").write_text("", encoding="utf-8")
     companion = make({**usual(), "record": {"folder": tmp_path / "file"}})
     companion.start()

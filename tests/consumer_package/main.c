@@ -1,4 +1,4 @@
-/* Flies 40 m towards a chimney of 6 m diameter at north 200, east -30 and asks for its place. */
+/* Flies 40 m towards a chimney of 6 m diameter at north 200, east -30 and prints its position. */
 #include <goe_flight.h>
 #include <math.h>
 #include <stdio.h>
@@ -7,7 +7,7 @@
 #define CENTER_U_PX 640.0f
 #define CENTER_V_PX 360.0f
 
-/* The flight layer takes the same settings, once the image's size is among them. */
+/* The flight layer accepts the same settings once they include the image size. */
 static bool flight_layer_starts(goe_settings_t settings) {
     static goe_flight_t flight;
     const char *bad = NULL;
@@ -20,7 +20,7 @@ static goe_pixel_t horizon(float u_px) {
     goe_pixel_t pixel;
     pixel.u_px = u_px;
     pixel.v_px = CENTER_V_PX;
-    pixel.seen = true;
+    pixel.visible = true;
     return pixel;
 }
 
@@ -43,7 +43,7 @@ int main(void) {
         return 1;
     }
 
-    goe_status_t status = GOE_COLLECTING;
+    goe_status_t status = GOE_CONVERGING;
     goe_estimate_t estimate = {0};
     for (int i = 0; i <= 8; i++) {
         const float north_m = 5.0f * (float)i;
@@ -51,7 +51,7 @@ int main(void) {
         const float z_m = 200.0f - north_m;
         const float range_m = sqrtf(x_m * x_m + z_m * z_m);
         const float bearing = atan2f(x_m, z_m);
-        const float half = asinf(3.0f / range_m); /* half the angle under which the chimney is seen */
+        const float half = asinf(3.0f / range_m); /* half the angle of the chimney's width */
         goe_image_t image = {0};
         image.pose.time_us = 100000 * i;
         image.pose.position_ned_m[0] = north_m;

@@ -1,4 +1,4 @@
-/* Asks for the defaults, starts an estimator and shows it an image of nothing. */
+/* Gets the defaults, initializes an estimator and passes it an image without detections. */
 #include <stdio.h>
 
 #include "goe.h"
@@ -18,5 +18,5 @@ int main(void) {
     goe_estimate_t estimate;
     const goe_status_t status = goe_update(&estimator, &image, &estimate);
     printf("%s, self-check 0x%02x\n", goe_status_text(status), goe_self_check());
-    return status == GOE_NOTHING_SEEN && estimate.model == GOE_MODEL_NONE ? 0 : 1;
+    return status == GOE_NO_DETECTION && estimate.model == GOE_MODEL_NONE ? 0 : 1;
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Limits and parts from a header of the firmware's own, GOE_CONFIG_HEADER; and limits that goe.h refuses.
+# Limits and parts from the firmware's own header, GOE_CONFIG_HEADER; and limits that goe.h refuses.
 set -euo pipefail
 . "$(dirname "$0")/common.sh"
 
@@ -20,10 +20,10 @@ compile() { gcc -std=c99 -Wall -Wextra -Werror -fsyntax-only -I"$root/lib" -I. "
 
 compile '-DGOE_CONFIG_HEADER="firmware.h"' program.c "${library_sources[@]}" || fail "$(cat log)"
 if compile program.c; then
-    fail "the limits are those of the header without being asked"
+    fail "the limits are those of the header without GOE_CONFIG_HEADER"
 fi
 for bad in -DGOE_WINDOW_MAX=2 -DGOE_WINDOW_MAX=65 -DGOE_CAMERAS_MAX=0 -DGOE_CAMERAS_MAX=9 \
-    "-DGOE_WITH_WINDOW=0 -DGOE_WITH_REFINED=0"; do
+    "-DGOE_WITH_WINDOW=0 -DGOE_WITH_FILTER=0"; do
     read -ra words <<<"$bad"
     if compile "${words[@]}" "$root/lib/goe_settings.c"; then
         fail "$bad compiles"

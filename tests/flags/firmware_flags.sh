@@ -1,15 +1,14 @@
 #!/usr/bin/env bash
-# Compiles the library, the flight layer and its MAVLink messages as one firmware does, without a warning, and runs the safety tests
+# Compiles the library, the flight layer and its MAVLink messages with one firmware's flags, without a warning, and runs the safety tests
 # on the result.
 #
 #   firmware_flags.sh px4|ardupilot|betaflight|inav
 #
-# Every host compiler there is; C99, C11 and GNU C17; with and without NDEBUG. C99 at both of the firmware's levels makes code, which is
-# tested, and warnings that only come with code; the other dialects and NDEBUG change what is read alone, and are read alone. gcc warns of
-# what nothing uses only when it makes code: with NDEBUG it makes some, without optimization.
+# Every host compiler there is, C99, at both of the firmware's levels: code, which is tested, and warnings that only come with code. The
+# other dialects are read by dialects.sh.
 #
 # The safety tests are those of safety_objects.sh, linked with the firmware's flags, which may change the floating-point unit's mode.
-# UNITY_INCLUDE and UNITY_LIBRARY say where the test framework is, SAFETY_OBJECTS where safety_objects.sh has put its objects.
+# UNITY_INCLUDE and UNITY_LIBRARY locate the test framework, SAFETY_OBJECTS the objects of safety_objects.sh.
 set -euo pipefail
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/firmwares.sh"
@@ -53,15 +52,10 @@ run_safety() {
 
 compiled=0
 ran=0
-mkdir "$scratch/objects" "$scratch/unused"
+mkdir "$scratch/objects"
 mapfile -t present < <(compilers gcc clang-19)
 for compiler in "${present[@]}"; do
     mapfile -t common < <(known "$compiler" "${flags[@]}")
-    cd "$scratch/unused"
-    compile "$compiler" -std=c99 "${common[@]}" -O0 -fno-lto -DNDEBUG
-    for standard in c11 gnu17; do
-        compile "$compiler" "-std=$standard" "${levels[0]}" "${common[@]}" -fsyntax-only
-    done
     cd "$scratch/objects"
     level=$(known "$compiler" "${levels[1]}")
     for level in "${levels[0]}" "${level:--O3}"; do

@@ -1,6 +1,6 @@
 # shellcheck shell=bash
-# The compiler flags of four firmwares. Sourced; sets flags and levels for the firmware named.
-# shellcheck disable=SC2034 # of use to whoever sources this file
+# The compiler flags of four firmwares. Sourced; sets flags and levels for the named firmware.
+# shellcheck disable=SC2034 # used by files that source this one
 firmwares=(px4 ardupilot betaflight inav)
 
 firmware_flags() {
@@ -22,4 +22,16 @@ firmware_flags() {
         *)
             return 1 ;;
     esac
+}
+
+# Warnings of all four together, for reading the sources without generating code: a warning of one firmware never silences one of
+# another. -fsingle-precision-constant, which does, is left out.
+reading_flags() {
+    local firmware flag
+    for firmware in "${firmwares[@]}"; do
+        firmware_flags "$firmware"
+        for flag in "${flags[@]}"; do
+            [[ $flag != -W* ]] || echo "$flag"
+        done
+    done | sort -u
 }

@@ -36,7 +36,7 @@ static bool features_arrive() {
     uint8_t payload[GOE_MAVLINK_PAYLOAD_MAX];
     features.number = 1u;
     features.image_width = features.image_height = 640u;
-    features.seen = GOE_MAVLINK_SEES_BOX;
+    features.visible = GOE_MAVLINK_FEATURE_BOX;
     const size_t length = goe_mavlink_pack_features(&features, payload);
     goe_mavlink_read_features(payload, length, &features);
     return goe_mavlink_from_features(&features, 0u, &sighting) && sighting.frame.count == 1u;
@@ -51,14 +51,14 @@ static bool standard_messages_arrive() {
            !goe_mavlink_from_tracking(&tracking, &camera, 0u, &sighting);
 }
 
-/* Of an obstacle of which nothing is known. */
+/* For an obstacle without any known value. */
 static bool messages_leave() {
     const goe_flight_obstacle_t obstacle = goe_flight_obstacle_t();
     const goe_flight_assessment_t assessment = goe_flight_assessment_t();
     const goe_flight_counters_t counters = goe_flight_counters_t();
     const goe_mavlink_own_t own = goe_mavlink_own_t();
     const uint16_t sector_cm[GOE_FLIGHT_SECTORS] = {0};
-    goe_mavlink_obstacle_t told;
+    goe_mavlink_obstacle_t message;
     goe_mavlink_hazard_t hazard;
     goe_mavlink_status_t status;
     goe_mavlink_obstacle_distance_t distance;
@@ -66,7 +66,7 @@ static bool messages_leave() {
     goe_mavlink_collision_t collision;
     goe_mavlink_target_absolute_t target;
     goe_mavlink_adsb_vehicle_t vehicle;
-    goe_mavlink_to_obstacle(&obstacle, 0, &own, &told);
+    goe_mavlink_to_obstacle(&obstacle, 0, &own, &message);
     goe_mavlink_to_status(&counters, &assessment, 0u, &own, &status);
     return !goe_mavlink_to_hazard(&obstacle, 0, &assessment, &own, &hazard) &&
            goe_mavlink_to_obstacle_distance(sector_cm, 1000u, 5u, &own, &distance) &&
@@ -106,6 +106,6 @@ int main() {
     const bool named = goe_status_text(GOE_OK)[0] == 'o';
     settings.camera.width_px = settings.camera.height_px = 640.0f;
     const bool flies = flight_layer_answers(settings);
-    const bool tells = features_arrive() && standard_messages_arrive() && messages_leave() && messages_are_framed();
-    return refused && empty && reset && named && flies && tells && goe_self_check() <= 0x3Fu ? 0 : 1;
+    const bool reports = features_arrive() && standard_messages_arrive() && messages_leave() && messages_are_framed();
+    return refused && empty && reset && named && flies && reports && goe_self_check() <= 0x3Fu ? 0 : 1;
 }

@@ -1,7 +1,7 @@
-/* Names that the headers of firmwares, frameworks and C libraries define as macros, forced into every file of lib/: whoever
- * uses one of them as an identifier does not compile. SPDX-License-Identifier: MIT
+/* Names that the headers of firmwares, frameworks and C libraries define as macros. This header is forced into every file of lib/: code
+ * that uses one of them as an identifier does not compile. SPDX-License-Identifier: MIT
  *
- * What each stands for does not matter. Standard headers come first: in the field they were read before the macros, too. */
+ * The definitions do not matter. Standard headers come first: in the field they are read before the macros, too. */
 #ifndef HOSTILE_H
 #define HOSTILE_H
 
@@ -251,7 +251,7 @@
 #undef OPAQUE
 #define OPAQUE (a macro of somebody else
 
-/* Zephyr, Linux and their like */
+/* Zephyr, Linux and similar systems */
 #undef MIN
 #define MIN (a macro of somebody else
 #undef MAX

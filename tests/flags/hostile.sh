@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Compiles the library, the flight layer and its MAVLink messages among other people's macros, and with the poorest C library that
-# it may meet: sqrtf, memcpy, memset and the compiler's own headers, everything undeclared an error. Public headers in C++ too.
+# it may meet: sqrtf, memcpy, memset and the compiler's own headers, everything undeclared an error. Public headers in C++ too. Macros and
+# declarations concern the front end alone, so no code is generated.
 set -euo pipefail
 . "$(dirname "$0")/common.sh"
 here=$root/tests/flags
@@ -16,11 +17,11 @@ END
 compiled=0
 # compile <compiler> <flag>...: every source
 compile() {
-    "$@" "${warnings[@]}" "${all_includes[@]}" -c "${all_sources[@]}" || fail "$*"
+    "$@" "${warnings[@]}" "${all_includes[@]}" -fsyntax-only "${all_sources[@]}" || fail "$*"
     compiled=$((compiled + ${#all_sources[@]}))
 }
 
-# poor <compiler> <flag>...: no headers but the compiler's own and the poor library's
+# poor <compiler> <flag>...: only the compiler's own headers and the minimal library's
 poor() {
     local own
     own=$("$1" -print-file-name=include)
@@ -47,10 +48,10 @@ if command -v arm-none-eabi-gcc >/dev/null; then
 fi
 [ $compiled -gt 0 ] || exit 77
 
-# The test itself must bite: a file that uses such a name, or calls what the poor library lacks, does not compile.
+# The test itself must detect errors: a file that uses such a name, or calls a function that the minimal library lacks, must not compile.
 echo 'enum { NEAR }; int probe(void);' >macro.c
-! gcc -include "$here/hostile.h" -c macro.c 2>/dev/null || fail "hostile.h does not notice NEAR"
+! gcc -include "$here/hostile.h" -fsyntax-only macro.c 2>/dev/null || fail "hostile.h does not notice NEAR"
 printf '#include <math.h>\nfloat probe(float x);\nfloat probe(float x) { return fabsf(x); }\n' >call.c
 ! gcc -std=c99 -nostdinc -isystem "$here/poor_c_library" -ffreestanding -fno-builtin \
-    -Werror=implicit-function-declaration -c call.c 2>/dev/null || fail "the poor library does not notice fabsf"
+    -Werror=implicit-function-declaration -fsyntax-only call.c 2>/dev/null || fail "the poor library does not notice fabsf"
 echo "hostile macros and a poor C library: $compiled compilations without a warning"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Words that the library's sources may not hold: double, heap, stdio, libm beside sqrtf.
+# Words that the library's sources must not contain: double, heap, stdio, libm functions except sqrtf.
 # Comments are stripped before the search.
 set -euo pipefail
 . "$(dirname "$0")/common.sh"
@@ -26,7 +26,7 @@ for file in "${files[@]}"; do
 done
 [ $bad = 0 ] || fail "forbidden words"
 
-# Every floating-point constant carries its f: a double constant would be caught by one of these.
+# Every floating-point constant has the suffix f: one of these would find a double constant.
 cd "$scratch"
 mapfile -t flags < <(known gcc -Wdouble-promotion -Wunsuffixed-float-constants -Wfloat-conversion -Wvla)
 gcc -std=c99 "${flags[@]}" -Werror "${all_includes[@]}" -c "${all_sources[@]}" || fail "double precision or variable-length arrays"

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# The kernels, rings and names of lib/ rest on a few numbers. Whoever raises or lowers one of them alone must not get a
-# library that compiles and computes nonsense: the static assertions of the file that rests on it stop the compiler.
+# The kernels, rings and names of lib/ depend on a few numbers. Changing one of them alone must not give a library that compiles and
+# computes nonsense: the static assertions of the dependent file stop the compiler.
 set -euo pipefail
 . "$(dirname "$0")/common.sh"
 
-# compiles <folder>: whether all of the library there compiles
+# compiles <folder>: whether the whole library there compiles
 compiles() {
     local file
     for file in "$1"/*.c "$1"/*/*.c; do
@@ -12,7 +12,7 @@ compiles() {
     done
 }
 
-# refused <number> <other values>...: with each of these the library must not compile, and say why
+# refused <number> <other values>...: with each of these the library must not compile, and the message names the reason
 refused() {
     local number=$1 value
     shift
@@ -41,4 +41,4 @@ refused GOE_NUISANCES 2 4
 refused GOE_KEPT 5 7
 refused GOE_CHANGED 6 8
 refused GOE_UNWEIGHTED 2 4
-refused GOE_CAUSES 13 15
+refused GOE_FAULT_COUNTS 13 15

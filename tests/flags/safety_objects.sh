@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Compiles the safety tests (of tests/c, tests/flight and tests/mavlink) and what they need plainly, so that they can tell a NaN: once
-# for all firmwares. <folder>/<compiler> then holds the objects of one program, which runs the test that its argument names.
+# Compiles the safety tests (of tests/c, tests/flight and tests/mavlink) and their dependencies without special flags, so that they can
+# recognize a NaN: once for all firmwares. <folder>/<compiler> then contains the objects of one program, whose argument selects the test.
 #
-#   safety_objects.sh <folder>      UNITY_INCLUDE says where the test framework is
+#   safety_objects.sh <folder>      UNITY_INCLUDE locates the test framework
 set -euo pipefail
 . "$(dirname "$0")/common.sh"
 folder=$1
@@ -17,7 +17,7 @@ if [ ${#tests[@]} = 0 ]; then
     fail "no safety test tests/c/test_safety*.c"
 fi
 
-# Each test keeps its own main(), setUp() and tearDown(), under names of its own.
+# Each test keeps its own main(), setUp() and tearDown() under unique names.
 {
     echo '#include <string.h>'
     for file in "${tests[@]}"; do

@@ -1,4 +1,4 @@
-/* Bytes of one estimator at the GOE_WINDOW_MAX that this file is compiled with. */
+/* Size of one estimator in bytes for the GOE_WINDOW_MAX of this compilation. */
 #include <stdio.h>
 
 #include "goe.h"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What the library's objects refer to, and that they hold no writable data.
+# Checks the external symbols of the library's objects, and that they contain no writable data.
 #
 #   symbols.sh host|arm     gcc and clang of this machine, or the cross compiler for the Cortex-M4F
 set -euo pipefail
@@ -37,7 +37,7 @@ case ${1:-} in
             done
         done ;;
     arm)
-        # No double precision and no 64-bit division in hardware: only a time difference may call a conversion, and the
+        # No double precision and no 64-bit division in hardware: only a time difference may call a conversion, and only the
         # milliseconds of a MAVLink message a division.
         if ! command -v arm-none-eabi-gcc >/dev/null; then
             echo "skipped: no arm-none-eabi-gcc"

@@ -15,7 +15,7 @@ void flown_start(flown_t *flown, const goe_flight_settings_t *settings) {
     flown->start_us = 1000000u;
     flown->id = 7u;
     flown->score = 0.9f;
-    flown->sees = true;
+    flown->detects = true;
     flown->jump_known = true;
     const goe_settings_t estimator = scene_settings(&flown->scene);
     const char *bad = NULL;
@@ -93,9 +93,10 @@ bool flown_step(flown_t *flown) {
         return false;
     }
     const goe_flight_detection_t detection = flown_detection(flown, exposed);
-    const bool seen = flown->points ? detection.left.seen && detection.right.seen : detection.box.seen == GOE_SEES_BOX;
-    const bool sees = flown->sees && seen;
-    const goe_flight_frame_t frame = flown_frame(flown, exposed, &detection, sees ? 1 : 0);
+    const bool seen =
+        flown->points ? detection.left.visible && detection.right.visible : detection.box.sides == GOE_SIDES_ALL;
+    const bool detects = flown->detects && seen;
+    const goe_flight_frame_t frame = flown_frame(flown, exposed, &detection, detects ? 1 : 0);
     const goe_flight_status_t status = goe_flight_frame(&flown->flight, &frame);
     /* the poses before an unknown reset are gone */
     TEST_ASSERT_TRUE(status == GOE_FLIGHT_OK || (flown->flight.counters.lost > 0u && status < 0));

@@ -18,7 +18,7 @@ typedef struct {
     int sample;        /* next */
     uint32_t id;       /* of the detection */
     float score;
-    bool sees;                 /* the detector sees the obstacle */
+    bool detects;              /* the detector sees the obstacle */
     bool points;               /* it gives points and base corners, no box */
     uint32_t reset_horizontal; /* in all samples from now on ... */
     uint32_t reset_vertical;

@@ -63,7 +63,7 @@ static void put(int i, float ahead_m, float right_m, float top_m) {
     slot->center_ne_m[1] = right_m;
     slot->width_m = 6.0f;
     slot->top_m = top_m;
-    slot->taken_us = slot->seen_us = newest_us();
+    slot->taken_us = slot->detected_us = newest_us();
 }
 
 static goe_flight_status_t assess(uint32_t on_us, uint8_t phase) {
@@ -98,7 +98,7 @@ static void a_pose_of_no_numbers_is_none(void) {
     CHECK_SAME(0.0f, sd_deg);
 }
 
-/* [goe_flight_attitude_t.q] A norm within 1 % of 1, whatever the parts; what is taken counts as one of norm 1. */
+/* [goe_flight_attitude_t.q] A norm within 1 % of 1, whatever the parts; an accepted one counts as one of norm 1. */
 static void a_norm_within_one_percent_is_taken(void) {
     for (int n = 0; n < 500; n++) {
         double q[4];
@@ -161,7 +161,7 @@ static void a_track_has_the_sigma_of_its_height(void) {
 /* -------------------------------------------------------------------------------------------------------- assessment -- */
 
 /* [goe_flight_assess] */
-static void the_phase_decides_what_is_done(void) {
+static void the_phase_decides_the_action(void) {
     static const uint8_t phase[] = {GOE_FLIGHT_FLYING, GOE_FLIGHT_APPROACH, GOE_FLIGHT_FLARE, GOE_FLIGHT_LANDED};
     static const goe_flight_action_t action[] = {GOE_FLIGHT_CLIMB, GOE_FLIGHT_GO_AROUND, GOE_FLIGHT_NONE,
                                                  GOE_FLIGHT_NONE};
@@ -177,7 +177,7 @@ static void the_phase_decides_what_is_done(void) {
         TEST_ASSERT_EQUAL(k < 2 ? GOE_FLIGHT_REASON_CLEAR : GOE_FLIGHT_REASON_LANDING, now.reason);
         TEST_ASSERT_EQUAL(0, now.worst);
         TEST_ASSERT_EQUAL(1, now.obstacles);
-        TEST_ASSERT_TRUE(now.hazard.violation > 0.9f);
+        TEST_ASSERT_TRUE(now.hazard.conflict_probability > 0.9f);
         TEST_ASSERT_EQUAL(k < 2 ? 0 : -1, now.avoided);
         if (k < 2) {
             CHECK_CLOSE(0.01, -22.0, now.target_ned_m[2]);
@@ -196,7 +196,7 @@ static void a_dead_pose_is_not_moved_on(void) {
         setUp();
         put(0, 200.0f, 60.0f, 50.0f);
         TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, assess(k == 0 ? 0u : k == 1 ? 500000u : 3000000u, GOE_FLIGHT_FLYING));
-        time_s[k] = now.hazard.time_s;
+        time_s[k] = now.hazard.tcpa_s;
         TEST_ASSERT_EQUAL(k < 2, now.pose_alive);
     }
     CHECK_CLOSE(1.0e-4, time_s[0] - 0.5f, time_s[1]);
@@ -212,7 +212,7 @@ static void check_nothing_is_known(goe_flight_status_t expected) {
     TEST_ASSERT_EQUAL_MEMORY(&nothing, &now, sizeof now);
 }
 
-/* [GOE_FLIGHT_NO_POSE, GOE_FLIGHT_CORRUPTED, GOE_FLIGHT_NOT_INITIALISED] */
+/* [GOE_FLIGHT_NO_POSE, GOE_FLIGHT_CORRUPTED, GOE_FLIGHT_NOT_INITIALIZED] */
 static void an_assessment_that_fails_knows_nothing(void) {
     put(0, 110.0f, 0.5f, 12.0f);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, assess(0u, GOE_FLIGHT_FLYING));
@@ -227,11 +227,11 @@ static void an_assessment_that_fails_knows_nothing(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_attitude(flight, &attitude));
     check_nothing_is_known(GOE_FLIGHT_NO_POSE);
     flight->tag++;
-    check_nothing_is_known(GOE_FLIGHT_NOT_INITIALISED);
+    check_nothing_is_known(GOE_FLIGHT_NOT_INITIALIZED);
 }
 
 /* Images older than delay_max_s do not come any more: to there an obstacle is moved on without one. */
-static void an_obstacle_that_is_not_seen_is_moved_on(void) {
+static void an_obstacle_that_is_not_visible_is_moved_on(void) {
     setUp();
     (void)flown_start(&flown, NULL);
     (void)flown_fly(&flown, 3.0);
@@ -244,13 +244,13 @@ static void an_obstacle_that_is_not_seen_is_moved_on(void) {
     TEST_ASSERT_EQUAL_UINT32(taken_us, flight->slot[0].taken_us);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_assess(flight, flown_now_us(&flown), GOE_FLIGHT_FLYING, &now));
     TEST_ASSERT_EQUAL_UINT32(flown_now_us(&flown) - 400000u, flight->slot[0].taken_us);
-    TEST_ASSERT_TRUE(flight->slot[0].seen_us != flight->slot[0].taken_us);
+    TEST_ASSERT_TRUE(flight->slot[0].detected_us != flight->slot[0].taken_us);
 }
 
 /* ---------------------------------------------------------------------------------------------------------- obstacles -- */
 
 /* [goe_flight_obstacle_t.age_s, goe_flight_obstacle_t.lat_e7, goe_flight_obstacle_t.lon_e7] */
-static void an_obstacle_tells_its_age_and_place(void) {
+static void an_obstacle_reports_its_age_and_place(void) {
     for (uint32_t k = 0; k < 4u; k++) {
         goe_flight_obstacle_t obstacle;
         int32_t lat_e7;
@@ -297,7 +297,7 @@ static void an_obstacle_of_no_numbers_is_corrupted(void) {
                                  &slot->length_m,
                                  &slot->length_heading_deg,
                                  &slot->age_s,
-                                 &slot->hazard.miss_sd_m};
+                                 &slot->hazard.dcpa_sd_m};
         put(0, 110.0f, 5.0f, 12.0f);
         const float before = *number[k];
         TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_obstacle(flight, 0, &obstacle));
@@ -325,7 +325,7 @@ static void a_track_begins_with_its_own_settings(void) {
 }
 
 /* [goe_flight_restart] What waited for its confirmation is forgotten too. */
-static void a_restart_forgets_what_waits(void) {
+static void a_restart_forgets_waiting_images(void) {
     goe_flight_settings_t settings = flight->settings;
     settings.confirm_images = 2.0f;
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_change_settings(flight, &settings, NULL));
@@ -345,8 +345,8 @@ static void a_restart_forgets_what_waits(void) {
 
 /* ------------------------------------------------------------------------------------------------------------ resets -- */
 
-/* GIVEN a jump of unknown size after a gap of the samples THEN what is kept moves by what the velocity does not explain. */
-static void an_unknown_jump_is_what_the_velocity_does_not_explain(void) {
+/* GIVEN a jump of unknown size after a gap of the samples THEN the kept obstacles move by the part that the velocity does not explain. */
+static void an_unknown_jump_is_the_unexplained_motion(void) {
     put(0, 100.0f, 5.0f, 12.0f);
     const goe_flight_slot_t before = flight->slot[0];
     at((SAMPLES - 1u) * STEP_US + 400000u);
@@ -406,20 +406,20 @@ static void texts_are_those_of_the_manual(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(a_restart_forgets_what_waits);
+    RUN_TEST(a_restart_forgets_waiting_images);
     RUN_TEST(a_pose_is_that_of_its_time);
     RUN_TEST(a_pose_of_no_numbers_is_none);
     RUN_TEST(a_norm_within_one_percent_is_taken);
     RUN_TEST(a_track_has_the_sigma_of_its_height);
-    RUN_TEST(the_phase_decides_what_is_done);
+    RUN_TEST(the_phase_decides_the_action);
     RUN_TEST(a_dead_pose_is_not_moved_on);
     RUN_TEST(an_assessment_that_fails_knows_nothing);
-    RUN_TEST(an_obstacle_that_is_not_seen_is_moved_on);
-    RUN_TEST(an_obstacle_tells_its_age_and_place);
+    RUN_TEST(an_obstacle_that_is_not_visible_is_moved_on);
+    RUN_TEST(an_obstacle_reports_its_age_and_place);
     RUN_TEST(an_unknown_top_is_not_taken_for_a_low_one);
     RUN_TEST(an_obstacle_of_no_numbers_is_corrupted);
     RUN_TEST(a_track_begins_with_its_own_settings);
-    RUN_TEST(an_unknown_jump_is_what_the_velocity_does_not_explain);
+    RUN_TEST(an_unknown_jump_is_the_unexplained_motion);
     RUN_TEST(jumps_beyond_all_places_are_unknown);
     RUN_TEST(sectors_stay_in_their_place);
     RUN_TEST(texts_are_those_of_the_manual);

@@ -5,7 +5,7 @@
 #include "flown.h"
 
 #define CAMERAS 2
-#define SEEN_DEG 30.0 /* off the axis of a camera: the image reaches 35 */
+#define VISIBLE_DEG 30.0 /* off the axis of a camera: the image reaches 35 */
 #define Z0_M 60.0
 #define X0_M (-18.0)
 #define DEG_PER_RAD 57.29577951308232
@@ -50,18 +50,18 @@ static void look_through(int c) {
     flown.scene.x0_m = X0_M - (double)mounted[c].offset_m[1];
 }
 
-static bool sees(int c, int k) {
+static bool detects(int c, int k) {
     goe_image_t image;
     scene_truth_t truth;
     look_through(c);
     scene_image(&flown.scene, k, &image, &truth);
-    return fabs(atan2(truth.x_m, truth.z_m) * DEG_PER_RAD - (double)mounted[c].mount_yaw_deg) < SEEN_DEG;
+    return fabs(atan2(truth.x_m, truth.z_m) * DEG_PER_RAD - (double)mounted[c].mount_yaw_deg) < VISIBLE_DEG;
 }
 
 static void give_frame(int c, int k, const goe_flight_detection_t *more) {
     goe_flight_detection_t detections[2];
     int count = 0;
-    if (sees(c, k)) {
+    if (detects(c, k)) {
         flown.id = id[c];
         detections[count++] = flown_detection(&flown, k);
     }
@@ -73,7 +73,7 @@ static void give_frame(int c, int k, const goe_flight_detection_t *more) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(&flown.flight, &frame));
 }
 
-/* One sample on, and the frames that arrive then; `more` is what the second camera sees beside. */
+/* One sample on, and the frames that arrive then; `more` is the additional detection of the second camera. */
 static void step(const goe_flight_detection_t *more) {
     goe_flight_attitude_t attitude;
     goe_flight_position_t position;
@@ -141,7 +141,7 @@ static goe_flight_detection_t something(uint32_t number) {
     detection.box.right_px = 240.0f;
     detection.box.top_px = 600.0f;
     detection.box.bottom_px = 700.0f;
-    detection.box.seen = GOE_SEES_BOX;
+    detection.box.sides = GOE_SIDES_ALL;
     return detection;
 }
 
@@ -173,7 +173,7 @@ static void each_camera_confirms_its_own(void) {
 }
 
 /* A sector is clear only by a camera whose detector is alive, and the whole is alive only if all are. */
-static void what_a_dead_detector_would_see_is_unknown(void) {
+static void the_view_of_a_dead_detector_is_unknown(void) {
     goe_flight_assessment_t now;
     uint16_t sector_cm[GOE_FLIGHT_SECTORS];
     const int by_first = 3;   /* 15 degrees */
@@ -222,7 +222,7 @@ int main(void) {
     RUN_TEST(an_obstacle_flies_from_one_camera_into_the_other);
     RUN_TEST(one_id_of_two_cameras_is_two_obstacles);
     RUN_TEST(each_camera_confirms_its_own);
-    RUN_TEST(what_a_dead_detector_would_see_is_unknown);
+    RUN_TEST(the_view_of_a_dead_detector_is_unknown);
     RUN_TEST(a_camera_that_is_not_set_is_refused);
     RUN_TEST(each_camera_needs_its_size);
     return UNITY_END();

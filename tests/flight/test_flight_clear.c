@@ -155,14 +155,14 @@ static void a_line_may_be_left_at_once(void) {
         const double aside = line[0] * to[1] - line[1] * to[0];
         const double along = line[0] * to[0] + line[1] * to[1];
         const double ahead = along < fabs(aside) ? (along > 0.0 ? along : 0.0) : fabs(aside);
-        const double beside_m[2] = {early_m[0] + ahead * line[0] - aside * line[1],
-                                    early_m[1] + ahead * line[1] + aside * line[0]};
+        const double sideways_m[2] = {early_m[0] + ahead * line[0] - aside * line[1],
+                                      early_m[1] + ahead * line[1] + aside * line[0]};
         begin_trace();
         fly_turn((double)own.late_m, target_m[0], target_m[1]);
         if (here_m[0] != target_m[0]) {
             continue;
         }
-        fly_fan(early_m, target_m, beside_m);
+        fly_fan(early_m, target_m, sideways_m);
         here_m[0] = target_m[0];
         here_m[1] = target_m[1];
         fly_to(target_m[0] + (double)own.through_m * line[0], target_m[1] + (double)own.through_m * line[1]);
@@ -239,7 +239,7 @@ static void doubt_about_the_place_is_taken_off(void) {
     }
 }
 
-/* ... abeam of a turn along the line from its centre: half of a variance that lies ahead. */
+/* ... abeam of a turn along the line from its center: half of a variance that lies ahead. */
 static void doubt_abeam_of_a_turn_lies_along_its_radius(void) {
     for (int side = -1; side <= 1; side += 2) {
         any_encounter();
@@ -340,7 +340,7 @@ static void the_covariance_turns_with_the_course(void) {
 }
 
 /* On the way itself the distance is nothing, whichever sigma counts; and no share is below the least. */
-static void what_stands_on_the_way_has_no_distance(void) {
+static void an_obstacle_on_the_way_has_no_distance(void) {
     for (int turns = 0; turns < 2; turns++) {
         int nearest;
         any_encounter();
@@ -376,7 +376,7 @@ static void over_the_middle_a_sigma_is_a_number(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(what_stands_on_the_way_has_no_distance);
+    RUN_TEST(an_obstacle_on_the_way_has_no_distance);
     RUN_TEST(over_the_middle_a_sigma_is_a_number);
     RUN_TEST(a_target_is_flown_through_by_turns_of_every_delay);
     RUN_TEST(a_line_may_be_left_at_once);

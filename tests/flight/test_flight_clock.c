@@ -63,7 +63,7 @@ static void an_age_counts_back_from_the_arrival(void) {
 }
 
 /* [flight.delay_s] The least delay is found, also over the wrap of the sender's clock, and its uncertainty is honest. */
-static void the_least_delay_tells_the_offset(void) {
+static void the_least_delay_gives_the_offset(void) {
     uint32_t sd_us = 0u;
     int within = 0;
     const uint32_t start_us = 0xFFFFFFFFu - 5000000u;
@@ -93,7 +93,7 @@ static void a_drift_is_followed(void) {
     TEST_ASSERT_TRUE(worst_us < 3000);
 }
 
-/* The sender starts anew with another time: after a few messages that is believed. */
+/* The sender starts again with another time: after a few messages that is accepted. */
 static void another_clock_is_noticed(void) {
     uint32_t sd_us;
     for (uint32_t k = 0; k < 50u; k++) {
@@ -185,7 +185,7 @@ int main(void) {
     RUN_TEST(another_clock_is_believed_with_the_third_message);
     RUN_TEST(the_autopilots_own_clock_is_taken_as_it_is);
     RUN_TEST(an_age_counts_back_from_the_arrival);
-    RUN_TEST(the_least_delay_tells_the_offset);
+    RUN_TEST(the_least_delay_gives_the_offset);
     RUN_TEST(a_drift_is_followed);
     RUN_TEST(another_clock_is_noticed);
     RUN_TEST(one_stuck_message_is_no_other_clock);

@@ -16,16 +16,16 @@ static uint16_t sector_cm[GOE_FLIGHT_SECTORS];
 void setUp(void) { any = check_random_start("flight geometry"); }
 void tearDown(void) {}
 
-/* The middle of the scene's box lies between the sides of its bounding box, seen by any camera at any attitude; and the point that
+/* The middle of the scene's box lies between the sides of its bounding box, observed by any camera at any attitude; and the point that
  * the scene draws as its top left corner lies on them. Mounting is that of the library: a wrong one would not hit the box. */
-static void a_point_is_seen_where_the_scene_draws_it(void) {
+static void a_point_is_visible_where_the_scene_draws_it(void) {
     int seen = 0;
     for (int k = 0; k < 400; k++) {
         scene_t scene;
         goe_image_t image;
         scene_truth_t truth;
         scene_default(&scene);
-        scene.width_m = scene.length_m = 0.5; /* small: its box tells its place */
+        scene.width_m = scene.length_m = 0.5; /* small: its box gives its place */
         scene.height_m = 0.5;
         scene.x0_m = check_random_between(&any, -40.0, 40.0);
         scene.course_deg = check_random_between(&any, -180.0, 180.0);
@@ -39,7 +39,7 @@ static void a_point_is_seen_where_the_scene_draws_it(void) {
         scene.camera.offset_m[0] = (float)check_random_between(&any, -3.0, 3.0);
         scene.camera.offset_m[2] = (float)check_random_between(&any, -3.0, 3.0);
         scene_image(&scene, 0, &image, &truth);
-        if (image.box.seen != GOE_SEES_BOX) {
+        if (image.box.sides != GOE_SIDES_ALL) {
             continue;
         }
         goe_flight_camera_t camera;
@@ -64,7 +64,7 @@ static void a_point_is_seen_where_the_scene_draws_it(void) {
     TEST_ASSERT_TRUE(seen > 200);
 }
 
-static void nothing_is_seen_behind_the_camera(void) {
+static void nothing_is_detected_behind_the_camera(void) {
     goe_flight_camera_t camera;
     goe_flight_history_pose_t pose;
     goe_camera_t settings;
@@ -145,7 +145,7 @@ static void close_sectors(void) {
     }
 }
 
-/* Each sector that a ray into the circle falls into has it, and none that no ray does but the two beside. */
+/* Each sector that contains a ray into the circle has it, and of the others only the two next to these. */
 static void a_circle_enters_the_sectors_that_it_touches(void) {
     for (int k = 0; k < 300; k++) {
         const double bearing = check_random_between(&any, 0.0, 360.0);
@@ -167,7 +167,7 @@ static void a_circle_enters_the_sectors_that_it_touches(void) {
     }
 }
 
-static void the_nearest_counts_and_what_is_far_does_not(void) {
+static void the_nearest_counts_and_distant_ones_do_not(void) {
     const float near_m[2] = {20.0f, 0.0f};
     const float far_m[2] = {50.0f, 0.0f};
     const float beyond_m[2] = {-400.0f, 0.0f};
@@ -222,13 +222,13 @@ static void the_view_turns_with_the_aircraft(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(a_point_is_seen_where_the_scene_draws_it);
-    RUN_TEST(nothing_is_seen_behind_the_camera);
+    RUN_TEST(a_point_is_visible_where_the_scene_draws_it);
+    RUN_TEST(nothing_is_detected_behind_the_camera);
     RUN_TEST(latitude_and_longitude);
     RUN_TEST(the_poles_and_far_places_stay_in_range);
     RUN_TEST(the_date_line_is_no_edge);
     RUN_TEST(a_circle_enters_the_sectors_that_it_touches);
-    RUN_TEST(the_nearest_counts_and_what_is_far_does_not);
+    RUN_TEST(the_nearest_counts_and_distant_ones_do_not);
     RUN_TEST(the_view_turns_with_the_aircraft);
     return UNITY_END();
 }

@@ -78,12 +78,12 @@ static void slow_samples_too(void) { check_flight(0u, 100000u, 60.0, 2e-3); }
 static void the_clock_may_wrap(void) { check_flight(0xFFFFFFFFu - 500000u, 4000u, 90.0, 2e-3); }
 
 /* A sine of the pitch: 10 degrees, 1 Hz. Between samples 100 ms apart a straight line is off by 0.49 degrees at most; the cubic
- * by a tenth of that, and the parabola at the newest samples by less than half. What is missed is told. */
+ * by a tenth of that, and the parabola at the newest samples by less than half. The error is reported. */
 static void a_bent_flight_is_followed(void) {
     double cubic_deg = 0.0;
     double parabola_deg = 0.0;
     double missed[2] = {0.0, 0.0};
-    double told[2] = {0.0, 0.0};
+    double reported[2] = {0.0, 0.0};
     for (int k = 0; k < 40; k++) {
         const double half = 0.5 * RAD_PER_DEG * 10.0 * sin(2.0 * 3.14159265358979 * 0.1 * k);
         const float q[4] = {(float)cos(half), 0.0f, (float)sin(half), 0.0f};
@@ -98,14 +98,14 @@ static void a_bent_flight_is_followed(void) {
             const double off_deg = turned_deg(truth, pose.q);
             check_worst(back == 1 ? &parabola_deg : &cubic_deg, off_deg);
             missed[back - 1] += off_deg * off_deg;
-            told[back - 1] += pow((double)pose.spread_deg, 2.0);
+            reported[back - 1] += pow((double)pose.spread_deg, 2.0);
         }
     }
     check_report("cubic, degrees", cubic_deg);
     check_report("parabola, degrees", parabola_deg);
     for (int i = 0; i < 2; i++) {
-        check_report("missed over told, rms", sqrt(missed[i] / told[i]));
-        TEST_ASSERT_TRUE(missed[i] < told[i] && missed[i] > 0.1 * told[i]);
+        check_report("missed over reported, rms", sqrt(missed[i] / reported[i]));
+        TEST_ASSERT_TRUE(missed[i] < reported[i] && missed[i] > 0.1 * reported[i]);
     }
     TEST_ASSERT_TRUE(cubic_deg < 0.06);
     TEST_ASSERT_TRUE(parabola_deg < 0.25);
@@ -149,7 +149,7 @@ static void nothing_is_made_up_in_a_gap(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_history_at(&history, 150000u, &pose));
 }
 
-static void a_jump_moves_what_was_before_it(void) {
+static void a_jump_moves_older_poses(void) {
     const float jump_ned_m[3] = {5.0f, -7.0f, 0.5f};
     feed(0u, 20000u, 30, 10.0);
     goe_flight_history_shift(&history, jump_ned_m);
@@ -178,7 +178,7 @@ static void the_rings_are_independent(void) {
     CHECK_CLOSE(1e-3, 29.8, pose.ned_m[0]);
 }
 
-/* The attitude is that of its own samples, and what is newer or older than either ring is not known. */
+/* The attitude is that of its own samples, and times newer or older than either ring are not known. */
 static void each_ring_answers_for_itself(void) {
     float truth[4];
     for (int other = 0; other < 2; other++) {
@@ -274,7 +274,7 @@ int main(void) {
     RUN_TEST(nothing_is_known_before_both);
     RUN_TEST(old_samples_are_refused);
     RUN_TEST(nothing_is_made_up_in_a_gap);
-    RUN_TEST(a_jump_moves_what_was_before_it);
+    RUN_TEST(a_jump_moves_older_poses);
     RUN_TEST(the_rings_are_independent);
     return UNITY_END();
 }

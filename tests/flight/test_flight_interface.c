@@ -60,7 +60,7 @@ static void a_two_way_offset_dates_every_frame(void) {
     }
 }
 
-/* What was learnt before an exchange is forgotten when the exchange is withdrawn. */
+/* The clock's update before an exchange is forgotten when the exchange is withdrawn. */
 static void a_withdrawn_offset_leaves_nothing_behind(void) {
     const goe_flight_detection_t detection = flown_detection(&flown, 0);
     goe_flight_clock_t fresh;
@@ -102,7 +102,7 @@ static void doubt_about_the_time_is_doubt_about_the_attitude(void) {
     float sd_deg;
     turn_steadily(&flown.flight);
     const uint32_t at_us = flown.start_us + 30u * (1000000u / FLOWN_POSE_HZ);
-    const double white_deg = (double)flown.flight.attitude_white_deg;
+    const double white_deg = (double)flown.flight.attitude_white_sd_deg;
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_pose(&flown.flight, at_us, 0u, &pose, &sd_deg));
     CHECK_CLOSE(0.01, white_deg, sd_deg);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_pose(&flown.flight, at_us, SD_US, &pose, &sd_deg));
@@ -160,7 +160,7 @@ static void a_height_counts_only_where_it_is_valid(void) {
 }
 
 /* Each refusal has its reason, is counted, and leaves the history as it was. */
-static void what_is_no_pose_is_refused_for_its_reason(void) {
+static void an_invalid_pose_is_refused_for_its_reason(void) {
     goe_flight_attitude_t attitude;
     goe_flight_position_t position;
     (void)flown_fly(&flown, 1.0);
@@ -297,20 +297,20 @@ static void an_obstacle_turns_with_the_course(void) {
 static void a_new_track_begins_with_nothing(void) {
     (void)flown_fly(&flown, 4.0);
     goe_flight_slot_t *slot = &flown.flight.slot[0];
-    TEST_ASSERT_TRUE(slot->assessed && slot->in_view && slot->valid != 0u && slot->hazard.time_s > 0.0f);
+    TEST_ASSERT_TRUE(slot->assessed && slot->in_view && slot->valid != 0u && slot->hazard.tcpa_s > 0.0f);
     slot->remembered = slot->suspect = true;
     goe_flight_slot_begin(slot, 9u, 5000000u);
     TEST_ASSERT_EQUAL_UINT32(9u, slot->id);
     TEST_ASSERT_TRUE(slot->used && slot->fresh_track);
     TEST_ASSERT_FALSE(slot->assessed || slot->in_view || slot->remembered || slot->suspect);
     TEST_ASSERT_EQUAL_HEX(0u, slot->valid);
-    CHECK_CLOSE(0.0, 0.0, slot->hazard.time_s);
-    CHECK_CLOSE(0.0, 0.0, slot->hazard.violation);
+    CHECK_CLOSE(0.0, 0.0, slot->hazard.tcpa_s);
+    CHECK_CLOSE(0.0, 0.0, slot->hazard.conflict_probability);
 }
 
 /* -------------------------------------------------------------------------------------------------------------- boxes -- */
 
-/* The box of points: from the least to the largest of those that are seen, in any order; nothing without any. */
+/* The box of points: from the least to the largest of the visible ones, in any order; nothing without any. */
 static void points_make_a_box(void) {
     goe_flight_detection_t detection;
     int16_t box_px[4];
@@ -321,7 +321,7 @@ static void points_make_a_box(void) {
     for (int first = 0; first < 6; first++) {
         for (int i = 0; i < 6; i++) {
             goe_pixel_t *point = points[(first + i) % 6];
-            point->seen = i < 4;
+            point->visible = i < 4;
             point->u_px = i == 0 ? 300.0f : i == 1 ? 100.0f : i == 2 ? 200.0f : 150.0f;
             point->v_px = i == 0 ? 410.0f : i == 1 ? 450.0f : i == 2 ? 500.0f : 400.0f;
         }
@@ -364,7 +364,7 @@ int main(void) {
     RUN_TEST(a_withdrawn_offset_leaves_nothing_behind);
     RUN_TEST(doubt_about_the_time_is_doubt_about_the_attitude);
     RUN_TEST(a_height_counts_only_where_it_is_valid);
-    RUN_TEST(what_is_no_pose_is_refused_for_its_reason);
+    RUN_TEST(an_invalid_pose_is_refused_for_its_reason);
     RUN_TEST(a_pose_is_alive_while_both_its_parts_are);
     RUN_TEST(an_order_begins_where_the_aircraft_is);
     RUN_TEST(an_obstacle_is_reported_as_the_header_says);

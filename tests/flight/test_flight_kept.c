@@ -1,7 +1,7 @@
-/* Places that are kept after an unknown reset, while no image places them again. SPDX-License-Identifier: MIT
+/* Positions that are kept after an unknown reset, while no image updates them. SPDX-License-Identifier: MIT
  *
- * A mast of 4 m stands ahead, or beside the course. Its boxes come until shortly before the heading's reset, then images are empty. What
- * is kept must be judged by where the aircraft flies now, and grow older. */
+ * A mast of 4 m is ahead, or next to the course. Its boxes come until shortly before the heading's reset, then images are empty. The
+ * kept positions must be judged by the present flight, and grow older. */
 #include <math.h>
 #include <string.h>
 
@@ -72,7 +72,7 @@ static void frame(const flight_t *flight) {
     memset(&mast, 0, sizeof mast);
     mast.id = 1;
     mast.score = 0.9f;
-    mast.box.seen = GOE_SEES_BOX;
+    mast.box.sides = GOE_SIDES_ALL;
     mast.box.left_px = (float)(640.0 + FOCAL_PX * (right - 2.0) / ahead);
     mast.box.right_px = (float)(640.0 + FOCAL_PX * (right + 2.0) / ahead);
     mast.box.top_px = (float)(480.0 - FOCAL_PX * 20.0 / ahead);
@@ -105,33 +105,33 @@ static void fly(const flight_t *flight, double end_s, bool assesses) {
     now_s = end_s;
 }
 
-/* GIVEN a mast beside the course and a reset WHEN the aircraft turns at the kept place THEN that is a hazard, with its time. */
+/* GIVEN a mast next to the course and a reset WHEN the aircraft turns at the kept place THEN that is a hazard, with its time. */
 static void a_turn_at_a_kept_place_is_warned_of(void) {
     const flight_t flight = {{300.0, 60.0}, 6.0, 5.9, 6.2, false};
     fly(&flight, 5.9, true);
-    TEST_ASSERT_TRUE(assessed.worst == 0 && assessed.hazard.violation < 0.2f);
+    TEST_ASSERT_TRUE(assessed.worst == 0 && assessed.hazard.conflict_probability < 0.2f);
     fly(&flight, 10.0, true);
-    TEST_ASSERT_TRUE(assessed.worst == 0 && assessed.hazard.violation > 0.8f && assessed.suspect);
-    TEST_ASSERT_FLOAT_WITHIN(1.5f, (float)(hypot(300.0 - north_m, 60.0 - east_m) / SPEED_M_S), assessed.hazard.time_s);
+    TEST_ASSERT_TRUE(assessed.worst == 0 && assessed.hazard.conflict_probability > 0.8f && assessed.suspect);
+    TEST_ASSERT_FLOAT_WITHIN(1.5f, (float)(hypot(300.0 - north_m, 60.0 - east_m) / SPEED_M_S), assessed.hazard.tcpa_s);
 }
 
 /* GIVEN a mast ahead and a reset WHEN the aircraft turns away THEN the hazard falls. */
 static void a_turn_away_from_a_kept_place_ends_the_hazard(void) {
     const flight_t flight = {{300.0, 0.0}, 6.0, 5.9, 6.2, true};
     fly(&flight, 6.1, true);
-    TEST_ASSERT_TRUE(assessed.hazard.violation > 0.8f);
+    TEST_ASSERT_TRUE(assessed.hazard.conflict_probability > 0.8f);
     fly(&flight, 12.0, true);
-    TEST_ASSERT_TRUE(assessed.worst == 0 && assessed.hazard.violation < 0.2f);
+    TEST_ASSERT_TRUE(assessed.worst == 0 && assessed.hazard.conflict_probability < 0.2f);
 }
 
-/* GIVEN a reset before the first assessment WHEN nothing else is seen THEN the kept mast is a hazard, and counts. */
+/* GIVEN a reset before the first assessment WHEN no other detection comes THEN the kept mast is a hazard, and counts. */
 static void a_place_that_was_never_assessed_is_no_clear_sky(void) {
     const flight_t flight = {{300.0, 0.0}, 4.0, 3.9, 1e9, false};
     fly(&flight, 4.2, false);
     fly(&flight, 4.4, true);
     TEST_ASSERT_EQUAL_INT(0, assessed.worst);
     TEST_ASSERT_EQUAL_UINT(1, assessed.obstacles);
-    TEST_ASSERT_TRUE(assessed.hazard.violation > 0.8f);
+    TEST_ASSERT_TRUE(assessed.hazard.conflict_probability > 0.8f);
 }
 
 /* GIVEN a kept place THEN its age is the time since it was measured, and its margin grows with that. */
@@ -144,8 +144,8 @@ static void a_kept_place_grows_older(void) {
         fly(&flight, t_s, true);
         TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_obstacle(&layer, 0, &obstacle));
         TEST_ASSERT_FLOAT_WITHIN(0.35f, (float)(t_s - 5.8), obstacle.age_s);
-        TEST_ASSERT_TRUE(obstacle.suspect && obstacle.hazard.violation >= violation);
-        violation = obstacle.hazard.violation;
+        TEST_ASSERT_TRUE(obstacle.suspect && obstacle.hazard.conflict_probability >= violation);
+        violation = obstacle.hazard.conflict_probability;
     }
 }
 
@@ -158,7 +158,7 @@ static void a_kept_top_far_below_is_passed_over(void) {
     layer.slot[0].top_sd_m = 0.2f;
     fly(&flight, 6.4, true);
     TEST_ASSERT_FLOAT_WITHIN(1.0f, (float)HEIGHT_M - 1.0f, assessed.hazard.clearance_m);
-    TEST_ASSERT_TRUE(assessed.hazard.violation < 0.05f);
+    TEST_ASSERT_TRUE(assessed.hazard.conflict_probability < 0.05f);
 }
 
 int main(void) {

@@ -73,17 +73,17 @@ static void check_hazard(const goe_flight_slot_t *slot, const float own_ned_m[3]
     const double closest_s = fmax((north * v[0] + east * v[1]) / (speed * speed), 0.0);
     const double off[2] = {north - closest_s * v[0], east - closest_s * v[1]};
     const double radius_m = 0.5 * hypot((double)slot->width_m, (double)slot->length_m);
-    const double doubt = slot->suspect ? (double)settings->doubt : 1.0;
+    const double doubt = slot->suspect ? (double)settings->suspect_factor : 1.0;
     const double age_s = (double)slot->age_s + 1.0e-6 * (double)(now_us - slot->taken_us);
-    const double limit_m = doubt * (double)settings->margin_m + (double)settings->drift_m_s * age_s;
+    const double limit_m = doubt * (double)settings->margin_m + (double)settings->stale_growth_m_s * age_s;
     const double off_m = hypot(off[0], off[1]) - radius_m;
     const bool ahead = closest_s > 0.0;
-    const double miss_sd_m = ahead ? sd_along_m(slot, -v[1], v[0]) : sd_along_m(slot, off[0], off[1]);
-    double violation = chance(limit_m - off_m, miss_sd_m);
-    CHECK_CLOSE(2.0e-3, fmax(closest_s - radius_m / speed, ahead ? 0.01 : 0.0), found->time_s);
-    CHECK_CLOSE(2.0e-3, ahead ? sd_along_m(slot, v[0], v[1]) / speed : 0.0, found->time_sd_s);
-    CHECK_CLOSE(5.0e-3, fmax(off_m, 0.0), found->miss_m);
-    CHECK_CLOSE(5.0e-3, miss_sd_m, found->miss_sd_m);
+    const double dcpa_sd_m = ahead ? sd_along_m(slot, -v[1], v[0]) : sd_along_m(slot, off[0], off[1]);
+    double violation = chance(limit_m - off_m, dcpa_sd_m);
+    CHECK_CLOSE(2.0e-3, fmax(closest_s - radius_m / speed, ahead ? 0.01 : 0.0), found->tcpa_s);
+    CHECK_CLOSE(2.0e-3, ahead ? sd_along_m(slot, v[0], v[1]) / speed : 0.0, found->tcpa_sd_s);
+    CHECK_CLOSE(5.0e-3, fmax(off_m, 0.0), found->dcpa_m);
+    CHECK_CLOSE(5.0e-3, dcpa_sd_m, found->dcpa_sd_m);
     TEST_ASSERT_EQUAL((slot->valid & GOE_HAS_HEIGHT) != 0u, found->has_clearance);
     if (found->has_clearance) {
         const double down_m = (double)own_ned_m[2] + closest_s * v[2];
@@ -93,7 +93,7 @@ static void check_hazard(const goe_flight_slot_t *slot, const float own_ned_m[3]
         CHECK_CLOSE(5.0e-3, sd_m, found->clearance_sd_m);
         violation *= chance(doubt * (double)settings->clearance_m - over_m, sd_m);
     }
-    CHECK_CLOSE(0.01, violation, found->violation);
+    CHECK_CLOSE(0.01, violation, found->conflict_probability);
 }
 
 /* GIVEN any kept place and any straight flight THEN time, distance, their sigmas and the violation are those of the closest approach; of
@@ -124,17 +124,17 @@ static void a_kept_place_is_a_hazard_by_the_closest_approach(void) {
                 continue;
             }
             check_hazard(slot, own_ned_m, now_us);
-            TEST_ASSERT_TRUE((double)slot->hazard.violation / (1.0 + 0.1 * (double)slot->hazard.time_s) <=
-                             (double)first->violation / (1.0 + 0.1 * (double)first->time_s) + 1.0e-6);
-            ahead += slot->hazard.time_s > 0.0f ? 1 : 0;
-            behind += slot->hazard.time_s > 0.0f ? 0 : 1;
+            TEST_ASSERT_TRUE((double)slot->hazard.conflict_probability / (1.0 + 0.1 * (double)slot->hazard.tcpa_s) <=
+                             (double)first->conflict_probability / (1.0 + 0.1 * (double)first->tcpa_s) + 1.0e-6);
+            ahead += slot->hazard.tcpa_s > 0.0f ? 1 : 0;
+            behind += slot->hazard.tcpa_s > 0.0f ? 0 : 1;
         }
     }
     TEST_ASSERT_TRUE(ahead > TRIALS / 2 && behind > TRIALS / 4);
 }
 
 /* GIVEN a slot without a place, or that is free THEN it has no hazard, whatever it had. */
-static void what_has_no_place_has_no_hazard(void) {
+static void an_obstacle_without_position_has_no_hazard(void) {
     const float own_ned_m[3] = {0.0f, 0.0f, -20.0f};
     goe_hazard_t none;
     memset(&none, 0, sizeof none);
@@ -142,7 +142,7 @@ static void what_has_no_place_has_no_hazard(void) {
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         put_any(&flight.slot[i], 0u);
         flight.slot[i].assessed = true;
-        flight.slot[i].hazard.violation = 1.0f;
+        flight.slot[i].hazard.conflict_probability = 1.0f;
         flight.slot[i].used = i != 1;
         flight.slot[i].valid = i == 1 ? GOE_HAS_POSITION : GOE_HAS_HEIGHT;
     }
@@ -163,10 +163,10 @@ static void over_the_middle_the_whole_spread_counts(void) {
     flight.slot[0].covariance_ne_m2[1] = 0.0f;
     flight.slot[0].covariance_ne_m2[2] = 16.0f;
     TEST_ASSERT_EQUAL(0, goe_flight_lookout_assess(&flight, own_ned_m, 0u));
-    CHECK_CLOSE(1.0e-3, 5.0, flight.slot[0].hazard.miss_sd_m);
-    CHECK_SAME(0.0f, flight.slot[0].hazard.time_s);
-    CHECK_SAME(0.0f, flight.slot[0].hazard.time_sd_s);
-    CHECK_SAME(0.0f, flight.slot[0].hazard.miss_m);
+    CHECK_CLOSE(1.0e-3, 5.0, flight.slot[0].hazard.dcpa_sd_m);
+    CHECK_SAME(0.0f, flight.slot[0].hazard.tcpa_s);
+    CHECK_SAME(0.0f, flight.slot[0].hazard.tcpa_sd_s);
+    CHECK_SAME(0.0f, flight.slot[0].hazard.dcpa_m);
 }
 
 /* Who stands still comes no nearer. */
@@ -177,16 +177,16 @@ static void a_hover_meets_nothing(void) {
     flight.slot[0].center_ne_m[1] = -80.0f;
     flight.slot[0].width_m = flight.slot[0].length_m = 0.0f;
     TEST_ASSERT_EQUAL(0, goe_flight_lookout_assess(&flight, own_ned_m, 0u));
-    CHECK_SAME(0.0f, flight.slot[0].hazard.time_s);
-    CHECK_CLOSE(1.0e-3, 100.0, flight.slot[0].hazard.miss_m);
-    TEST_ASSERT_TRUE(check_is_finite(flight.slot[0].hazard.violation));
+    CHECK_SAME(0.0f, flight.slot[0].hazard.tcpa_s);
+    CHECK_CLOSE(1.0e-3, 100.0, flight.slot[0].hazard.dcpa_m);
+    TEST_ASSERT_TRUE(check_is_finite(flight.slot[0].hazard.conflict_probability));
 }
 
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_hover_meets_nothing);
     RUN_TEST(a_kept_place_is_a_hazard_by_the_closest_approach);
-    RUN_TEST(what_has_no_place_has_no_hazard);
+    RUN_TEST(an_obstacle_without_position_has_no_hazard);
     RUN_TEST(over_the_middle_the_whole_spread_counts);
     return UNITY_END();
 }

@@ -53,7 +53,7 @@ static void angles_become_positive(void) {
 }
 
 /* GIVEN an angle that is none THEN it counts as 0: no int could count its quarters or turns. */
-static void what_is_no_angle_counts_as_none(void) {
+static void an_invalid_angle_counts_as_none(void) {
     static const uint32_t none[] = {0x7F7FFFFFu, 0xFF7FFFFFu, 0x7F800000u, 0xFF800000u, 0x7FC00000u};
     for (size_t i = 0; i < sizeof none / sizeof none[0]; i++) {
         float sine = 5.0f;
@@ -95,7 +95,7 @@ int main(void) {
     RUN_TEST(arctangents_in_every_quarter);
     RUN_TEST(sines_of_every_quarter);
     RUN_TEST(angles_become_positive);
-    RUN_TEST(what_is_no_angle_counts_as_none);
+    RUN_TEST(an_invalid_angle_counts_as_none);
     RUN_TEST(a_counter_stays_at_its_most);
     RUN_TEST(time_wraps);
     RUN_TEST(numbers_are_judged_by_their_bits);

@@ -22,8 +22,8 @@ static void put(int slot, float ahead_m, float right_m, float top_m) {
     s->center_ne_m[1] = right_m;
     s->width_m = 6.0f;
     s->top_m = top_m;
-    s->hazard.violation = fabsf(right_m) < 18.0f && ahead_m > own.ned_m[0] ? 1.0f : 0.0f;
-    s->hazard.time_s = (ahead_m - own.ned_m[0] - 3.0f) / SPEED_M_S;
+    s->hazard.conflict_probability = fabsf(right_m) < 18.0f && ahead_m > own.ned_m[0] ? 1.0f : 0.0f;
+    s->hazard.tcpa_s = (ahead_m - own.ned_m[0] - 3.0f) / SPEED_M_S;
 }
 
 static void start(float loiter_m) {
@@ -59,7 +59,7 @@ static double miss_m(int slot) {
 
 /* --------------------------------------------------------------------------------------------------------------- side -- */
 
-/* The nearer side leads to 17.5 m left, and 4 m beside it stands a second mast that does not touch the present course. */
+/* The nearer side leads to 17.5 m left, and 4 m next to it is a second mast that does not touch the present course. */
 static void a_mast_that_is_not_on_the_course_blocks_a_side(void) {
     put(0, 110.0f, 0.5f, 50.0f);
     put(1, 115.0f, -24.0f, 50.0f);
@@ -98,7 +98,7 @@ static void a_low_one_blocks_no_side(void) {
 static void the_circle_about_the_target_is_kept_clear(void) {
     put(0, 125.0f, 0.5f, 50.0f);
     put(1, 125.0f, -150.0f, 50.0f);
-    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5)); /* which nothing stands beside where the aircraft flies through */
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5)); /* with nothing next to it where the aircraft flies through */
     start(80.0f);
     put(0, 125.0f, 0.5f, 50.0f);
     put(1, 125.0f, -150.0f, 50.0f);
@@ -119,7 +119,7 @@ static void put_wall(float ahead_m) {
     for (int i = 0; i < 4; i++) {
         put(i, ahead_m, -88.0f + 60.0f * (float)i, 50.0f);
         flight.slot[i].width_m = 44.0f;
-        flight.slot[i].hazard.violation = i == 1 || i == 2 ? 1.0f : 0.0f;
+        flight.slot[i].hazard.conflict_probability = i == 1 || i == 2 ? 1.0f : 0.0f;
     }
 }
 
@@ -132,7 +132,7 @@ static void a_wall_of_masts_is_a_reason_to_hold(void) {
 }
 
 /* A wall that is known too late to be turned away from: the middle of the gap keeps 8 m and is taken, and called the least bad. */
-static void what_has_no_free_way_says_so(void) {
+static void a_blocked_aircraft_reports_it(void) {
     put_wall(60.0f);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_RIGHT, decide(0.5));
     TEST_ASSERT_EQUAL(GOE_FLIGHT_REASON_LEAST_BAD, flight.reaction.reason);
@@ -140,7 +140,7 @@ static void what_has_no_free_way_says_so(void) {
     TEST_ASSERT_TRUE(flight.reaction.clear_m > 5.0f && flight.reaction.clear_m < 8.1f);
 }
 
-/* A new mast on the way of a standing order: the order goes farther out on its side. */
+/* A new mast on the way of an active order: the order goes farther out on its side. */
 static void a_standing_order_evades_to_its_own_side_first(void) {
     put(0, 130.0f, 0.5f, 50.0f);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
@@ -152,13 +152,13 @@ static void a_standing_order_evades_to_its_own_side_first(void) {
 
 /* ---------------------------------------------------------------------------------------------------------------- end -- */
 
-/* The order about B is not over while A, which stands on the line, is not passed. */
-static void an_order_stands_while_another_one_stands_on_its_line(void) {
+/* The order about B is not over while A, which is on the line, is not passed. */
+static void an_order_stays_active_while_another_one_is_on_its_line(void) {
     put(0, 100.0f, 0.5f, 50.0f);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
     put(1, 90.0f, -60.0f, 50.0f);
     flight.reaction.slot = flight.reaction.edge = 1; /* as if it had been given for that one since */
-    flight.slot[0].hazard.violation = 0.0f;
+    flight.slot[0].hazard.conflict_probability = 0.0f;
     TEST_ASSERT_TRUE(decide(4.0) != GOE_FLIGHT_NONE);
 }
 
@@ -188,8 +188,8 @@ static void an_order_that_finds_another_way_does_not_sink_with_the_aircraft(void
     CHECK_CLOSE(0.01, -20.0, flight.reaction.target_ned_m[2]);
 }
 
-/* The way back to the line leads past a mast beside the line, which the line itself passes. */
-static void an_order_stands_while_the_way_back_is_not_clear(void) {
+/* The way back to the line leads past a mast next to the line, which the line itself passes. */
+static void an_order_stays_active_while_the_way_back_is_not_clear(void) {
     put(0, 100.0f, 0.5f, 50.0f);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
     own.ned_m[0] = 125.0f;
@@ -209,7 +209,7 @@ static void no_order_is_given_too_low(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_REASON_LOW, flight.reaction.reason);
     flight.ground_down_m = 0.2f; /* the ground lies lower */
     TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
-    own.ned_m[2] = -2.0f; /* one that stands is not taken back */
+    own.ned_m[2] = -2.0f; /* an active one is not withdrawn */
     TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
 }
 
@@ -245,7 +245,7 @@ static void no_order_is_given_in_flare_or_after_touchdown(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_REASON_LANDING, flight.reaction.reason);
     own.grounded = false;
     TEST_ASSERT_TRUE(decide(0.5) != GOE_FLIGHT_NONE);
-    own.grounded = true; /* ends one that stands */
+    own.grounded = true; /* ends an active one */
     TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, decide(0.0));
 }
 
@@ -270,7 +270,7 @@ static void phases_reach_the_rule(void) {
             }
             TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_assess(&flown.flight, flown_now_us(&flown), phase[k], &now));
             ordered = ordered || now.action != GOE_FLIGHT_NONE;
-            warned = warned || (now.hazard.violation > 0.9f && now.reason == GOE_FLIGHT_REASON_LANDING);
+            warned = warned || (now.hazard.conflict_probability > 0.9f && now.reason == GOE_FLIGHT_REASON_LANDING);
         }
         TEST_ASSERT_EQUAL(k == 2, ordered);
         TEST_ASSERT_EQUAL(k != 2, warned);
@@ -289,7 +289,7 @@ static void a_go_around_carries_the_height_of_the_highest_top(void) {
     put(1, 160.0f, 3.0f, 18.0f);
     (void)decide(0.0);
     CHECK_CLOSE(0.01, -28.0, flight.reaction.target_ned_m[2]);
-    put(1, 160.0f, 3.0f, 10.0f); /* it does not sink while the order stands */
+    put(1, 160.0f, 3.0f, 10.0f); /* it does not sink while the order is active */
     (void)decide(0.0);
     CHECK_CLOSE(0.01, -28.0, flight.reaction.target_ned_m[2]);
 }
@@ -303,8 +303,8 @@ static void a_go_around_over_an_unknown_top_climbs(void) {
     CHECK_CLOSE(0.01, -30.0, flight.reaction.target_ned_m[2]);
 }
 
-/* Behind a low one stands a high one: a climb over the first leads into the second. */
-static void a_climb_does_not_lead_into_what_stands_behind(void) {
+/* Behind a low one is a high one: a climb over the first leads into the second. */
+static void a_climb_does_not_lead_into_what_is_behind(void) {
     put(0, 110.0f, 0.5f, 12.0f);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_CLIMB, decide(0.5));
     start(0.0f);
@@ -344,7 +344,7 @@ static float share_of(float circle_m, float target_ahead_m, float target_right_m
 }
 
 /* [goe_flight_assessment_t.clear_m]
- * Beside the way straight on, beside the target, within the fan, in the circle, on the line behind; mirrored it is the same. */
+ * Next to the way straight on, next to the target, within the fan, in the circle, on the line behind; mirrored it is the same. */
 static void clearance_is_that_of_the_nearest_part_of_the_way(void) {
     for (int side = -1; side <= 1; side += 2) {
         const float s = (float)side;
@@ -375,19 +375,19 @@ static void a_way_that_is_hardly_clear_is_left_after_a_while(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
     const float target_m = flight.reaction.target_ned_m[1];
     put(1, 200.0f, target_m - 6.0f, 50.0f);
-    flight.slot[1].hazard.violation = 0.0f;
+    flight.slot[1].hazard.conflict_probability = 0.0f;
     (void)decide(0.2);
     CHECK_CLOSE(0.1, 3.0, flight.reaction.clear_m);
     CHECK_SAME(target_m, flight.reaction.target_ned_m[1]);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.2));
-    for (int k = 0; k < 20; k++) { /* and stays so, past what stands beside the line */
+    for (int k = 0; k < 20; k++) { /* and stays so, past an obstacle next to the line */
         TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.0));
         TEST_ASSERT_TRUE(flight.reaction.target_ned_m[1] < target_m - 10.0f);
     }
     TEST_ASSERT_TRUE(flight.reaction.clear_m > 6.0f);
 }
 
-/* GIVEN an order that has just ended, and a clear way back to its line WHEN something stands on the course of this moment THEN that is no
+/* GIVEN an order that has just ended, and a clear way back to its line WHEN something is on the course of this moment THEN that is no
  * hazard for 1.2 roll_in_s, by when the aircraft turns back. */
 static void flying_back_is_given_time(void) {
     for (int late = 0; late < 2; late++) {
@@ -401,15 +401,15 @@ static void flying_back_is_given_time(void) {
         flight.velocity_ned_m_s[0] = 14.142136f;
         flight.velocity_ned_m_s[1] = -14.142136f;
         put(0, 125.0f + 71.0f, -20.0f - 71.0f, 50.0f);
-        flight.slot[0].hazard.violation = 1.0f;
-        flight.slot[0].hazard.time_s = 4.85f;
+        flight.slot[0].hazard.conflict_probability = 1.0f;
+        flight.slot[0].hazard.tcpa_s = 4.85f;
         flight.settings.confirm_s = 0.0f;
         TEST_ASSERT_EQUAL(late, decide(0.0) != GOE_FLIGHT_NONE);
     }
 }
 
 /* GIVEN a climb that was ordered a while ago WHEN half of the clearance over a top cannot be reached before it any more THEN another
- * order is given, whatever side was flown before; while it can, the climb stands. */
+ * order is given, whatever side was flown before; while it can, the climb stays active. */
 static void a_climb_is_left_when_it_comes_too_late(void) {
     for (int since = 0; since <= 3; since++) {
         for (int later = 0; later < 2; later++) {
@@ -417,7 +417,7 @@ static void a_climb_is_left_when_it_comes_too_late(void) {
             start(0.0f);
             own.time_us = 5000000u;
             put(0, 3.0f + SPEED_M_S * needed_s, 0.5f, 20.0f); /* 10 m to climb, of which 5 are enough */
-            flight.slot[0].hazard.time_s = needed_s + (later ? 0.2f : -0.2f);
+            flight.slot[0].hazard.tcpa_s = needed_s + (later ? 0.2f : -0.2f);
             flight.reaction.action = GOE_FLIGHT_CLIMB;
             flight.reaction.slot = 0;
             flight.reaction.side = (int8_t)(since % 2);
@@ -436,7 +436,7 @@ static void a_slow_aircraft_has_a_course(void) {
         flight.settings.order_speed_m_s = 0.0f;
         flight.velocity_ned_m_s[0] = slow ? 0.9f : 1.5f;
         put(0, 12.0f, 0.5f, 80.0f);
-        flight.slot[0].hazard.time_s = 3.0f;
+        flight.slot[0].hazard.tcpa_s = 3.0f;
         TEST_ASSERT_EQUAL(slow, decide(0.5) == GOE_FLIGHT_NONE);
     }
 }
@@ -455,20 +455,20 @@ static void the_side_of_before_is_preferred(void) {
 }
 
 /* A slot that is free, or has no place, raises no climb. */
-static void what_is_not_there_raises_no_climb(void) {
+static void a_missing_obstacle_raises_no_climb(void) {
     put(0, 110.0f, 0.5f, 12.0f);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_CLIMB, decide(0.5));
     put(1, 300.0f, 0.5f, 60.0f);
     flight.slot[1].used = false;
     put(2, 300.0f, 0.5f, 60.0f);
     flight.slot[2].valid = GOE_HAS_HEIGHT;
-    flight.slot[1].hazard.violation = flight.slot[2].hazard.violation = 0.0f;
+    flight.slot[1].hazard.conflict_probability = flight.slot[2].hazard.conflict_probability = 0.0f;
     TEST_ASSERT_EQUAL(GOE_FLIGHT_CLIMB, decide(0.2));
     CHECK_CLOSE(0.01, -22.0, flight.reaction.target_ned_m[2]);
 }
 
-/* At most 1000 m are told, however large the margin. */
-static void what_is_clear_is_told_up_to_a_kilometre(void) {
+/* At most 1000 m are reported, however large the margin. */
+static void clear_sectors_are_reported_up_to_a_kilometer(void) {
     flight.settings.margin_m = 1000.0f;
     flight.reaction.action = GOE_FLIGHT_LEFT;
     flight.reaction.side = -1;
@@ -495,8 +495,8 @@ int main(void) {
     RUN_TEST(a_climb_is_left_when_it_comes_too_late);
     RUN_TEST(a_slow_aircraft_has_a_course);
     RUN_TEST(the_side_of_before_is_preferred);
-    RUN_TEST(what_is_not_there_raises_no_climb);
-    RUN_TEST(what_is_clear_is_told_up_to_a_kilometre);
+    RUN_TEST(a_missing_obstacle_raises_no_climb);
+    RUN_TEST(clear_sectors_are_reported_up_to_a_kilometer);
     RUN_TEST(a_mast_that_is_not_on_the_course_blocks_a_side);
     RUN_TEST(a_place_that_is_hardly_known_blocks_a_side);
     RUN_TEST(an_old_place_blocks_a_side);
@@ -504,12 +504,12 @@ int main(void) {
     RUN_TEST(the_circle_about_the_target_is_kept_clear);
     RUN_TEST(a_circle_is_never_smaller_than_the_turn);
     RUN_TEST(a_wall_of_masts_is_a_reason_to_hold);
-    RUN_TEST(what_has_no_free_way_says_so);
+    RUN_TEST(a_blocked_aircraft_reports_it);
     RUN_TEST(a_standing_order_evades_to_its_own_side_first);
-    RUN_TEST(an_order_stands_while_another_one_stands_on_its_line);
+    RUN_TEST(an_order_stays_active_while_another_one_is_on_its_line);
     RUN_TEST(an_order_turns_to_the_next_one_on_its_line);
     RUN_TEST(an_order_that_finds_another_way_does_not_sink_with_the_aircraft);
-    RUN_TEST(an_order_stands_while_the_way_back_is_not_clear);
+    RUN_TEST(an_order_stays_active_while_the_way_back_is_not_clear);
     RUN_TEST(no_order_is_given_too_low);
     RUN_TEST(a_height_below_the_ground_withholds_no_order);
     RUN_TEST(a_height_of_zero_gives_orders_at_any_height);
@@ -518,7 +518,7 @@ int main(void) {
     RUN_TEST(phases_reach_the_rule);
     RUN_TEST(a_go_around_carries_the_height_of_the_highest_top);
     RUN_TEST(a_go_around_over_an_unknown_top_climbs);
-    RUN_TEST(a_climb_does_not_lead_into_what_stands_behind);
+    RUN_TEST(a_climb_does_not_lead_into_what_is_behind);
     RUN_TEST(clearance_is_that_of_the_nearest_part_of_the_way);
     RUN_TEST(a_target_straight_ahead_takes_no_circle);
     RUN_TEST(every_reason_has_a_name);

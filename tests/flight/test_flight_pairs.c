@@ -1,7 +1,8 @@
-/* Two masts and exact places: the layer's orders obeyed late by an aircraft that turns at the bank of the settings. SPDX-License-Identifier: MIT
+/* Two masts and exact places: the layer's orders obeyed late by an aircraft that turns at the bank of the settings.
+ * SPDX-License-Identifier: MIT
  *
- * The first mast stands on the course, the second one, known as well, beside it. No order may lead into either, and the order may
- * not end while one of them stands on the line that is flown again. */
+ * The first mast is on the course, the second one, known as well, next to it. No order may lead into either, and the order may
+ * not end while one of them is on the line that is flown again. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -49,7 +50,7 @@ void tearDown(void) {}
 
 static double radius_m(const pair_t *pair) { return pair->wide_m > 0.0 ? pair->wide_m : MAST_RADIUS_M; }
 
-/* As an estimator that knows both places tells it, on the present course. */
+/* The input of an estimator that knows both positions, on the present course. */
 static int look(const pair_t *pair, const double at_m[2], double course, uint32_t now_us) {
     int worst = -1;
     double most = -1.0;
@@ -70,17 +71,17 @@ static int look(const pair_t *pair, const double at_m[2], double course, uint32_
         s->width_m = (float)(2.0 * radius_m(pair));
         s->covariance_ne_m2[0] = s->covariance_ne_m2[2] = (float)(pair->sd_m * pair->sd_m);
         s->top_m = 80.0f;
-        s->taken_us = s->seen_us = now_us;
-        s->hazard.violation = meets ? 1.0f : 0.0f;
-        s->hazard.time_s = (float)fmax(ahead_m / SPEED_M_S, 0.0);
-        const double urgency = (double)s->hazard.violation / (1.0 + 0.1 * (double)s->hazard.time_s);
+        s->taken_us = s->detected_us = now_us;
+        s->hazard.conflict_probability = meets ? 1.0f : 0.0f;
+        s->hazard.tcpa_s = (float)fmax(ahead_m / SPEED_M_S, 0.0);
+        const double urgency = (double)s->hazard.conflict_probability / (1.0 + 0.1 * (double)s->hazard.tcpa_s);
         worst = urgency > most ? i : worst;
         most = fmax(urgency, most);
     }
     return worst;
 }
 
-/* The course that the obeyed order asks for. */
+/* The course that the obeyed order requires. */
 static double wanted_course(const goe_flight_reaction_t *order, const double at_m[2], double course, double loiter_m) {
     const double north = (double)order->target_ned_m[0] - at_m[0], east = (double)order->target_ned_m[1] - at_m[1];
     const double distance_m = hypot(north, east);
@@ -181,9 +182,9 @@ static void a_second_mast_behind_the_first_one_is_passed_too(void) {
     }
 }
 
-/* GIVEN a wide obstacle beyond the first one and beside the line WHEN the first is passed THEN the aircraft, which passes the second
+/* GIVEN a wide obstacle beyond the first one and next to the line WHEN the first is passed THEN the aircraft, which passes the second
  * already, is not turned into it. */
-static void past_the_first_nothing_beside_is_flown_into(void) {
+static void no_order_flies_into_a_second_obstacle(void) {
     for (int sd = 0; sd <= 2; sd++) {
         for (int known = 1; known <= 3; known++) {
             for (double beyond_m = 60.0; beyond_m < 170.0; beyond_m += 20.0) {
@@ -207,7 +208,7 @@ int main(void) {
     RUN_TEST(no_order_leads_into_a_second_mast_on_the_right);
     RUN_TEST(no_order_leads_into_a_second_mast_on_the_left);
     RUN_TEST(no_circle_about_a_target_leads_into_a_second_mast);
-    RUN_TEST(past_the_first_nothing_beside_is_flown_into);
+    RUN_TEST(no_order_flies_into_a_second_obstacle);
     RUN_TEST(a_second_mast_behind_the_first_one_is_passed_too);
     return UNITY_END();
 }

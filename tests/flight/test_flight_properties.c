@@ -24,9 +24,9 @@ static void start(flown_t *of, double aside_m) {
 }
 
 static void check_same_hazard(const goe_hazard_t *a, const goe_hazard_t *b, double tolerance) {
-    CHECK_CLOSE(tolerance, a->time_s, b->time_s);
-    CHECK_CLOSE(10.0 * tolerance, a->miss_m, b->miss_m);
-    CHECK_CLOSE(tolerance, a->violation, b->violation);
+    CHECK_CLOSE(tolerance, a->tcpa_s, b->tcpa_s);
+    CHECK_CLOSE(10.0 * tolerance, a->dcpa_m, b->dcpa_m);
+    CHECK_CLOSE(tolerance, a->conflict_probability, b->conflict_probability);
     CHECK_CLOSE(10.0 * tolerance, a->clearance_m, b->clearance_m);
 }
 
@@ -150,7 +150,7 @@ static void fly_points(flown_t *of, int samples) {
     }
 }
 
-/* Of a box of which one face is seen, the front edge is all that has a place; here in a T that lies across the course. */
+/* Of a box with one visible face, only the front edge has a position; here in a T that is across the course. */
 static void a_front_without_a_length_lies_where_it_is(void) {
     goe_flight_obstacle_t obstacle;
     for (int turned = 0; turned < 2; turned++) {
@@ -179,10 +179,10 @@ static void a_front_without_a_length_lies_where_it_is(void) {
 }
 
 /* Points work as boxes do, but for those at the border of the image: left, top or both at once. */
-static void points_at_the_border_are_not_seen(void) {
+static void points_at_the_border_are_not_visible(void) {
     start(&flown, 1.0);
     flown.scene.boxes = flown.scene.upright_boxes = false;
-    flown.scene.camera.border_share = 0.012f;
+    flown.scene.camera.border_rel = 0.012f;
     const goe_settings_t estimator = scene_settings(&flown.scene);
     restart(&flown, &estimator);
     int taken = 0;
@@ -229,6 +229,6 @@ int main(void) {
     RUN_TEST(the_mirror_image_turns_to_the_other_side);
     RUN_TEST(a_set_heading_changes_no_place);
     RUN_TEST(a_front_without_a_length_lies_where_it_is);
-    RUN_TEST(points_at_the_border_are_not_seen);
+    RUN_TEST(points_at_the_border_are_not_visible);
     return UNITY_END();
 }

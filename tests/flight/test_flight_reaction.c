@@ -1,6 +1,6 @@
 /* The rule of the reaction, line by line of its table in port/flight/README.md. SPDX-License-Identifier: MIT
  *
- * The obstacle of a slot is written straight into the table: what the rule makes of it is asked for, not how it was found. */
+ * The obstacle of a slot is written straight into the table: the test checks the rule's result, not the detection. */
 #include <math.h>
 #include <string.h>
 
@@ -12,7 +12,7 @@
 static goe_flight_t flight;
 static goe_flight_reaction_own_t own;
 
-/* A mast of 6 m diameter, 50 m high, `ahead` metres ahead and `right` metres aside of an aircraft 20 m above the ground that flies
+/* A mast of 6 m diameter, 50 m high, `ahead` meters ahead and `right` meters aside of an aircraft 20 m above the ground that flies
  * north from the origin at 20 m/s; bank 30 degrees: 71 m of radius. */
 static void put(int slot, float ahead_m, float right_m) {
     goe_flight_slot_t *s = &flight.slot[slot];
@@ -22,8 +22,8 @@ static void put(int slot, float ahead_m, float right_m) {
     s->center_ne_m[1] = right_m;
     s->width_m = 6.0f;
     s->top_m = 50.0f;
-    s->hazard.violation = 1.0f;
-    s->hazard.time_s = (ahead_m - 3.0f) / SPEED_M_S;
+    s->hazard.conflict_probability = 1.0f;
+    s->hazard.tcpa_s = (ahead_m - 3.0f) / SPEED_M_S;
 }
 
 void setUp(void) {
@@ -69,10 +69,10 @@ static void the_order_comes_with_the_time_that_it_needs(void) {
 /* The time by two sigmas too early is time / (1 + 2 sigma / time): 10.5 s of 20 +- 9 s, 5.8 s of 11 +- 5 s. */
 static void a_range_that_is_hardly_known_orders_earlier_but_not_at_once(void) {
     put(0, 3.0f + 20.0f * SPEED_M_S, 0.5f);
-    flight.slot[0].hazard.time_sd_s = 9.0f;
+    flight.slot[0].hazard.tcpa_sd_s = 9.0f;
     TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, decide(1.0));
     put(0, 3.0f + 11.0f * SPEED_M_S, 0.5f);
-    flight.slot[0].hazard.time_sd_s = 5.0f;
+    flight.slot[0].hazard.tcpa_sd_s = 5.0f;
     TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
     TEST_ASSERT_FALSE(flight.reaction.late);
 }
@@ -94,13 +94,13 @@ static void a_side_that_is_not_clear_is_not_taken(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_RIGHT, decide(0.5));
 }
 
-/* Behind the target the line is flown on: for the turn's radius and what is flown while an order is obeyed, 71 + 90 m. */
-static void what_stands_on_the_line_behind_a_target_blocks_it(void) {
+/* Behind the target the line continues: for the turn's radius and the distance flown before an order is obeyed, 71 + 90 m. */
+static void an_obstacle_on_the_line_behind_a_target_blocks_it(void) {
     for (int blocked = 0; blocked < 2; blocked++) {
         goe_flight_reaction_clear(&flight.reaction);
         put(0, 100.0f, 2.0f);
         put(1, blocked ? 250.0f : 340.0f, -16.0f);
-        flight.slot[1].hazard.violation = 0.0f;
+        flight.slot[1].hazard.conflict_probability = 0.0f;
         TEST_ASSERT_EQUAL(blocked ? GOE_FLIGHT_RIGHT : GOE_FLIGHT_LEFT, decide(0.5));
     }
 }
@@ -116,9 +116,9 @@ static void no_side_and_no_climb_is_a_reason_to_hold(void) {
 static void a_wide_obstacle_is_a_reason_to_hold(void) {
     put(0, 110.0f, 1.0f);
     flight.slot[0].width_m = 140.0f;
-    flight.slot[0].hazard.time_s = 5.0f;
+    flight.slot[0].hazard.tcpa_s = 5.0f;
     TEST_ASSERT_EQUAL(GOE_FLIGHT_HOLD, decide(0.5));
-    TEST_ASSERT_TRUE(flight.reaction.target_ned_m[1] < -70.0f); /* the side on which less of it stands */
+    TEST_ASSERT_TRUE(flight.reaction.target_ned_m[1] < -70.0f); /* the side with less of it */
 }
 
 /* [flight.climb_in_s] 2 m too low: 2 s and 2/2.5 s, less than a turn. */
@@ -163,7 +163,7 @@ static void an_approach_left_to_a_side_is_broken_off_once_there_is_time(void) {
         own.approach = landing != 0;
         put(0, 40.0f, 0.5f);
         flight.slot[0].top_m = 12.0f;
-        flight.slot[0].hazard.time_s = 2.0f;
+        flight.slot[0].hazard.tcpa_s = 2.0f;
         TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.0));
         TEST_ASSERT_TRUE(flight.reaction.late);
         TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.1));
@@ -178,7 +178,7 @@ static void an_approach_left_to_a_side_is_broken_off_once_there_is_time(void) {
     }
 }
 
-/* GIVEN a go-around over a low obstacle WHEN a tower stands behind it that the climb does not clear in time THEN a side is flown. */
+/* GIVEN a go-around over a low obstacle WHEN a tower is behind it that the climb does not clear in time THEN a side is flown. */
 static void a_climb_that_comes_too_late_gives_way_to_a_side(void) {
     own.approach = true;
     put(0, 110.0f, 0.5f);
@@ -188,7 +188,7 @@ static void a_climb_that_comes_too_late_gives_way_to_a_side(void) {
     flight.slot[1].top_m = 60.0f;
     TEST_ASSERT_EQUAL(GOE_FLIGHT_GO_AROUND, decide(0.5));
     put(0, -40.0f, 0.5f); /* passed */
-    flight.slot[0].hazard.violation = 0.0f;
+    flight.slot[0].hazard.conflict_probability = 0.0f;
     put(1, 125.0f, 0.5f);
     flight.slot[1].top_m = 60.0f;
     TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide_about(1, 0.5)); /* 20 s of climb, 6 s left */
@@ -202,7 +202,7 @@ static void a_climb_clears_every_known_top_ahead(void) {
     flight.slot[0].top_m = 12.0f;
     put(1, 600.0f, 3.0f);
     flight.slot[1].top_m = 30.0f;
-    put(2, 600.0f, 80.0f); /* beside the course */
+    put(2, 600.0f, 80.0f); /* next to the course */
     TEST_ASSERT_EQUAL(GOE_FLIGHT_GO_AROUND, decide(0.5));
     CHECK_CLOSE(0.01, -40.0, flight.reaction.target_ned_m[2]);
     flight.slot[1].top_m = 25.0f;
@@ -213,8 +213,8 @@ static void a_climb_clears_every_known_top_ahead(void) {
     CHECK_CLOSE(0.01, -45.0, flight.reaction.target_ned_m[2]);
 }
 
-/* GIVEN any places about a standing order THEN what is reported of it agrees: clear is nothing that leads into something. */
-static void what_is_reported_of_an_order_agrees(void) {
+/* GIVEN any places about an active order THEN its reports agree: no way that leads into an obstacle is clear. */
+static void the_reports_of_an_order_agree(void) {
     uint32_t state = 1u;
     int least_bad = 0;
     for (int flights = 0; flights < 300; flights++) {
@@ -249,16 +249,16 @@ static void a_wait_for_confirmation_is_not_afforded_when_it_is_late(void) {
 /* ... but a hazard that is less likely than not is then no reason: no action would change it. */
 static void an_unlikely_hazard_is_no_reason_when_it_is_late(void) {
     put(0, 63.0f, 0.5f);
-    flight.slot[0].hazard.violation = 0.4f;
+    flight.slot[0].hazard.conflict_probability = 0.4f;
     TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, decide(1.0));
     put(0, 110.0f, 0.5f);
-    flight.slot[0].hazard.violation = 0.4f;
+    flight.slot[0].hazard.conflict_probability = 0.4f;
     TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
 }
 
 static void no_hazard_is_no_reason(void) {
     put(0, 100.0f, 0.5f);
-    flight.slot[0].hazard.violation = 0.09f;
+    flight.slot[0].hazard.conflict_probability = 0.09f;
     TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, decide(2.0));
     put(0, -5.0f, 0.5f); /* behind */
     TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, decide(2.0));
@@ -275,12 +275,12 @@ static void doubt_orders_earlier_and_wider(void) {
     CHECK_CLOSE(0.1, 0.5 - 3.0 - 22.5, flight.reaction.target_ned_m[1]);
 }
 
-/* The order stands while the aircraft turns away from the obstacle, which ends the hazard on its present course; it ends when the
+/* The order is active while the aircraft turns away from the obstacle, which ends the hazard on its present course; it ends when the
  * line of the order leads past the obstacle again. */
-static void the_order_stands_until_the_obstacle_lies_behind(void) {
+static void the_order_stays_active_until_the_obstacle_lies_behind(void) {
     put(0, 100.0f, 0.5f);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
-    flight.slot[0].hazard.violation = 0.0f;
+    flight.slot[0].hazard.conflict_probability = 0.0f;
     flight.velocity_ned_m_s[0] = 14.0f;
     flight.velocity_ned_m_s[1] = -14.0f;
     TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(5.0));
@@ -295,7 +295,7 @@ static void the_order_stands_until_the_obstacle_lies_behind(void) {
 static void an_order_that_proves_wrong_is_taken_back(void) {
     put(0, 100.0f, 0.5f);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
-    flight.slot[0].hazard.violation = 0.0f;
+    flight.slot[0].hazard.conflict_probability = 0.0f;
     flight.slot[0].center_ne_m[1] = 40.0f;
     TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(1.0));
     flight.slot[0].center_ne_m[1] = 10.0f;
@@ -316,7 +316,7 @@ static void an_obstacle_that_is_given_up_ends_its_order(void) {
 static void an_order_that_has_ended_reports_nothing(void) {
     put(0, 100.0f, 0.5f);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
-    flight.slot[0].hazard.violation = 0.0f;
+    flight.slot[0].hazard.conflict_probability = 0.0f;
     own.ned_m[0] = 130.0f;
     own.ned_m[1] = -20.0f;
     while (decide(0.0) != GOE_FLIGHT_NONE) {
@@ -329,7 +329,7 @@ static void an_order_that_has_ended_reports_nothing(void) {
     }
 }
 
-/* What comes within 10 s of the end of an order is the same encounter, with its side and its changes of it; later neither counts. */
+/* A hazard within 10 s of the end of an order is the same encounter, with its side and its changes of it; later neither counts. */
 static void the_side_of_an_order_is_remembered_for_ten_seconds(void) {
     for (int later = 0; later < 2; later++) {
         goe_flight_reaction_clear(&flight.reaction);
@@ -351,7 +351,7 @@ static void an_order_about_no_slot_is_none(void) {
             goe_flight_reaction_t *r = &flight.reaction;
             goe_flight_reaction_clear(r);
             put(0, 300.0f, 0.0f);
-            flight.slot[0].hazard.violation = 0.0f;
+            flight.slot[0].hazard.conflict_probability = 0.0f;
             r->action = kind == 0 ? (uint8_t)(GOE_FLIGHT_HOLD + 1 + (int)i) : GOE_FLIGHT_LEFT;
             r->side = kind == 1 ? (int8_t)beyond[i] : -1;
             r->slot = kind == 2 ? (int8_t)beyond[i] : 0;
@@ -376,7 +376,7 @@ static void an_order_of_no_numbers_is_none(void) {
         for (int bad = 0; bad < 2; bad++) {
             goe_flight_reaction_clear(r);
             put(0, 300.0f, 0.0f);
-            flight.slot[0].hazard.violation = 0.0f;
+            flight.slot[0].hazard.conflict_probability = 0.0f;
             r->action = GOE_FLIGHT_LEFT;
             r->side = -1;
             r->slot = 0;
@@ -425,7 +425,7 @@ int main(void) {
     RUN_TEST(a_range_that_is_hardly_known_orders_earlier_but_not_at_once);
     RUN_TEST(the_nearer_side_is_taken);
     RUN_TEST(a_side_that_is_not_clear_is_not_taken);
-    RUN_TEST(what_stands_on_the_line_behind_a_target_blocks_it);
+    RUN_TEST(an_obstacle_on_the_line_behind_a_target_blocks_it);
     RUN_TEST(no_side_and_no_climb_is_a_reason_to_hold);
     RUN_TEST(a_wide_obstacle_is_a_reason_to_hold);
     RUN_TEST(a_low_top_is_climbed_over);
@@ -435,12 +435,12 @@ int main(void) {
     RUN_TEST(an_approach_left_to_a_side_is_broken_off_once_there_is_time);
     RUN_TEST(a_climb_that_comes_too_late_gives_way_to_a_side);
     RUN_TEST(a_climb_clears_every_known_top_ahead);
-    RUN_TEST(what_is_reported_of_an_order_agrees);
+    RUN_TEST(the_reports_of_an_order_agree);
     RUN_TEST(a_wait_for_confirmation_is_not_afforded_when_it_is_late);
     RUN_TEST(an_unlikely_hazard_is_no_reason_when_it_is_late);
     RUN_TEST(no_hazard_is_no_reason);
     RUN_TEST(doubt_orders_earlier_and_wider);
-    RUN_TEST(the_order_stands_until_the_obstacle_lies_behind);
+    RUN_TEST(the_order_stays_active_until_the_obstacle_lies_behind);
     RUN_TEST(an_order_that_proves_wrong_is_taken_back);
     RUN_TEST(an_obstacle_that_is_given_up_ends_its_order);
     RUN_TEST(an_order_that_has_ended_reports_nothing);

@@ -29,7 +29,7 @@ static void jump(flown_t *of, float north_m, float east_m) {
     of->reset_horizontal++;
 }
 
-/* GIVEN a flight with a jump whose size is told THEN its track is that of the flight without one, moved by the jump. Positions are
+/* GIVEN a flight with a jump whose size is given THEN its track is that of the flight without one, moved by the jump. Positions are
  * floats: 5 m of jump turn their last bits. */
 static void a_known_jump_changes_nothing_but_the_place(void) {
     (void)flown_fly(&flown, 2.5);
@@ -42,8 +42,8 @@ static void a_known_jump_changes_nothing_but_the_place(void) {
     CHECK_CLOSE(0.02, still.center_ned_m[0] + 5.0f, moved.center_ned_m[0]);
     CHECK_CLOSE(0.02, still.center_ned_m[1] - 3.0f, moved.center_ned_m[1]);
     CHECK_CLOSE(0.01, still.width_m, moved.width_m);
-    CHECK_CLOSE(0.005, without.hazard.time_s, with.hazard.time_s);
-    CHECK_CLOSE(0.02, without.hazard.miss_m, with.hazard.miss_m);
+    CHECK_CLOSE(0.005, without.hazard.tcpa_s, with.hazard.tcpa_s);
+    CHECK_CLOSE(0.02, without.hazard.dcpa_m, with.hazard.dcpa_m);
     TEST_ASSERT_EQUAL(1, flown.flight.counters.resets);
     TEST_ASSERT_EQUAL(0, flown.flight.counters.lost);
 }
@@ -71,10 +71,10 @@ static void an_unknown_jump_takes_no_warning_back(void) {
     TEST_ASSERT_EQUAL(1, now.obstacles);
     TEST_ASSERT_EQUAL(0, now.worst);
     TEST_ASSERT_TRUE(now.suspect);
-    TEST_ASSERT_TRUE(now.hazard.violation >= before.hazard.violation);
+    TEST_ASSERT_TRUE(now.hazard.conflict_probability >= before.hazard.conflict_probability);
     const double due_s =
-        (double)before.hazard.time_s - 0.1; /* to the outline; now to the circle about it, which is entered sooner */
-    TEST_ASSERT_TRUE((double)now.hazard.time_s < due_s + 0.03 && (double)now.hazard.time_s > due_s - 0.3);
+        (double)before.hazard.tcpa_s - 0.1; /* to the outline; now to the circle about it, which is entered sooner */
+    TEST_ASSERT_TRUE((double)now.hazard.tcpa_s < due_s + 0.03 && (double)now.hazard.tcpa_s > due_s - 0.3);
     const goe_flight_obstacle_t kept = obstacle_of(&flown);
     CHECK_CLOSE(1.0, at.center_ned_m[0] + 50.0f, kept.center_ned_m[0]);
     CHECK_CLOSE(1.0, at.center_ned_m[1] - 30.0f, kept.center_ned_m[1]);
@@ -112,7 +112,7 @@ static void check_same_but_for_down(double down_m) {
     CHECK_CLOSE(0.01, still.height_m, moved.height_m);
     CHECK_CLOSE(0.01, still.width_m, moved.width_m);
     CHECK_CLOSE(0.01, still.hazard.clearance_m, moved.hazard.clearance_m);
-    CHECK_CLOSE(0.01, still.hazard.violation, moved.hazard.violation);
+    CHECK_CLOSE(0.01, still.hazard.conflict_probability, moved.hazard.conflict_probability);
 }
 
 /* GIVEN a descent, by boxes or by points WHEN down jumps by a known amount, the height that the autopilot gives with it or not
@@ -172,11 +172,11 @@ static void a_jump_of_down_between_lost_images_counts(void) {
     flown.scene.glide_deg = other.scene.glide_deg = 3.0;
     (void)flown_fly(&flown, 2.5);
     (void)flown_fly(&other, 2.5);
-    flown.sees = other.sees = false;
+    flown.detects = other.detects = false;
     jump_down(&flown, -5.0f, true);
     (void)flown_fly(&flown, 0.5);
     (void)flown_fly(&other, 0.5);
-    flown.sees = other.sees = true;
+    flown.detects = other.detects = true;
     (void)flown_fly(&flown, 1.0);
     (void)flown_fly(&other, 1.0);
     check_same_but_for_down(-5.0);
@@ -209,11 +209,11 @@ static void a_mark_counts_in_its_own_axes_only(void) {
 static void a_track_after_the_jump_has_the_ground_of_its_own_time(void) {
     for (int follows = 0; follows < 2; follows++) {
         setUp();
-        flown.sees = false;
+        flown.detects = false;
         (void)flown_fly(&flown, 1.0);
         jump_down(&flown, 5.0f, follows != 0);
         (void)flown_fly(&flown, 0.5);
-        flown.sees = true;
+        flown.detects = true;
         (void)flown_fly(&flown, 2.5);
         CHECK_CLOSE(1e-3, flown.scene.ground_d_m + (follows != 0 ? 0.0 : 5.0), obstacle_of(&flown).center_ned_m[2]);
     }
@@ -221,7 +221,7 @@ static void a_track_after_the_jump_has_the_ground_of_its_own_time(void) {
 
 /* ---------------------------------------------------------------------------------------------------- unknown, skipped -- */
 
-/* [GOE_FLIGHT_RESETS_COUNT] A counter that rose by two hides a jump that nobody told. */
+/* [GOE_FLIGHT_RESETS_COUNT] A counter that rose by two hides a jump that nobody reported. */
 static void a_counter_that_skips_is_an_unknown_jump(void) {
     (void)flown_fly(&flown, 3.0);
     flown.reset_horizontal++;
@@ -258,16 +258,16 @@ static void a_reset_of_the_heading_ends_the_tracks(void) {
     TEST_ASSERT_EQUAL(1, flown.flight.counters.lost);
 }
 
-/* The delta is told again after an image that was refused: it hangs on the slot's latest image that was taken. */
-static void a_jump_between_lost_images_is_told_with_the_next_one(void) {
+/* The delta is given again after an image that was refused: it depends on the slot's latest accepted image. */
+static void a_jump_between_lost_images_is_reported_with_the_next_one(void) {
     (void)flown_fly(&flown, 2.5);
     (void)flown_fly(&other, 2.5);
-    flown.sees = other.sees = false;
+    flown.detects = other.detects = false;
     jump(&flown, 4.0f, 1.0f);
     (void)flown_fly(&flown, 0.5);
     (void)flown_fly(&other, 0.5);
     flown.jump_ned_m[0] = 4.0f;
-    flown.sees = other.sees = true;
+    flown.detects = other.detects = true;
     (void)flown_fly(&flown, 1.0);
     (void)flown_fly(&other, 1.0);
     const goe_flight_obstacle_t moved = obstacle_of(&flown);
@@ -276,8 +276,8 @@ static void a_jump_between_lost_images_is_told_with_the_next_one(void) {
     CHECK_CLOSE(0.02, still.center_ned_m[1] + 1.0f, moved.center_ned_m[1]);
 }
 
-/* The autopilot starts anew: its clock begins at 0 again. */
-static void a_clock_that_was_set_back_starts_everything_anew(void) {
+/* The autopilot starts again: its clock begins at 0 again. */
+static void a_clock_that_was_set_back_starts_everything_again(void) {
     flown.start_us = 900000000u;
     (void)flown_fly(&flown, 3.0);
     goe_flight_attitude_t attitude;
@@ -309,7 +309,7 @@ int main(void) {
     RUN_TEST(a_counter_that_skips_is_an_unknown_jump);
     RUN_TEST(a_time_of_reset_may_change_by_any_step);
     RUN_TEST(a_reset_of_the_heading_ends_the_tracks);
-    RUN_TEST(a_jump_between_lost_images_is_told_with_the_next_one);
-    RUN_TEST(a_clock_that_was_set_back_starts_everything_anew);
+    RUN_TEST(a_jump_between_lost_images_is_reported_with_the_next_one);
+    RUN_TEST(a_clock_that_was_set_back_starts_everything_again);
     return UNITY_END();
 }

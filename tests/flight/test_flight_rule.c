@@ -1,4 +1,5 @@
-/* Which way is taken, how clear a standing order is, and when it ends: against plain models of the README's rule. SPDX-License-Identifier: MIT
+/* Which way is taken, how clear an active order is, and when it ends: against plain models of the README's rule. SPDX-License-Identifier:
+ * MIT
  *
  * Any places about any order on any course. How clear one way is test_flight_clear.c knows; here it is which way counts. */
 #include <math.h>
@@ -36,7 +37,7 @@ static double between(double low, double high) { return check_random_between(&an
 static bool one_in(int n) { return between(0.0, (double)n) < 1.0; }
 static double turn_m(void) { return SPEED_M_S * SPEED_M_S / (GRAVITY_M_S2 * tan(30.0 * PI / 180.0)); }
 
-/* An order on a line through the origin, and an aircraft beside it; whatever stands about. */
+/* An order on a line through the origin, and an aircraft next to it; with any obstacles. */
 static void any_standing_order(void) {
     static const uint8_t actions[] = {GOE_FLIGHT_LEFT, GOE_FLIGHT_RIGHT, GOE_FLIGHT_HOLD, GOE_FLIGHT_CLIMB,
                                       GOE_FLIGHT_GO_AROUND};
@@ -123,7 +124,8 @@ static bool is_more(double a, double b, double tie) {
     return a > b;
 }
 
-/* Not behind by its radius and the margin, nor beyond what is needed to avoid it again, nor aside of both the line and the aircraft. */
+/* Not behind by its radius and the margin, nor beyond the distance needed to avoid it again, nor aside of both the line and the aircraft.
+ * */
 static bool is_in_the_way(int i, double aside_m) {
     const goe_flight_slot_t *slot = &flight.slot[i];
     const double place[2] = {(double)slot->center_ne_m[0], (double)slot->center_ne_m[1]};
@@ -197,7 +199,7 @@ static double share_of_order(const goe_flight_reaction_t *r) {
     return share_of(&way);
 }
 
-/* The next one on the line of those in the way: the nearest ahead but for what stands on the outer side of a side. */
+/* The next one on the line of those in the way: the nearest ahead except those on the outer side of a side. */
 static int next_of(double aside_m) {
     double least_m = 1.0e4;
     int next = -1;
@@ -245,14 +247,14 @@ static bool is_farther_out(const goe_flight_reaction_t *r, int next) {
 /* ------------------------------------------------------------------------------------------------------------- tests -- */
 
 /* [flight.hold_s, goe_flight_assessment_t.clear_m]
- * GIVEN any order that stands THEN it ends once nothing is in the way and the way back is clear: at once if its obstacle lies behind,
- * else after hold_s. Till then it tells how clear it is, and turns to the next obstacle once its own is out of the way, but not back into
- * what lies ahead. */
-static void an_order_stands_as_long_as_something_is_in_the_way(void) {
+ * GIVEN any active order THEN it ends once nothing is in the way and the way back is clear: at once if its obstacle lies behind,
+ * else after hold_s. Till then it reports how clear it is, and turns to the next obstacle once its own is out of the way, but not back into
+ * an obstacle ahead. */
+static void an_order_stays_active_as_long_as_something_is_in_the_way(void) {
     int ended = 0;
     int waits = 0;
     int turned_to = 0;
-    int told = 0;
+    int reported = 0;
     for (int n = 0; n < TRIALS; n++) {
         any_standing_order();
         const goe_flight_reaction_t before = flight.reaction;
@@ -312,14 +314,14 @@ static void an_order_stands_as_long_as_something_is_in_the_way(void) {
             CHECK_CLOSE(0.02, share * (double)flight.settings.margin_m, r->clear_m);
             CHECK_CLOSE(0.02, followed.target_ned_m[0], r->target_ned_m[0]);
             CHECK_CLOSE(0.02, followed.target_ned_m[1], r->target_ned_m[1]);
-            told++;
+            reported++;
         }
     }
     check_report("ended", (double)ended);
     check_report("over, and waits", (double)waits);
     check_report("turned to the next", (double)turned_to);
-    check_report("clear", (double)told);
-    TEST_ASSERT_TRUE(ended > 300 && waits > 100 && turned_to > 50 && told > 1000);
+    check_report("clear", (double)reported);
+    TEST_ASSERT_TRUE(ended > 300 && waits > 100 && turned_to > 50 && reported > 1000);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ choice -- */
@@ -338,7 +340,7 @@ typedef struct {
 static met_t meet(int i) {
     const goe_flight_slot_t *slot = &flight.slot[i];
     const goe_flight_settings_t *settings = &flight.settings;
-    const double doubt = slot->suspect ? (double)settings->doubt : 1.0;
+    const double doubt = slot->suspect ? (double)settings->suspect_factor : 1.0;
     const double top_m = (double)slot->top_m + 2.0 * (double)slot->top_sd_m + doubt * (double)settings->clearance_m;
     met_t met;
     met.counts = slots[i].counts;
@@ -378,11 +380,11 @@ static void prefer(choice_t *best, const choice_t *other) {
 }
 
 /* Over everything on the course, each in time; a top far behind only raises the height. */
-static void try_climb(double soonest_s, choice_t *best) {
+static void try_climb(double earliest_tcpa_s, choice_t *best) {
     const met_t about = meet(0);
     choice_t climb = {own.approach ? GOE_FLIGHT_GO_AROUND : GOE_FLIGHT_CLIMB, 1.0, 0.0, 0.0, {0.0, 0.0}, 0.0};
     double rise_m = about.rise_m;
-    bool possible = (about.has_top || own.approach) && is_more(soonest_s, climb_s(about.rise_m), NEAR_TIE);
+    bool possible = (about.has_top || own.approach) && is_more(earliest_tcpa_s, climb_s(about.rise_m), NEAR_TIE);
     for (int i = 1; i < GOE_FLIGHT_SLOTS; i++) {
         const met_t other = meet(i);
         if (!flight.slot[i].used || !other.counts || !other.is_on_course) {
@@ -475,17 +477,17 @@ static choice_t best_hold(void) {
     return best;
 }
 
-static choice_t choose(double soonest_s) {
+static choice_t choose(double earliest_tcpa_s) {
     choice_t best = {GOE_FLIGHT_NONE, -100.0, 0.0, 0.0, {0.0, 0.0}, 0.0};
     if (own.approach) {
-        try_climb(soonest_s, &best);
+        try_climb(earliest_tcpa_s, &best);
     }
     if (best.action != GOE_FLIGHT_NONE) {
         return best;
     }
     try_side(1, &best);
     try_side(-1, &best);
-    try_climb(soonest_s, &best);
+    try_climb(earliest_tcpa_s, &best);
     if (best.action != GOE_FLIGHT_NONE && is_more(best.share, 0.75, NEAR_TIE)) {
         return best;
     }
@@ -517,22 +519,22 @@ static void any_hazard(void) {
     }
     flight.slot[0].valid = (uint8_t)(flight.slot[0].valid | GOE_HAS_POSITION | GOE_HAS_WIDTH);
     flight.slot[0].assessed = true;
-    flight.slot[0].hazard.violation = 1.0f;
-    flight.slot[0].hazard.time_s = (float)between(1.0, 9.0);
+    flight.slot[0].hazard.conflict_probability = 1.0f;
+    flight.slot[0].hazard.tcpa_s = (float)between(1.0, 9.0);
 }
 
 /* [flight.margin_m, flight.clearance_m, flight.bank_deg, flight.climb_m_s, goe_flight_assessment_t.needed_s]
- * GIVEN any obstacles THEN the way that is taken, its point, its height and what is told of it are those of the rule. */
+ * GIVEN any obstacles THEN the chosen way, its point, its height and its reports are those of the rule. */
 static void the_way_that_is_taken_is_that_of_the_rule(void) {
     int taken[GOE_FLIGHT_HOLD + 1] = {0, 0, 0, 0, 0, 0};
     for (int n = 0; n < TRIALS; n++) {
         any_hazard();
         near_tie = false;
         begin_frame(0.0);
-        const double soonest_s = (double)flight.slot[0].hazard.time_s;
-        const choice_t choice = choose(soonest_s);
-        const bool due = is_more(choice.needed_s + (double)flight.settings.reserve_s, soonest_s, NEAR_TIE);
-        const bool late = is_more(choice.needed_s, soonest_s, NEAR_TIE);
+        const double earliest_tcpa_s = (double)flight.slot[0].hazard.tcpa_s;
+        const choice_t choice = choose(earliest_tcpa_s);
+        const bool due = is_more(choice.needed_s + (double)flight.settings.reserve_s, earliest_tcpa_s, NEAR_TIE);
+        const bool late = is_more(choice.needed_s, earliest_tcpa_s, NEAR_TIE);
         if (near_tie) {
             continue;
         }
@@ -569,6 +571,6 @@ static void the_way_that_is_taken_is_that_of_the_rule(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_way_that_is_taken_is_that_of_the_rule);
-    RUN_TEST(an_order_stands_as_long_as_something_is_in_the_way);
+    RUN_TEST(an_order_stays_active_as_long_as_something_is_in_the_way);
     return UNITY_END();
 }

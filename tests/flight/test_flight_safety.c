@@ -1,13 +1,13 @@
-/* Whatever comes in, nothing but finite numbers comes out. SPDX-License-Identifier: MIT
+/* Any input, only finite output. SPDX-License-Identifier: MIT
  *
- * Invariants, held after every call on random, extreme and broken input, spoiled flights among it:
+ * Invariants, checked after every call on random, extreme and broken input, spoiled flights among it:
  *   - the status is one of those that goe_flight.h names;
- *   - every number of every output is finite, told by its exponent bits, and so is every number of the layer's own state;
+ *   - every number of every output is finite, judged by its exponent bits, and so is every number of the layer's own state;
  *   - a call that failed, and one that was answered by GOE_FLIGHT_TOO_NEW, changed nothing but counters (a clock that was set
- *     back, which starts everything anew, is the one exception);
+ *     back, which starts everything again, is the one exception);
  *   - actions, slots and sectors lie in their ranges; probabilities lie in 0 to 1;
  *   - no byte before or behind the state is touched.
- * Floats are judged by bits alone, so that the test holds also where the layer was compiled with -ffast-math. GOE_TEST_SEED and
+ * Floats are judged by bits alone, so the test also works where the layer was compiled with -ffast-math. GOE_TEST_SEED and
  * GOE_TEST_UPDATES set seed and length. */
 #include <math.h>
 #include <stddef.h>
@@ -70,12 +70,12 @@ static bool is_probability(const float *x) {
 
 static void check_status(goe_flight_status_t status) {
     TEST_ASSERT_TRUE((status <= GOE_FLIGHT_TOO_NEW && status >= GOE_FLIGHT_NOTHING) ||
-                     (status <= GOE_FLIGHT_BAD_SETTINGS && status >= GOE_FLIGHT_NOT_INITIALISED));
+                     (status <= GOE_FLIGHT_BAD_SETTINGS && status >= GOE_FLIGHT_NOT_INITIALIZED));
 }
 
 static void check_hazard(const goe_hazard_t *hazard) {
-    check_floats(&hazard->time_s, 7, "hazard");
-    TEST_ASSERT_TRUE(is_probability(&hazard->violation));
+    check_floats(&hazard->tcpa_s, 7, "hazard");
+    TEST_ASSERT_TRUE(is_probability(&hazard->conflict_probability));
 }
 
 static void check_slots(void) {
@@ -167,7 +167,7 @@ static void fuzz_position(void) {
 static void fuzz_pixel(goe_pixel_t *pixel) {
     pixel->u_px = some(0.0, 1280.0);
     pixel->v_px = some(0.0, 1280.0);
-    pixel->seen = one_in(8);
+    pixel->visible = one_in(8);
 }
 
 /* Mostly a mast 300 m ahead of where a flight begins. */
@@ -182,7 +182,7 @@ static void fuzz_detection(goe_flight_detection_t *d) {
     d->box.right_px = d->box.left_px + 6.0f * size_px * some(0.9, 1.1);
     d->box.top_px = some(639.0, 641.0) - 20.0f * size_px;
     d->box.bottom_px = some(639.0, 641.0) + 20.0f * size_px;
-    d->box.seen = one_in(20) ? (uint8_t)below(256) : GOE_SEES_BOX;
+    d->box.sides = one_in(20) ? (uint8_t)below(256) : GOE_SIDES_ALL;
     if (one_in(6)) {
         fuzz_pixel(&d->left);
         fuzz_pixel(&d->right);
@@ -335,7 +335,7 @@ static void settings_out_of_range_are_named(void) {
                           goe_flight_init(&memory.flight, sizeof memory.flight, &estimator, &settings, &bad));
         TEST_ASSERT_NOT_NULL(bad);
         goe_flight_assessment_t a;
-        TEST_ASSERT_EQUAL(GOE_FLIGHT_NOT_INITIALISED, goe_flight_assess(&memory.flight, 0u, false, &a));
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_NOT_INITIALIZED, goe_flight_assess(&memory.flight, 0u, false, &a));
     }
     const char *bad = NULL;
     estimator.camera.width_px = 0.0f;
@@ -377,11 +377,11 @@ static void a_quaternion_must_be_one(void) {
 }
 
 /* GIVEN a pose and no obstacle THEN none is there, in no slot. */
-static void an_empty_slot_holds_nothing(void) {
+static void an_empty_slot_contains_nothing(void) {
     goe_flight_obstacle_t o;
     static flown_t flown;
     flown_start(&flown, NULL);
-    flown.sees = false;
+    flown.detects = false;
     (void)flown_fly(&flown, 1.0);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_NOTHING, goe_flight_obstacle(&flown.flight, 0, &o));
     TEST_ASSERT_EQUAL(GOE_FLIGHT_NOTHING, goe_flight_obstacle(&flown.flight, -1, &o));
@@ -408,7 +408,7 @@ static void null_pointers_are_refused(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_BAD_ARGUMENT, goe_flight_sectors(&memory.flight, 100u, NULL));
     TEST_ASSERT_EQUAL(GOE_FLIGHT_BAD_ARGUMENT, goe_flight_timesync(NULL, 0u, 0u));
     TEST_ASSERT_EQUAL(GOE_FLIGHT_BAD_ARGUMENT, goe_flight_restart(NULL));
-    TEST_ASSERT_EQUAL(GOE_FLIGHT_NOT_INITIALISED, goe_flight_restart(&memory.flight));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NOT_INITIALIZED, goe_flight_restart(&memory.flight));
 }
 
 int main(void) {
@@ -416,7 +416,7 @@ int main(void) {
     RUN_TEST(anything_does_no_harm);
     RUN_TEST(settings_out_of_range_are_named);
     RUN_TEST(a_quaternion_must_be_one);
-    RUN_TEST(an_empty_slot_holds_nothing);
+    RUN_TEST(an_empty_slot_contains_nothing);
     RUN_TEST(null_pointers_are_refused);
     return UNITY_END();
 }

@@ -21,10 +21,10 @@ static goe_flight_status_t assess(goe_flight_assessment_t *now) {
     return goe_flight_assess(&flown.flight, flown_now_us(&flown), false, now);
 }
 
-/* GIVEN any one flipped bit of what is sealed THEN frames and assessments say so, and nothing is "clear". */
-static void every_flip_of_the_settings_is_told(void) {
+/* GIVEN any one flipped bit of the sealed memory THEN frames and assessments report it, and nothing is "clear". */
+static void every_flip_of_the_settings_is_reported(void) {
     const size_t first = 8u * offsetof(goe_flight_t, seal);
-    const size_t end = 8u * (offsetof(goe_flight_t, attitude_white_deg) + sizeof(float));
+    const size_t end = 8u * (offsetof(goe_flight_t, attitude_white_sd_deg) + sizeof(float));
     goe_flight_assessment_t now;
     goe_flight_frame_t frame;
     (void)flown_fly(&flown, 3.0);
@@ -52,11 +52,12 @@ static void settings_change_in_flight_and_nothing_is_lost(void) {
     twin = flown.flight;
     settings.margin_m = 1.0f;
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_change_settings(&flown.flight, &settings, NULL));
-    TEST_ASSERT_EQUAL_MEMORY(&twin.attitude_white_deg, &flown.flight.attitude_white_deg,
-                             sizeof twin - offsetof(goe_flight_t, attitude_white_deg));
+    TEST_ASSERT_EQUAL_MEMORY(&twin.attitude_white_sd_deg, &flown.flight.attitude_white_sd_deg,
+                             sizeof twin - offsetof(goe_flight_t, attitude_white_sd_deg));
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, assess(&after));
     TEST_ASSERT_EQUAL_INT(before.worst, after.worst);
-    TEST_ASSERT_TRUE(after.hazard.violation < before.hazard.violation); /* a smaller margin is violated less surely */
+    TEST_ASSERT_TRUE(after.hazard.conflict_probability <
+                     before.hazard.conflict_probability); /* a smaller margin is violated less surely */
     settings.margin_m = twin.settings.margin_m;
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_change_settings(&flown.flight, &settings, NULL));
     TEST_ASSERT_EQUAL_MEMORY(&twin.settings, &flown.flight.settings, sizeof twin.settings);
@@ -80,7 +81,7 @@ static void refused_settings_change_nothing(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_CORRUPTED, goe_flight_change_settings(&flown.flight, NULL, NULL));
     TEST_ASSERT_EQUAL_MEMORY(&twin, &flown.flight, sizeof twin);
     memset(&flown.flight, 0, sizeof flown.flight);
-    TEST_ASSERT_EQUAL(GOE_FLIGHT_NOT_INITIALISED, goe_flight_change_settings(&flown.flight, NULL, NULL));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NOT_INITIALIZED, goe_flight_change_settings(&flown.flight, NULL, NULL));
 }
 
 /* GIVEN changed settings WHEN none are passed THEN the defaults hold. */
@@ -106,7 +107,7 @@ static bool is_finite(const void *at, size_t bytes) {
     return true;
 }
 
-/* GIVEN one flipped bit anywhere behind what is sealed WHEN pose, assessment and obstacles are asked for THEN no number is infinite and
+/* GIVEN one flipped bit anywhere behind the sealed memory WHEN pose, assessment and obstacles are requested THEN no number is infinite and
  * no enumerator is outside of its list. */
 static void no_flipped_bit_makes_an_output_infinite(void) {
     static goe_flight_t whole;
@@ -148,8 +149,8 @@ static void a_bool_of_any_bits_counts_as_set(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_position(&flown.flight, &position));
     TEST_ASSERT_TRUE(flown.flight.origin_known == 1);
     goe_flight_detection_t detection = flown_detection(&flown, flown.sample - 6);
-    memset(&detection.top.seen, 255, sizeof detection.top.seen);
-    memset(&detection.base_near.seen, 2, sizeof detection.base_near.seen);
+    memset(&detection.top.visible, 255, sizeof detection.top.visible);
+    memset(&detection.base_near.visible, 2, sizeof detection.base_near.visible);
     const goe_flight_frame_t frame = flown_frame(&flown, flown.sample - 6, &detection, 1);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(&flown.flight, &frame));
 }
@@ -183,7 +184,7 @@ static void step_anyhow(void) {
     (void)goe_flight_frame(&flown.flight, &frame);
 }
 
-static int seen_slot(void) {
+static int known_slot(void) {
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         if (flown.flight.slot[i].used) {
             return i;
@@ -192,20 +193,20 @@ static int seen_slot(void) {
     return -1;
 }
 
-/* GIVEN an obstacle ahead WHEN a setting or what is known of the track is lost in its estimator THEN it stays the worst one, no less
- * likely to be hit and suspect, until the estimator, begun anew with the settings of another, knows its place again. */
+/* GIVEN an obstacle ahead WHEN a setting or the state of its track is lost in its estimator THEN it stays the worst one, no less
+ * likely to be hit and suspect, until the estimator, started again with the settings of another, knows its position again. */
 static void warning_outlasts(size_t offset) {
     const goe_flight_assessment_t before = flown_fly(&flown, 7.0);
-    const int slot = seen_slot();
+    const int slot = known_slot();
     goe_flight_slot_t *s = &flown.flight.slot[slot];
     const goe_settings_t settings = s->estimator.settings;
-    TEST_ASSERT_TRUE(before.worst == slot && before.hazard.violation > 0.5f && !before.suspect);
+    TEST_ASSERT_TRUE(before.worst == slot && before.hazard.conflict_probability > 0.5f && !before.suspect);
     memset((unsigned char *)&s->estimator + offset, 0xFF, sizeof(float));
     bool remembered = false;
     for (int k = 0; k < 20; k++) {
         const goe_flight_assessment_t now = flown_fly(&flown, 0.2);
         TEST_ASSERT_EQUAL_INT(slot, now.worst);
-        TEST_ASSERT_TRUE(now.hazard.violation > 0.4f);
+        TEST_ASSERT_TRUE(now.hazard.conflict_probability > 0.4f);
         TEST_ASSERT_TRUE(now.suspect || !s->remembered);
         remembered = remembered || s->remembered;
     }
@@ -223,7 +224,7 @@ static void a_warning_outlasts_its_estimators_settings(void) {
 
 static void a_warning_outlasts_its_track(void) { warning_outlasts(offsetof(goe_estimator_t, motion.origin_ne_m)); }
 
-/* GIVEN that the settings of every estimator are lost WHEN one of them is to begin anew THEN the layer is to be begun anew. */
+/* GIVEN that the settings of every estimator are lost WHEN one of them must start again THEN the layer must be started again. */
 static void without_any_settings_the_layer_says_so(void) {
     goe_flight_assessment_t now;
     (void)flown_fly(&flown, 7.0);
@@ -243,7 +244,7 @@ static void without_any_settings_the_layer_says_so(void) {
 static void indices_stay_in_their_arrays(void) {
     goe_flight_assessment_t now;
     (void)flown_fly(&flown, 7.0);
-    const int slot = seen_slot();
+    const int slot = known_slot();
     const goe_flight_t good = flown.flight;
     for (int value = 0; value < 256; value++) {
         flown.flight = good;
@@ -273,7 +274,7 @@ int main(void) {
     RUN_TEST(settings_change_in_flight_and_nothing_is_lost);
     RUN_TEST(refused_settings_change_nothing);
     RUN_TEST(no_settings_are_the_defaults);
-    RUN_TEST(every_flip_of_the_settings_is_told);
+    RUN_TEST(every_flip_of_the_settings_is_reported);
     RUN_TEST(a_warning_outlasts_its_estimators_settings);
     RUN_TEST(a_warning_outlasts_its_track);
     RUN_TEST(without_any_settings_the_layer_says_so);

@@ -1,7 +1,7 @@
 /* Neither the compass, nor a place, nor a hand is preferred. SPDX-License-Identifier: MIT
  *
  * Random encounters with one to four obstacles, whose orders are obeyed, are decided twice: as they are, and in a world that is turned,
- * moved or mirrored. Both decide alike. */
+ * moved or mirrored. Both decisions are the same. */
 #include <math.h>
 #include <string.h>
 
@@ -93,7 +93,7 @@ static void put(const world_t *world, goe_flight_t *to, int i, uint32_t time_us)
     slot->used = slot->assessed = true;
     slot->valid = (uint8_t)(GOE_HAS_POSITION | GOE_HAS_WIDTH | (now.has_top[i] ? GOE_HAS_HEIGHT : 0));
     slot->suspect = now.suspect[i];
-    slot->taken_us = slot->seen_us = time_us;
+    slot->taken_us = slot->detected_us = time_us;
     place(world, now.at_ne_m[i], slot->center_ne_m, false);
     slot->ground_down_m = (float)world->moved_ned_m[2];
     slot->covariance_ne_m2[0] = (float)(c * c * v[0] - 2.0 * c * s * cross + s * s * v[2]);
@@ -101,9 +101,9 @@ static void put(const world_t *world, goe_flight_t *to, int i, uint32_t time_us)
     slot->covariance_ne_m2[2] = (float)(s * s * v[0] + 2.0 * c * s * cross + c * c * v[2]);
     slot->width_m = slot->length_m = (float)now.width_m[i];
     slot->top_m = now.has_top[i] ? (float)now.top_m[i] : 0.0f;
-    slot->hazard.violation = fabs(right) < now.width_m[i] + 6.0 ? (ahead > 0.0 ? 0.9f : 0.0f) : 0.0f;
-    slot->hazard.time_s = (float)(ahead / now.speed_m_s);
-    slot->hazard.time_sd_s = 0.3f;
+    slot->hazard.conflict_probability = fabs(right) < now.width_m[i] + 6.0 ? (ahead > 0.0 ? 0.9f : 0.0f) : 0.0f;
+    slot->hazard.tcpa_s = (float)(ahead / now.speed_m_s);
+    slot->hazard.tcpa_sd_s = 0.3f;
 }
 
 /* Returns the time that the best action needs. */
@@ -120,8 +120,8 @@ static float decide(const world_t *world, goe_flight_t *to, uint32_t time_us) {
     int worst = -1;
     for (int i = 0; i < now.obstacles; i++) {
         put(world, to, i, time_us);
-        const bool is_hazard = to->slot[i].hazard.violation > 0.0f;
-        worst = is_hazard && (worst < 0 || to->slot[i].hazard.time_s < to->slot[worst].hazard.time_s) ? i : worst;
+        const bool is_hazard = to->slot[i].hazard.conflict_probability > 0.0f;
+        worst = is_hazard && (worst < 0 || to->slot[i].hazard.tcpa_s < to->slot[worst].hazard.tcpa_s) ? i : worst;
     }
     return goe_flight_reaction_decide(to, worst, &own);
 }
@@ -131,22 +131,22 @@ static unsigned mirrored(unsigned action) {
 }
 
 /* False: rounding has decided between two ways that are as good. */
-static bool is_alike(const world_t *world, float needed_s, float other_needed_s) {
+static bool is_similar(const world_t *world, float needed_s, float other_needed_s) {
     const goe_flight_reaction_t *a = &flight[0].reaction;
     const goe_flight_reaction_t *b = &flight[1].reaction;
     const double target_m[2] = {(double)a->target_ned_m[0], (double)a->target_ned_m[1]};
     float there_m[2];
     place(world, target_m, there_m, false);
-    bool alike = (world->mirror < 0.0 ? mirrored(a->action) : a->action) == b->action && a->slot == b->slot &&
+    bool equal = (world->mirror < 0.0 ? mirrored(a->action) : a->action) == b->action && a->slot == b->slot &&
                  a->late == b->late && a->reason == b->reason && a->changes == b->changes &&
                  fabs((double)(needed_s - other_needed_s)) < 0.02 && fabs((double)(a->clear_m - b->clear_m)) < 0.1;
     if (a->action != GOE_FLIGHT_NONE) {
         const double down_m = (double)a->target_ned_m[2] + world->moved_ned_m[2];
-        alike = alike && fabs((double)(there_m[0] - b->target_ned_m[0])) < 0.1 &&
+        equal = equal && fabs((double)(there_m[0] - b->target_ned_m[0])) < 0.1 &&
                 fabs((double)(there_m[1] - b->target_ned_m[1])) < 0.1 &&
                 fabs(down_m - (double)b->target_ned_m[2]) < 0.05;
     }
-    return alike;
+    return equal;
 }
 
 /* Turns towards the target of a side or a circle, and back to the heading of before; climbs. */
@@ -166,7 +166,7 @@ static void obey(double line) {
     }
 }
 
-/* The target of a side lies on that side of the obstacle that the order is about, as seen along the course on which it was chosen. */
+/* The target of a side is on that side of the order's obstacle, looking along the course on which it was chosen. */
 static bool is_on_its_side(void) {
     const goe_flight_reaction_t *r = &flight[0].reaction;
     if ((r->action != GOE_FLIGHT_LEFT && r->action != GOE_FLIGHT_RIGHT) || r->slot < 0) {
@@ -187,7 +187,7 @@ static void jump(world_t *world) {
     goe_flight_reaction_shift(&flight[1].reaction, jump_ned_m);
 }
 
-static bool is_encounter_alike(world_t *world, double loiter_m, bool jumps) {
+static bool is_encounter_symmetric(world_t *world, double loiter_m, bool jumps) {
     const double line = now.heading;
     unsigned before = GOE_FLIGHT_NONE;
     for (int i = 0; i < 2; i++) {
@@ -205,7 +205,7 @@ static bool is_encounter_alike(world_t *world, double loiter_m, bool jumps) {
         }
         const float needed_s = decide(&as_it_is, &flight[0], time_us);
         const float other_needed_s = decide(world, &flight[1], time_us);
-        if (!is_alike(world, needed_s, other_needed_s)) {
+        if (!is_similar(world, needed_s, other_needed_s)) {
             return false;
         }
         TEST_ASSERT_TRUE(is_on_its_side());
@@ -219,7 +219,7 @@ static bool is_encounter_alike(world_t *world, double loiter_m, bool jumps) {
 /* Rounding may decide one encounter in a hundred, and of two sides that are exactly as good the right one is taken. */
 static void check_world(bool is_turned, bool is_moved, bool is_mirrored, bool jumps) {
     const int least = is_mirrored ? 95 : 99; /* percent */
-    int alike = 0;
+    int equal = 0;
     for (int n = 0; n < ENCOUNTERS; n++) {
         world_t world = as_it_is;
         const double angle = is_turned ? between(-PI, PI) : 0.0;
@@ -230,9 +230,9 @@ static void check_world(bool is_turned, bool is_moved, bool is_mirrored, bool ju
             world.moved_ned_m[i] = between(-400.0, 400.0);
         }
         any_encounter();
-        alike += is_encounter_alike(&world, n % 2 == 0 ? 0.0 : between(60.0, 90.0), jumps) ? 1 : 0;
+        equal += is_encounter_symmetric(&world, n % 2 == 0 ? 0.0 : between(60.0, 90.0), jumps) ? 1 : 0;
     }
-    TEST_ASSERT_TRUE_MESSAGE(100 * alike >= least * ENCOUNTERS, "encounters decided alike");
+    TEST_ASSERT_TRUE_MESSAGE(100 * equal >= least * ENCOUNTERS, "encounters decided equally");
     for (int action = GOE_FLIGHT_LEFT; action <= GOE_FLIGHT_HOLD; action++) {
         TEST_ASSERT_TRUE_MESSAGE(orders[action] > 0, "each order is given");
     }

@@ -46,19 +46,19 @@ static void an_obstacle_is_found_where_it_is(void) {
     CHECK_CLOSE(2.0, center[1], obstacle.center_ned_m[1]);
     CHECK_CLOSE(1.5, 12.0, obstacle.height_m);
     CHECK_CLOSE(1e-3, flown.scene.ground_d_m, obstacle.center_ned_m[2]);
-    TEST_ASSERT_TRUE(obstacle.in_view && !obstacle.passed && obstacle.has_hazard);
+    TEST_ASSERT_TRUE(obstacle.in_view && !obstacle.receding && obstacle.has_hazard);
 }
 
 /* Of what the estimator knows, and the manual of the layer lists, and nothing else. */
-static void valid_says_what_an_obstacle_tells(void) {
-    const unsigned told =
+static void valid_lists_the_fields_of_an_obstacle(void) {
+    const unsigned reported =
         GOE_HAS_POSITION | GOE_HAS_HEIGHT | GOE_HAS_WIDTH | GOE_HAS_LENGTH | GOE_HAS_ORIENTATION; /* of goe_flight.h */
     goe_flight_obstacle_t obstacle;
     (void)flown_fly(&flown, 3.0);
     for (unsigned bit = 1u; bit < 0x100u; bit <<= 1) {
         flown.flight.slot[0].valid = (uint8_t)bit;
         TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_obstacle(&flown.flight, 0, &obstacle));
-        TEST_ASSERT_EQUAL_HEX(bit & told, obstacle.valid);
+        TEST_ASSERT_EQUAL_HEX(bit & reported, obstacle.valid);
     }
 }
 
@@ -128,31 +128,31 @@ static bool lives_by(frame_kind_t kind) {
 
 /* GIVEN frames of which nothing can be read, or that announce detections and bring none THEN the detector is not alive; by empty ones, or
  * weak detections, it is. */
-static void what_cannot_be_read_is_no_sign_of_life(void) {
+static void unreadable_input_is_no_sign_of_life(void) {
     TEST_ASSERT_TRUE(lives_by(FRAME_EMPTY));
     TEST_ASSERT_TRUE(lives_by(FRAME_WEAK));
     TEST_ASSERT_FALSE(lives_by(FRAME_NOT_A_NUMBER));
     TEST_ASSERT_FALSE(lives_by(FRAME_PROMISED));
 }
 
-/* GIVEN an obstacle ahead on the course WHEN it is not seen for longer than forget_s THEN it is kept, and so is its warning, until it is
+/* GIVEN an obstacle ahead on the course WHEN it is undetected for longer than track_timeout_s THEN it is kept, and so is its warning, until it is
  * passed. */
-static void what_stands_ahead_is_not_forgotten(void) {
+static void an_obstacle_ahead_is_not_forgotten(void) {
     goe_flight_settings_t settings;
     goe_flight_settings_default(&settings);
-    settings.forget_s = 1.0f;
+    settings.track_timeout_s = 1.0f;
     flown_start(&flown, &settings);
     flown.scene.x0_m = 0.0;
     flown.scene.z0_m = 200.0;
     flown.scene.height_m = 40.0;
     const goe_flight_assessment_t before = flown_fly(&flown, 4.0);
-    TEST_ASSERT_TRUE(before.hazard.violation > 0.5f && before.hazard.time_s > 3.0f);
-    flown.sees = false;
-    const double left_s = (double)before.hazard.time_s;
+    TEST_ASSERT_TRUE(before.hazard.conflict_probability > 0.5f && before.hazard.tcpa_s > 3.0f);
+    flown.detects = false;
+    const double left_s = (double)before.hazard.tcpa_s;
     for (int k = 1; k < (int)(5.0 * left_s) - 3; k++) {
         const goe_flight_assessment_t now = flown_fly(&flown, 0.2);
         TEST_ASSERT_EQUAL(1, now.obstacles);
-        TEST_ASSERT_TRUE(now.hazard.violation > 0.5f);
+        TEST_ASSERT_TRUE(now.hazard.conflict_probability > 0.5f);
     }
     for (int k = 0; k < 30; k++) {
         (void)flown_fly(&flown, 0.5);
@@ -193,12 +193,12 @@ static void the_hazard_counts_from_now(void) {
     const uint32_t now_us = flown_now_us(&flown);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_assess(&flown.flight, now_us, false, &first));
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_assess(&flown.flight, now_us + 100000u, false, &later));
-    CHECK_CLOSE(1e-4, first.hazard.time_s - 0.1f, later.hazard.time_s);
-    goe_plan_t plan = {{(float)flown.scene.speed_mps, 0.0f, 0.0f}, 15.0f, 10.0f, 0.0f, 0.0f};
+    CHECK_CLOSE(1e-4, first.hazard.tcpa_s - 0.1f, later.hazard.tcpa_s);
+    goe_intent_t intent = {{(float)flown.scene.speed_mps, 0.0f, 0.0f}, 15.0f, 10.0f, 0.0f, 0.0f};
     goe_hazard_t hazard;
-    TEST_ASSERT_EQUAL(GOE_OK, goe_hazard(&flown.flight.slot[0].estimator, &plan, &hazard));
+    TEST_ASSERT_EQUAL(GOE_OK, goe_hazard(&flown.flight.slot[0].estimator, &intent, &hazard));
     /* the newest sample is number 149, the latest frame that has arrived shows number 140 */
-    CHECK_CLOSE(1e-3, (double)hazard.time_s - 0.18, first.hazard.time_s);
+    CHECK_CLOSE(1e-3, (double)hazard.tcpa_s - 0.18, first.hazard.tcpa_s);
 }
 
 /* [flight.confirm_images] */
@@ -253,10 +253,10 @@ static void a_renumbered_obstacle_keeps_its_track(void) {
     TEST_ASSERT_TRUE((flown.flight.slot[0].valid & GOE_HAS_POSITION) != 0u);
 }
 
-/* While the obstacle is not seen, a box of another size over its place does not become its. */
+/* While the obstacle is undetected, a box of another size over its position does not join its track. */
 static void a_box_of_another_size_takes_nothing_over(void) {
     (void)flown_fly(&flown, 3.0);
-    flown.sees = false;
+    flown.detects = false;
     for (int k = 0; k < 20; k++) {
         (void)flown_step(&flown);
         if (flown.sample % 5 == 3) {
@@ -299,28 +299,28 @@ static void another_obstacle_takes_nothing_over(void) {
     TEST_ASSERT_EQUAL_UINT32(99u, flown.flight.slot[1].id);
 }
 
-static void what_is_not_seen_any_more_is_given_up(void) {
+static void a_vanished_obstacle_is_given_up(void) {
     (void)flown_fly(&flown, 3.0);
-    flown.sees = false;
+    flown.detects = false;
     (void)flown_fly(&flown, 9.0);
     TEST_ASSERT_EQUAL(1, slots_used());
     (void)flown_fly(&flown, 2.0);
     TEST_ASSERT_EQUAL(0, slots_used());
 }
 
-/* What comes into a slot that was given up is not what an order was about. */
+/* A new track in a slot that was given up is not the obstacle of the order. */
 static void an_order_does_not_pass_to_the_next_in_its_slot(void) {
     (void)flown_fly(&flown, 3.04); /* an image came with sample 150 */
     flown.flight.reaction.action = GOE_FLIGHT_LEFT;
     flown.flight.reaction.slot = 0;
-    flown.flight.slot[0].seen_us -= 31000000u;
+    flown.flight.slot[0].detected_us -= 31000000u;
     const goe_flight_assessment_t now = flown_fly(&flown, 0.02);
     TEST_ASSERT_EQUAL(0, slots_used());
     TEST_ASSERT_EQUAL(-1, now.avoided);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, now.action); /* for hold_s */
 }
 
-/* [flight.alive_s] */
+/* [flight.detector_timeout_s] */
 static void a_dead_detector_is_not_a_clear_sky(void) {
     flown.scene.width_m = flown.scene.length_m = 4.0;
     flown.scene.height_m = 12.0;
@@ -341,8 +341,8 @@ static void a_dead_detector_is_not_a_clear_sky(void) {
     TEST_ASSERT_EQUAL_UINT16(GOE_FLIGHT_SECTOR_UNKNOWN, sector_cm[3]);
 }
 
-/* GIVEN an obstacle WHEN nothing is known of the own attitude or place any more THEN there is nowhere to tell of it from. */
-static void without_a_pose_no_obstacle_is_told(void) {
+/* GIVEN an obstacle WHEN the own attitude or position is no longer known THEN it cannot be reported. */
+static void without_a_pose_no_obstacle_is_reported(void) {
     goe_flight_obstacle_t obstacle;
     (void)flown_fly(&flown, 3.0);
     const goe_flight_t kept = flown.flight;
@@ -403,18 +403,18 @@ static void the_autopilots_clock_may_wrap(void) {
     other.start_us = 0xFFFFFFFFu - 2000000u;
     const goe_flight_assessment_t here = flown_fly(&flown, 4.0);
     const goe_flight_assessment_t there = flown_fly(&other, 4.0);
-    CHECK_SAME(here.hazard.time_s, there.hazard.time_s);
-    CHECK_SAME(here.hazard.violation, there.hazard.violation);
+    CHECK_SAME(here.hazard.tcpa_s, there.hazard.tcpa_s);
+    CHECK_SAME(here.hazard.conflict_probability, there.hazard.conflict_probability);
     TEST_ASSERT_EQUAL(1, there.obstacles);
     TEST_ASSERT_EQUAL(0, other.flight.counters.late);
 }
 
 /* [flight.score_min] GIVEN a track THEN a weak detection, or one of no numbers, is nobody's: it shows no obstacle, and takes none over. */
-static void what_is_not_looked_at_is_nobodys(void) {
+static void an_unassigned_detection_belongs_to_no_track(void) {
     for (int kind = 0; kind < 4; kind++) {
         setUp();
         (void)flown_fly(&flown, 3.0);
-        const uint32_t seen_us = flown.flight.slot[0].seen_us;
+        const uint32_t detected_us = flown.flight.slot[0].detected_us;
         TEST_ASSERT_TRUE(flown.flight.slot[0].in_view);
         goe_flight_detection_t detection = flown_detection(&flown, flown.sample - 1);
         detection.id = kind % 2 == 0 ? 99u : 7u;
@@ -422,7 +422,7 @@ static void what_is_not_looked_at_is_nobodys(void) {
         const goe_flight_frame_t frame = flown_frame(&flown, flown.sample - 1, &detection, 1);
         TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(&flown.flight, &frame));
         TEST_ASSERT_EQUAL_UINT32(7u, flown.flight.slot[0].id);
-        TEST_ASSERT_EQUAL_UINT32(seen_us, flown.flight.slot[0].seen_us);
+        TEST_ASSERT_EQUAL_UINT32(detected_us, flown.flight.slot[0].detected_us);
         TEST_ASSERT_FALSE(flown.flight.slot[0].in_view);
         TEST_ASSERT_EQUAL(1, slots_used());
     }
@@ -430,13 +430,13 @@ static void what_is_not_looked_at_is_nobodys(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(what_is_not_looked_at_is_nobodys);
+    RUN_TEST(an_unassigned_detection_belongs_to_no_track);
     RUN_TEST(an_obstacle_is_found_where_it_is);
-    RUN_TEST(valid_says_what_an_obstacle_tells);
+    RUN_TEST(valid_lists_the_fields_of_an_obstacle);
     RUN_TEST(a_track_without_a_position_is_not_suspect);
     RUN_TEST(a_dead_detector_stays_dead);
-    RUN_TEST(what_cannot_be_read_is_no_sign_of_life);
-    RUN_TEST(what_stands_ahead_is_not_forgotten);
+    RUN_TEST(unreadable_input_is_no_sign_of_life);
+    RUN_TEST(an_obstacle_ahead_is_not_forgotten);
     RUN_TEST(a_height_counts_as_far_as_it_is_valid);
     RUN_TEST(the_hazard_counts_from_now);
     RUN_TEST(a_new_obstacle_waits_for_its_confirmation);
@@ -446,10 +446,10 @@ int main(void) {
     RUN_TEST(a_box_of_another_size_takes_nothing_over);
     RUN_TEST(a_detector_without_ids_is_followed_by_place);
     RUN_TEST(another_obstacle_takes_nothing_over);
-    RUN_TEST(what_is_not_seen_any_more_is_given_up);
+    RUN_TEST(a_vanished_obstacle_is_given_up);
     RUN_TEST(an_order_does_not_pass_to_the_next_in_its_slot);
     RUN_TEST(a_dead_detector_is_not_a_clear_sky);
-    RUN_TEST(without_a_pose_no_obstacle_is_told);
+    RUN_TEST(without_a_pose_no_obstacle_is_reported);
     RUN_TEST(early_frames_are_kept_by_the_caller);
     RUN_TEST(an_image_may_come_in_parts);
     RUN_TEST(the_autopilots_clock_may_wrap);

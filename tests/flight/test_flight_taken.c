@@ -24,7 +24,7 @@ void setUp(void) {
     settings.confirm_images = 1.0f;
     any = check_random_start("flight taken");
     flown_start(&flown, &settings);
-    flown.sees = false;
+    flown.detects = false;
     (void)flown_fly(&flown, 1.0);
     flight = &flown.flight;
 }
@@ -42,7 +42,7 @@ static goe_flight_detection_t good_detection(void) {
     d.box.top_px = 100.0f;
     d.box.right_px = 1040.0f;
     d.box.bottom_px = 160.0f;
-    d.box.seen = GOE_SEES_BOX;
+    d.box.sides = GOE_SIDES_ALL;
     return d;
 }
 
@@ -60,7 +60,7 @@ static bool is_refused(const goe_flight_detection_t *detection) {
     return refused;
 }
 
-static void sides_count_as_far_as_they_are_seen(void) {
+static void sides_count_by_their_visible_part(void) {
     flight->had_frame = 0u;
     const float bad[] = {NAN, INFINITY, -INFINITY, 2.0e5f, -2.0e5f};
     for (unsigned seen = 0u; seen < 32u; seen++) {
@@ -68,28 +68,28 @@ static void sides_count_as_far_as_they_are_seen(void) {
             for (int k = 0; k < 5; k++) {
                 goe_flight_detection_t d = good_detection();
                 float *const sides[4] = {&d.box.left_px, &d.box.top_px, &d.box.right_px, &d.box.bottom_px};
-                const unsigned bits[4] = {GOE_SEES_LEFT, GOE_SEES_TOP, GOE_SEES_RIGHT, GOE_SEES_BOTTOM};
+                const unsigned bits[4] = {GOE_SIDE_LEFT, GOE_SIDE_TOP, GOE_SIDE_RIGHT, GOE_SIDE_BOTTOM};
                 *sides[side] = bad[k];
-                d.box.seen = (uint8_t)seen;
-                TEST_ASSERT_EQUAL((seen & bits[side]) != 0u || seen > GOE_SEES_BOX, is_refused(&d));
+                d.box.sides = (uint8_t)seen;
+                TEST_ASSERT_EQUAL((seen & bits[side]) != 0u || seen > GOE_SIDES_ALL, is_refused(&d));
             }
         }
     }
 }
 
-/* Left of right, and top above bottom, where both are seen. */
+/* Left of right, and top above bottom, where both are visible. */
 static void a_box_has_an_inside(void) {
     flight->had_frame = 0u;
-    for (unsigned seen = 0u; seen <= GOE_SEES_BOX; seen++) {
+    for (unsigned seen = 0u; seen <= GOE_SIDES_ALL; seen++) {
         for (int k = 0; k < 4; k++) {
             goe_flight_detection_t d = good_detection();
-            d.box.seen = (uint8_t)seen;
+            d.box.sides = (uint8_t)seen;
             if (k < 2) {
                 d.box.right_px = d.box.left_px - (float)k;
             } else {
                 d.box.bottom_px = d.box.top_px - (float)(k - 2);
             }
-            const unsigned both = k < 2 ? GOE_SEES_LEFT | GOE_SEES_RIGHT : GOE_SEES_TOP | GOE_SEES_BOTTOM;
+            const unsigned both = k < 2 ? GOE_SIDE_LEFT | GOE_SIDE_RIGHT : GOE_SIDE_TOP | GOE_SIDE_BOTTOM;
             TEST_ASSERT_EQUAL((seen & both) == both, is_refused(&d));
         }
     }
@@ -102,7 +102,7 @@ static void points_and_numbers_have_their_ranges(void) {
         for (int k = 0; k < 16; k++) {
             goe_flight_detection_t d = good_detection();
             goe_pixel_t *const points[6] = {&d.left, &d.right, &d.top, &d.base_left, &d.base_near, &d.base_right};
-            points[point]->seen = k < 8;
+            points[point]->visible = k < 8;
             *(k % 2 == 0 ? &points[point]->u_px : &points[point]->v_px) = bad[(k / 2) % 4];
             TEST_ASSERT_EQUAL(k < 8, is_refused(&d));
         }
@@ -119,40 +119,40 @@ static void points_and_numbers_have_their_ranges(void) {
     }
 }
 
-/* -------------------------------------------------------------------------------------------------------------- room -- */
+/* -------------------------------------------------------------------------------------------------------------- free place -- */
 
 static void put_any(goe_flight_t *to, int i, uint32_t now_us) {
     goe_flight_slot_t *slot = &to->slot[i];
     slot->used = !one_in(8);
     slot->id = 100u + (uint32_t)i;
-    slot->seen_us = slot->taken_us = now_us - (uint32_t)between(0.2e6, 4.0e6);
+    slot->detected_us = slot->taken_us = now_us - (uint32_t)between(0.2e6, 4.0e6);
     slot->valid = (uint8_t)(one_in(3) ? 0 : GOE_HAS_POSITION);
     slot->assessed = slot->valid != 0u && !one_in(5);
-    slot->hazard.violation = (float)between(0.0, 0.7);
-    slot->hazard.time_s = one_in(3) ? 0.0f : (float)between(0.5, 40.0);
+    slot->hazard.conflict_probability = (float)between(0.0, 0.7);
+    slot->hazard.tcpa_s = one_in(3) ? 0.0f : (float)between(0.5, 40.0);
     slot->fresh_track = false;
 }
 
-/* The less, the sooner it is given up: a free slot; what has no position, or is passed, and was not seen for 2 s; the least violation and
- * nearness in time, below a half. */
+/* The less, the sooner it is given up: a free slot; a track without a position, or a passed one, undetected for 2 s; the least violation
+ * and nearness in time, below a half. */
 static double worth(const goe_flight_t *of, int i, uint32_t now_us) {
     const goe_flight_slot_t *slot = &of->slot[i];
-    const bool unseen = (now_us - slot->seen_us) > 2000000u;
+    const bool undetected = (now_us - slot->detected_us) > 2000000u;
     if (!slot->used) {
         return -3.0;
     }
     if (i == of->reaction.slot) {
         return 1.0;
     }
-    if (unseen && slot->valid == 0u) {
+    if (undetected && slot->valid == 0u) {
         return -2.0;
     }
     if (!slot->assessed) {
         return 1.0;
     }
-    return unseen && !(slot->hazard.time_s > 0.0f)
+    return undetected && !(slot->hazard.tcpa_s > 0.0f)
                ? -1.0
-               : (double)slot->hazard.violation + 1.0 / (1.0 + (double)slot->hazard.time_s);
+               : (double)slot->hazard.conflict_probability + 1.0 / (1.0 + (double)slot->hazard.tcpa_s);
 }
 
 /* [goe_flight_counters_t.evicted, goe_flight_counters_t.full]
@@ -186,34 +186,35 @@ static void a_new_obstacle_takes_the_place_of_the_least_worth(void) {
     TEST_ASSERT_TRUE(ends[0] > 20 && ends[1] > 20 && ends[2] > 20);
 }
 
-/* [flight.forget_s]
- * GIVEN any table THEN what was not seen for forget_s is given up, or for 30 s while an order stands; but not what stands ahead. The
- * order forgets what is given up. */
-static void what_is_old_is_given_up(void) {
+/* [flight.track_timeout_s]
+ * GIVEN any table THEN a track undetected for track_timeout_s is given up, or for 30 s while an order is active; but not an obstacle ahead. The
+ * order forgets a track that is given up. */
+static void an_old_track_is_given_up(void) {
     int given_up = 0;
     int kept = 0;
     for (int n = 0; n < TRIALS; n++) {
         static goe_flight_t copy;
         const uint32_t now_us = 100000000u;
         copy = *flight;
-        copy.settings.forget_s = one_in(3) ? 40.0f : 10.0f;
+        copy.settings.track_timeout_s = one_in(3) ? 40.0f : 10.0f;
         copy.reaction.action = (uint8_t)(one_in(2) ? GOE_FLIGHT_NONE : GOE_FLIGHT_LEFT);
         copy.reaction.slot = (int8_t)(one_in(2) ? -1 : (int)between(0.0, 3.99));
         copy.reaction.edge = (int8_t)(one_in(2) ? -1 : (int)between(0.0, 3.99));
         for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
             put_any(&copy, i, now_us);
-            copy.slot[i].seen_us = now_us - (uint32_t)between(1.0e6, 60.0e6);
+            copy.slot[i].detected_us = now_us - (uint32_t)between(1.0e6, 60.0e6);
         }
         const goe_flight_t before = copy;
         goe_flight_table_age(&copy, now_us);
         for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
             const goe_flight_slot_t *slot = &before.slot[i];
-            const double unseen_s = 1.0e-6 * (double)(now_us - slot->seen_us);
+            const double undetected_s = 1.0e-6 * (double)(now_us - slot->detected_us);
             const bool ordered = before.reaction.action != GOE_FLIGHT_NONE || before.reaction.slot == i;
-            const double most_s = ordered ? fmax(30.0, (double)copy.settings.forget_s) : (double)copy.settings.forget_s;
-            const bool ahead =
-                slot->assessed && slot->hazard.time_s > 0.0f && slot->hazard.violation >= copy.settings.violation_max;
-            const bool stays = slot->used && (ahead || unseen_s <= most_s);
+            const double most_s =
+                ordered ? fmax(30.0, (double)copy.settings.track_timeout_s) : (double)copy.settings.track_timeout_s;
+            const bool ahead = slot->assessed && slot->hazard.tcpa_s > 0.0f &&
+                               slot->hazard.conflict_probability >= copy.settings.conflict_probability_max;
+            const bool stays = slot->used && (ahead || undetected_s <= most_s);
             TEST_ASSERT_EQUAL(stays, copy.slot[i].used);
             TEST_ASSERT_EQUAL(stays && before.reaction.slot == i, copy.reaction.slot == i);
             TEST_ASSERT_EQUAL(stays && before.reaction.edge == i, copy.reaction.edge == i);
@@ -254,7 +255,7 @@ static bool seen(goe_flight_candidate_t *table, uint32_t id, uint32_t time_us, u
                  int images) {
     const goe_flight_candidate_t candidate = {
         id, time_us, {(int16_t)left_px, 0, (int16_t)(left_px + 10), 10}, camera, 0};
-    return goe_flight_candidate_seen(table, &candidate, images);
+    return goe_flight_candidate_confirm(table, &candidate, images);
 }
 
 /* [flight.confirm_images, GOE_FLIGHT_CANDIDATES] */
@@ -280,7 +281,7 @@ static void images_of_one_candidate_lie_at_most_a_second_apart(void) {
     TEST_ASSERT_TRUE(seen(table, 9u, start_us + 400u, 0, 90, 1));
 }
 
-/* A full table forgets the one that was not seen for the longest. */
+/* A full table forgets the one undetected for the longest. */
 static void a_full_table_forgets_the_oldest(void) {
     for (int oldest = 0; oldest < GOE_FLIGHT_CANDIDATES; oldest++) {
         goe_flight_candidate_t table[GOE_FLIGHT_CANDIDATES];
@@ -298,7 +299,7 @@ static void a_full_table_forgets_the_oldest(void) {
 
 /* ------------------------------------------------------------------------------------------------------------- claims -- */
 
-/* From the least to the largest of what is seen, and no smaller than 8 px. */
+/* From the least to the largest of the visible points, and no smaller than 8 px. */
 static void any_points_make_their_box(void) {
     for (int n = 0; n < TRIALS; n++) {
         goe_flight_detection_t d;
@@ -311,8 +312,8 @@ static void any_points_make_their_box(void) {
         for (int i = 0; i < 6; i++) {
             points[i]->u_px = (float)between(-size_px, size_px);
             points[i]->v_px = (float)between(-size_px, size_px);
-            points[i]->seen = one_in(2);
-            for (int axis = 0; axis < 2 && points[i]->seen; axis++) {
+            points[i]->visible = one_in(2);
+            for (int axis = 0; axis < 2 && points[i]->visible; axis++) {
                 low[axis] = fmin(low[axis], (double)(axis == 0 ? points[i]->u_px : points[i]->v_px));
                 high[axis] = fmax(high[axis], (double)(axis == 0 ? points[i]->u_px : points[i]->v_px));
             }
@@ -328,7 +329,7 @@ static void any_points_make_their_box(void) {
 }
 
 /* A box claims an obstacle by how near its middle the predicted place lies, as a share of three quarters of the box, in both axes. */
-static void a_box_claims_what_is_predicted_in_it(void) {
+static void a_box_claims_predictions_inside_it(void) {
     int some = 0;
     int none = 0;
     goe_flight_slot_t *slot = &flight->slot[0];
@@ -370,15 +371,15 @@ static void a_box_claims_what_is_predicted_in_it(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(sides_count_as_far_as_they_are_seen);
+    RUN_TEST(sides_count_by_their_visible_part);
     RUN_TEST(a_box_has_an_inside);
     RUN_TEST(points_and_numbers_have_their_ranges);
     RUN_TEST(a_new_obstacle_takes_the_place_of_the_least_worth);
-    RUN_TEST(what_is_old_is_given_up);
+    RUN_TEST(an_old_track_is_given_up);
     RUN_TEST(overlap_is_the_share_of_the_union);
     RUN_TEST(images_of_one_candidate_lie_at_most_a_second_apart);
     RUN_TEST(a_full_table_forgets_the_oldest);
     RUN_TEST(any_points_make_their_box);
-    RUN_TEST(a_box_claims_what_is_predicted_in_it);
+    RUN_TEST(a_box_claims_predictions_inside_it);
     return UNITY_END();
 }

@@ -5,7 +5,7 @@
 
 void setUp(void);
 void tearDown(void);
-void setUp(void) {} /* what the scenes share with the unit tests asks for them */
+void setUp(void) {} /* required by the scene code shared with the unit tests */
 void tearDown(void) {}
 
 #define NOISE_PX 0.5
@@ -15,18 +15,18 @@ void tearDown(void) {}
 typedef struct {
     const char *name;
     bool window, corners, boxes, cylinder, second_camera;
-    int late; /* images of the fine rate that the pose is behind by */
+    int late; /* delay of the pose in images of the fine rate */
     double north_m_s, east_m_s;
 } kind_t;
 
 static const kind_t kinds[] = {
     {"window, disc", true, false, false, true, false, 0, 0.0, 0.0},
     {"window, line", true, true, false, false, false, 0, 0.0, 0.0},
-    {"refined, disc", false, false, false, true, false, 0, 0.0, 0.0},
-    {"refined, base corners", false, true, false, false, false, 0, 0.0, 0.0},
-    {"refined, upright boxes", false, false, true, true, false, 0, 0.0, 0.0},
-    {"refined, moves, late poses", false, true, false, false, false, 4, 0.0, 5.0},
-    {"refined, two cameras", false, true, false, false, true, 0, 0.0, 0.0},
+    {"filter, disc", false, false, false, true, false, 0, 0.0, 0.0},
+    {"filter, base corners", false, true, false, false, false, 0, 0.0, 0.0},
+    {"filter, upright boxes", false, false, true, true, false, 0, 0.0, 0.0},
+    {"filter, moves, late poses", false, true, false, false, false, 4, 0.0, 5.0},
+    {"filter, two cameras", false, true, false, false, true, 0, 0.0, 0.0},
 };
 
 static void set_scene(const kind_t *kind, scene_t *scene) {
@@ -49,7 +49,7 @@ static void add_box_noise(goe_box_t *box, check_random_t *random) {
 }
 
 static void take_out_corners(goe_image_t *image) {
-    image->base_left.seen = image->base_near.seen = image->base_right.seen = false;
+    image->base_left.visible = image->base_near.visible = image->base_right.visible = false;
 }
 
 static void set_settings(const kind_t *kind, const scene_t *scene, goe_settings_t *settings) {
@@ -62,7 +62,7 @@ static void set_settings(const kind_t *kind, const scene_t *scene, goe_settings_
 #endif
 }
 
-/* As an obstacle that moves is seen, from where the aircraft was a little before. */
+/* A moving obstacle is simulated by poses of an aircraft displaced against its motion. */
 static void move_pose(const kind_t *kind, const scene_t *scene, int fine, goe_image_t *image) {
     goe_image_t before;
     const double t = fine / FINE_HZ;
@@ -83,15 +83,15 @@ bool flights_make(int which, flipped_flight_t *flight) {
     set_scene(kind, &scene);
     flight->name = kind->name;
     set_settings(kind, &scene, &flight->settings);
-    flight->plan = (goe_plan_t){{16.0f, 0.0f, 0.0f}, 15.0f, 10.0f, 0.1f, 0.0f};
+    flight->intent = (goe_intent_t){{16.0f, 0.0f, 0.0f}, 15.0f, 10.0f, 0.1f, 0.0f};
     for (int k = 0; k < FLIGHT_IMAGES; k++) {
         goe_image_t *image = &flight->image[k];
-        scene_t seen_by = scene;
+        scene_t displaced = scene;
         const int fine = 20 + STEP * k;
         const bool second = kind->second_camera && k % 2 == 1;
-        seen_by.camera.mount_yaw_deg = second ? -6.0f : 0.0f;
-        scene_image(&seen_by, fine, image, NULL);
-        move_pose(kind, &seen_by, fine, image);
+        displaced.camera.mount_yaw_deg = second ? -6.0f : 0.0f;
+        scene_image(&displaced, fine, image, NULL);
+        move_pose(kind, &displaced, fine, image);
         image->camera = second ? 1u : 0u;
         scene_add_noise(image, &random, NOISE_PX);
         add_box_noise(&image->box, &random);

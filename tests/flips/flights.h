@@ -10,7 +10,7 @@ typedef struct {
     const char *name;
     goe_settings_t settings;
     goe_image_t image[FLIGHT_IMAGES]; /* the same in every run: noise of half a pixel */
-    goe_plan_t plan;                  /* straight on */
+    goe_intent_t intent;              /* straight on */
 } flipped_flight_t;
 
 /* Flight number `which`; false if there is none. */

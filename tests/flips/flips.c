@@ -1,14 +1,14 @@
-/* Flips each bit of the estimator's memory between two images, flies on, and counts per field what became of it.
+/* Flips each bit of the estimator's memory between two images, flies on, and counts the outcomes per field.
  * SPDX-License-Identifier: MIT
  *
  *   goe_flips [--stride N] [--images N] [--flight N] [--moment N]
  *
- * Flips every N-th bit (by default 13; 1: all), and every bit of what decides: counts, enumerations, truth values, settings. Flies
+ * Flips every N-th bit (by default 13; 1: all), and every bit of fields that decide: counts, enumerations, bools, settings. Flies
  * on for so many images (by default 24), in all flights and after all moments or only these. A line for each flight, moment and field:
  *
  *   flips,<flight>,<images before>,<field>,<bits>,<by outcome: the columns of the first line>
  *
- * Each flip runs in a process that may die of it. Exit status 0: none died, hung, or gave an answer that is not finite or not of its
+ * Each flip runs in a process of its own. Exit status 0: none died, hung, or gave an answer that is not finite or outside its
  * enumeration; 1: some did; 2: bad usage. */
 #define _DEFAULT_SOURCE
 #include <math.h>
@@ -33,18 +33,18 @@
 static const int moments[] = {3, 12, 30};
 #define MOMENTS (int)(sizeof moments / sizeof moments[0])
 
-/* What becomes of a flipped bit; the first that holds. */
+/* Outcome of a flipped bit: the first one that applies. */
 typedef enum {
     CRASHED,    /* the process died: a sanitizer's finding, a trap */
     HUNG,       /* no end within 10 s */
     NOT_FINITE, /* an output is an infinity or a NaN */
-    UNDEFINED,  /* an output is not of its enumeration, or a truth value neither 0 nor 1 */
-    CORRUPTED,  /* a call said GOE_CORRUPTED */
-    SUSPECT,    /* an estimate was suspect, or for another reason, that otherwise is not */
-    TOLD,       /* in the end the answer is stale, or there is none, where otherwise there is a fresh one */
-    WRONG,      /* in the end a quantity is off by more than 5 sigma, and nothing says so */
-    WAS_WRONG,  /* one was, and is not in the end */
-    MASKED,     /* never off by so much */
+    UNDEFINED,  /* an output is outside its enumeration, or a bool neither 0 nor 1 */
+    CORRUPTED,  /* a call returned GOE_CORRUPTED */
+    SUSPECT,    /* an estimate was suspect, or suspect for another reason, unlike without the flip */
+    REPORTED,   /* in the end the answer is stale or missing, where without the flip it is fresh */
+    WRONG,      /* in the end the error of a quantity exceeds 5 sigma, and nothing reports it */
+    WAS_WRONG,  /* it did in between, but not in the end */
+    MASKED,     /* the error was never so large */
     OUTCOMES
 } outcome_t;
 
@@ -58,9 +58,9 @@ typedef struct {
     goe_hazard_t hazard;
 } answer_t;
 
-/* Of both processes. */
+/* Shared by both processes. */
 typedef struct {
-    unsigned bit; /* at hand */
+    unsigned bit; /* present */
     unsigned count[FIELDS_MAX][OUTCOMES];
 } shared_t;
 
@@ -111,19 +111,19 @@ static bool is_defined(const answer_t *a) {
     const goe_estimate_t *e = &a->estimate;
     const bool model = e->model == GOE_MODEL_NONE || (e->model >= GOE_MODEL_DISC && e->model <= GOE_MODEL_PRISM);
     return is_known(a->status) && is_known(a->covariance_status) && is_known(a->hazard_status) && model &&
-           (unsigned)e->method <= (unsigned)GOE_METHOD_REFINED && (unsigned)e->reason <= (unsigned)GOE_REASON_NOISE &&
-           e->valid <= 0x7Fu && byte_of(&e->fresh) <= 1u && byte_of(&e->suspect) <= 1u && e->points >= 0 &&
-           e->points <= INT16_MAX && e->nis_rows >= 0 && byte_of(&a->hazard.has_clearance) <= 1u;
+           (unsigned)e->method <= (unsigned)GOE_METHOD_FILTER && (unsigned)e->reason <= (unsigned)GOE_REASON_NOISE &&
+           e->valid <= 0x7Fu && byte_of(&e->fresh) <= 1u && byte_of(&e->suspect) <= 1u && e->images_used >= 0 &&
+           e->images_used <= INT16_MAX && e->nis_rows >= 0 && byte_of(&a->hazard.has_clearance) <= 1u;
 }
 
 static void take(goe_estimator_t *estimator, const goe_image_t *image, answer_t *answer) {
     memset(answer, 0, sizeof *answer);
     answer->status = goe_update(estimator, image, &answer->estimate);
     answer->covariance_status = goe_covariance(estimator, answer->covariance);
-    answer->hazard_status = goe_hazard(estimator, &flight.plan, &answer->hazard);
+    answer->hazard_status = goe_hazard(estimator, &flight.intent, &answer->hazard);
 }
 
-/* From the camera to the reference point, north and east: a track that began anew has other axes. */
+/* From the camera to the reference point, north and east: a restarted track has other axes. */
 static void place_of(const goe_estimate_t *e, float ne_m[2]) {
     const double c = cos((double)e->trajectory_heading_deg * RAD_PER_DEG);
     const double s = sin((double)e->trajectory_heading_deg * RAD_PER_DEG);
@@ -131,7 +131,7 @@ static void place_of(const goe_estimate_t *e, float ne_m[2]) {
     ne_m[1] = (float)(s * (double)e->z_m + c * (double)e->x_m);
 }
 
-/* The largest difference of a quantity that both know, in sigmas of the answer. */
+/* The largest difference of a quantity known to both, in sigmas of the answer. */
 static double off_by(const goe_estimate_t *a, const goe_estimate_t *e) {
     float is_ne_m[2];
     float should_ne_m[2];
@@ -169,7 +169,7 @@ static bool has_fresh(const answer_t *a) { return a->estimate.fresh && (a->estim
 
 /* ------------------------------------------------------------------------------------------------------------- flips -- */
 
-/* The worst of what one flipped bit leads to. */
+/* The worst effect of one flipped bit. */
 static outcome_t fly_on(unsigned bit) {
     static goe_estimator_t estimator;
     outcome_t worst = MASKED;
@@ -200,13 +200,13 @@ static outcome_t fly_on(unsigned bit) {
         }
         worst = now < worst ? now : worst;
     }
-    const outcome_t end = lost ? TOLD : (off > WRONG_SIGMAS ? WRONG : MASKED);
+    const outcome_t end = lost ? REPORTED : (off > WRONG_SIGMAS ? WRONG : MASKED);
     return end < worst ? end : worst;
 }
 
 static bool is_chosen(unsigned bit) { return bit % options.stride == 0u || fields[field_at(bit / 8u)].decides; }
 
-/* From the bit at hand on, until one kills it. */
+/* From the present bit on, until one kills the process. */
 static void flip_all(void) {
     for (; shared->bit < BITS; shared->bit++) {
         if (is_chosen(shared->bit)) {
@@ -217,7 +217,7 @@ static void flip_all(void) {
     }
 }
 
-/* False: no process could be made. */
+/* False: no process could be created. */
 static bool flip_in_processes(void) {
     shared->bit = 0;
     memset(shared->count, 0, sizeof shared->count);
@@ -309,7 +309,7 @@ static bool take_option(const char *name, const char *value) {
     return true;
 }
 
-/* Of one flight, after one moment or all of them. */
+/* For one flight, after one moment or all of them. */
 static int run_flight(void) {
     int status = 0;
     const int only = options.moment;

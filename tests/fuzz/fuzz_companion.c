@@ -1,8 +1,8 @@
-/* What goe_companion reads, fuzzed: its configuration, a log of orders, detections as JSON, MAVLink. SPDX-License-Identifier: MIT
+/* Fuzzes all input of goe_companion: configuration, order log, detections as JSON, MAVLink. SPDX-License-Identifier: MIT
  *
- * The first letter of the input says which: c a configuration, o a log of orders, d lines of a detector, w bytes of a link; with any
- * other the rest is messages of an autopilot: number, time to wait, length, bytes of each. Messages go the whole way: samples, clock,
- * health, assessment, orders and reports. The link is this file's own: what is sent goes nowhere. */
+ * The first letter of the input selects the kind: c a configuration, o an order log, d lines of a detector, w bytes of a link. With any
+ * other letter the rest is messages of an autopilot: number, time to wait, length and bytes of each. Messages pass through all stages:
+ * samples, clock, health, assessment, orders and reports. The link is a stand-in of this file that discards all output. */
 #include <math.h>
 #include <string.h>
 
@@ -46,7 +46,7 @@ struct link {
 static struct link in_hand;
 
 bool link_check(const char *where, char *fault, size_t fault_size) {
-    FUZZ_HOLDS(where != NULL && fault_size > 8u);
+    FUZZ_CHECK(where != NULL && fault_size > 8u);
     (void)memcpy(fault, "no link", 8);
     return *where == 'u' || *where == 's';
 }
@@ -83,8 +83,8 @@ void link_release(link_t *link) { (void)link; }
 bool link_is_answered(const link_t *link) { return link != NULL; }
 
 bool link_write(link_t *link, const uint8_t *bytes, size_t size) {
-    FUZZ_HOLDS(link == &in_hand && size > 0 && size <= MAVLINK_MAX_PACKET_LEN);
-    FUZZ_HOLDS(bytes[0] == MAVLINK_STX || bytes[0] == MAVLINK_STX_MAVLINK1);
+    FUZZ_CHECK(link == &in_hand && size > 0 && size <= MAVLINK_MAX_PACKET_LEN);
+    FUZZ_CHECK(bytes[0] == MAVLINK_STX || bytes[0] == MAVLINK_STX_MAVLINK1);
     fuzz_counts[SENT].times += size;
     return true;
 }
@@ -129,7 +129,7 @@ static void start(void) {
     config.reports_standard = 0xFu;
     config.reports_distance_increment_deg = 5;
     config.reports_distance_max_m = 300.0;
-    FUZZ_HOLDS(goe_flight_init(&flight, sizeof flight, &config.estimator, &config.flight, NULL) == GOE_FLIGHT_OK);
+    FUZZ_CHECK(goe_flight_init(&flight, sizeof flight, &config.estimator, &config.flight, NULL) == GOE_FLIGHT_OK);
     wire.link = &in_hand;
     wire.system = 1;
     wire.component = 196;
@@ -155,18 +155,18 @@ static void try_config(const uint8_t *data, size_t size) {
     error.text[0] = '\0';
     if (sink == NULL) {
         sink = fopen("/dev/null", "w");
-        FUZZ_HOLDS(sink != NULL);
+        FUZZ_CHECK(sink != NULL);
         (void)fuzz_file(1, "camera.ini", camera, sizeof camera - 1u);
     }
     const char *path = fuzz_file(0, "companion.ini", data, size);
     if (companion_config_read(path, NULL, &config, &error)) {
         fuzz_counts[CONFIGS].times++;
         companion_config_print(sink, &config);
-        FUZZ_HOLDS(goe_flight_init(&flight, sizeof flight, &config.estimator, &config.flight, NULL) == GOE_FLIGHT_OK);
+        FUZZ_CHECK(goe_flight_init(&flight, sizeof flight, &config.estimator, &config.flight, NULL) == GOE_FLIGHT_OK);
     } else {
         fuzz_counts[CONFIGS_REFUSED].times++;
-        FUZZ_HOLDS(memchr(error.text, '\0', sizeof error.text) != NULL);
-        FUZZ_HOLDS(error.text[0] != '\0' && strchr(error.text, '\n') == NULL);
+        FUZZ_CHECK(memchr(error.text, '\0', sizeof error.text) != NULL);
+        FUZZ_CHECK(error.text[0] != '\0' && strchr(error.text, '\n') == NULL);
     }
 }
 
@@ -177,8 +177,8 @@ static void try_orders(const uint8_t *data, size_t size) {
     order_left_t left;
     (void)snprintf(folder, sizeof folder, "%s", fuzz_file(2, "orders.csv", data, size));
     *strrchr(folder, '/') = '\0';
-    FUZZ_HOLDS(order_log_read(folder, &left) == left.stands);
-    FUZZ_HOLDS(isfinite(left.obstacle_ne_m[0]) && isfinite(left.obstacle_ne_m[1]) && isfinite(left.radius_m));
+    FUZZ_CHECK(order_log_read(folder, &left) == left.active);
+    FUZZ_CHECK(isfinite(left.obstacle_ne_m[0]) && isfinite(left.obstacle_ne_m[1]) && isfinite(left.radius_m));
     orders_take_over(&orders, &left);
 }
 
@@ -186,7 +186,7 @@ static void try_orders(const uint8_t *data, size_t size) {
 
 static void on_frame(void *user, const goe_flight_frame_t *frame, goe_flight_status_t status) {
     (void)user;
-    FUZZ_HOLDS(frame->count <= GOE_FLIGHT_DETECTIONS && status != GOE_FLIGHT_TOO_NEW);
+    FUZZ_CHECK(frame->count <= GOE_FLIGHT_DETECTIONS && status != GOE_FLIGHT_TOO_NEW);
     fuzz_counts[FRAMES].times++;
 }
 
@@ -196,23 +196,23 @@ static void on_line(void *user, const char *line, size_t length) {
     (void)user;
     fault.text[0] = '\0';
     if (!detection_text_read(line, length, &config, &now, &image, &fault)) {
-        FUZZ_HOLDS(fault.text[0] != '\0' && memchr(fault.text, '\0', sizeof fault.text) != NULL);
+        FUZZ_CHECK(fault.text[0] != '\0' && memchr(fault.text, '\0', sizeof fault.text) != NULL);
         fuzz_counts[LINES_REFUSED].times++;
         return;
     }
     fuzz_counts[LINES].times++;
     fuzz_counts[DETECTIONS].times += image.detections;
-    FUZZ_HOLDS(image.detections <= CAMERA_IMAGE_DETECTIONS && image.frame.number >= image.detections % 256u);
+    FUZZ_CHECK(image.detections <= CAMERA_IMAGE_DETECTIONS && image.frame.number >= image.detections % 256u);
     for (unsigned i = 0; i < image.detections; i++) {
         const goe_flight_detection_t *d = &image.detection[i];
-        FUZZ_HOLDS(d->score >= 0.0f && d->score <= 1.0f && d->pixel_px >= 0.0f);
-        FUZZ_HOLDS((d->box.seen & ~GOE_SEES_BOX) == 0u);
+        FUZZ_CHECK(d->score >= 0.0f && d->score <= 1.0f && d->pixel_px >= 0.0f);
+        FUZZ_CHECK((d->box.sides & ~GOE_SIDES_ALL) == 0u);
     }
     image_queue_add(&queue, &image);
     image_queue_run(&queue, &flight, 60000000u, on_frame, NULL);
 }
 
-/* Poses up to now, so that the images find one. */
+/* Poses up to now, so that each image has one. */
 static void fly(void) {
     for (uint32_t time_us = 59000000u; time_us <= 60000000u; time_us += 20000u) {
         goe_flight_attitude_t attitude;
@@ -224,8 +224,8 @@ static void fly(void) {
         position.position_ned_m[0] = 20.0e-6f * (float)(time_us - 59000000u);
         position.position_ned_m[2] = -20.0f;
         position.velocity_ned_m_s[0] = 20.0f;
-        FUZZ_HOLDS(goe_flight_attitude(&flight, &attitude) == GOE_FLIGHT_OK);
-        FUZZ_HOLDS(goe_flight_position(&flight, &position) == GOE_FLIGHT_OK);
+        FUZZ_CHECK(goe_flight_attitude(&flight, &attitude) == GOE_FLIGHT_OK);
+        FUZZ_CHECK(goe_flight_position(&flight, &position) == GOE_FLIGHT_OK);
     }
 }
 
@@ -243,8 +243,8 @@ static void follow(void) {
     const uint32_t clock_us = (uint32_t)autopilot_clock_us(&autopilot, now_us);
     autopilot_ask(&autopilot, now_us);
     if (health_judge(&health, now_us)) {
-        FUZZ_HOLDS(*health_text(health.doubts) != '\0');
-        FUZZ_HOLDS(margins_set(&flight, &config, health.doubts != 0));
+        FUZZ_CHECK(*health_text(health.doubts) != '\0');
+        FUZZ_CHECK(margins_set(&flight, &config, health.doubts != 0));
     }
     screen_go_on(&screen, &wire, now_us);
     if (goe_flight_assess(&flight, clock_us, autopilot.landing, &assessment) == GOE_FLIGHT_OK) {
@@ -254,8 +254,8 @@ static void follow(void) {
         reports_send_obstacles(&wire, &config, &flight, &assessment, &own);
         reports_send_status(&wire, &flight, &assessment, &own, &delay, 0);
     }
-    FUZZ_HOLDS(isfinite(autopilot_heading_deg(&autopilot)) && isfinite(autopilot_clock_sd_us(&autopilot)));
-    FUZZ_HOLDS(*autopilot_kind_text(&autopilot) != '\0');
+    FUZZ_CHECK(isfinite(autopilot_heading_deg(&autopilot)) && isfinite(autopilot_clock_sd_us(&autopilot)));
+    FUZZ_CHECK(*autopilot_kind_text(&autopilot) != '\0');
 }
 
 static void on_message(void *user, const mavlink_message_t *message) {

@@ -1,12 +1,12 @@
-/* The library's public API, fuzzed. SPDX-License-Identifier: MIT
+/* Fuzzes the library's public API. SPDX-License-Identifier: MIT
  *
- * Bytes become sections: settings, a flight past an obstacle, and so many images of it, of which some are spoiled and between some
- * of which other calls are made. The flight itself takes no bytes, so that a short input flies long tracks. After every call
- * what goe.h promises is asked (estimate_checks.h), beside that:
- *   - a refused image, and a goe_init() that fails, leave the estimator as it was but for one counter;
- *   - nothing beside the estimator and the estimate is written;
+ * Bytes become sections: settings, a flight past an obstacle, and a number of images of it. Some images are spoiled, and some are
+ * followed by other calls. The flight itself takes no bytes, so a short input flies long tracks. After every call the promises of
+ * goe.h are checked (estimate_checks.h), and these:
+ *   - a refused image, and a goe_init() that fails, leave the estimator unchanged except for one counter;
+ *   - only the estimator and the estimate are written;
  *   - the age of an older answer is the time since its image;
- *   - the same bytes give the same bits, whatever the memory held before (one input in 32). */
+ *   - the same bytes give the same bits, for any previous content of the memory (one input in 32). */
 #include <math.h>
 #include <string.h>
 
@@ -17,7 +17,7 @@
 #include "fuzz_twice.h"
 #include "guarded_estimator.h"
 
-#define UPDATES_MAX 6000 /* of one input */
+#define UPDATES_MAX 6000 /* for one input */
 #define COVARIANCE_IN 4u
 #define HAZARD_IN 8u
 
@@ -29,7 +29,7 @@ enum {
     UPDATES_REFINED,
     FRESH_WINDOW,
     FRESH_REFINED,
-    FRESH_BESIDE,
+    FRESH_WINDOW_IN_REFINED,
     FRESH_DISC,
     FRESH_LINE,
     FRESH_BOX,
@@ -45,7 +45,7 @@ enum {
     HAZARDS,
     COVARIANCES,
     TWICE,
-    STATUSES, /* from GOE_NOTHING_SEEN down */
+    STATUSES, /* from GOE_NO_DETECTION down */
     COUNTS = STATUSES + 18
 };
 
@@ -54,7 +54,7 @@ fuzz_count_t fuzz_counts[COUNTS + 1] = {{"updates", 0},
                                         {"updates_refined", 0},
                                         {"fresh_window", 0},
                                         {"fresh_refined", 0},
-                                        {"fresh_window_with_refined", 0},
+                                        {"fresh_window_with_filter", 0},
                                         {"fresh_disc", 0},
                                         {"fresh_line", 0},
                                         {"fresh_box", 0},
@@ -75,9 +75,9 @@ fuzz_count_t fuzz_counts[COUNTS + 1] = {{"updates", 0},
                                         {"hazards", 0},
                                         {"covariances", 0},
                                         {"inputs_run_twice", 0},
-                                        {"status_nothing_seen", 0},
-                                        {"status_held", 0},
-                                        {"status_collecting", 0},
+                                        {"status_no_detection", 0},
+                                        {"status_stale", 0},
+                                        {"status_converging", 0},
                                         {"status_partial", 0},
                                         {"status_ok", 0},
                                         {"status_behind_camera", 0},
@@ -88,7 +88,7 @@ fuzz_count_t fuzz_counts[COUNTS + 1] = {{"updates", 0},
                                         {"cause_bad_height", 0},
                                         {"status_no_baseline", 0},
                                         {"status_no_parallax", 0},
-                                        {"status_passed", 0},
+                                        {"status_abeam", 0},
                                         {"status_not_finite", 0},
                                         {"status_out_of_range", 0},
                                         {"status_bad_time", 0},
@@ -98,17 +98,17 @@ fuzz_count_t fuzz_counts[COUNTS + 1] = {{"updates", 0},
 static void count(int what) { fuzz_count_once(what); }
 
 static void count_update(const goe_settings_t *settings, goe_status_t status, const goe_estimate_t *e) {
-    const bool refined = settings->method == GOE_METHOD_REFINED;
+    const bool filter = settings->method == GOE_METHOD_FILTER;
     count(UPDATES);
-    count(refined ? UPDATES_REFINED : UPDATES_WINDOW);
-    count(STATUSES + (int)GOE_NOTHING_SEEN - (int)status);
+    count(filter ? UPDATES_REFINED : UPDATES_WINDOW);
+    count(STATUSES + (int)GOE_NO_DETECTION - (int)status);
     if (e->reason != GOE_REASON_NONE) {
         count(REASONS + (int)e->reason - (int)GOE_REASON_CONVENTION);
     }
     if (!e->fresh) {
         return;
     }
-    count(!refined ? FRESH_WINDOW : (e->method == GOE_METHOD_REFINED ? FRESH_REFINED : FRESH_BESIDE));
+    count(!filter ? FRESH_WINDOW : (e->method == GOE_METHOD_FILTER ? FRESH_REFINED : FRESH_WINDOW_IN_REFINED));
     count(FRESH_DISC + (int)e->model - (int)GOE_MODEL_DISC);
     if ((e->valid & GOE_HAS_VELOCITY) != 0u) {
         count(MOVERS);
@@ -124,7 +124,7 @@ static goe_estimator_t kept;
 
 static void keep(void) { memcpy(&kept, &memory.estimator, sizeof kept); }
 
-static void check_kept(void) { FUZZ_HOLDS(fuzz_same(&kept, &memory.estimator, sizeof kept)); }
+static void check_kept(void) { FUZZ_CHECK(fuzz_same(&kept, &memory.estimator, sizeof kept)); }
 
 typedef struct {
     fuzz_input_t in;
@@ -132,7 +132,7 @@ typedef struct {
     goe_settings_t settings;
     uint32_t updates;
     int64_t solved_us; /* image of the latest fresh answer */
-    int64_t taken_us;  /* ... and the latest that was not refused */
+    int64_t taken_us;  /* ... and the latest image that was not refused */
     bool has_solved;
     goe_model_t model; /* of the latest fresh answer */
     uint64_t hash;
@@ -140,35 +140,35 @@ typedef struct {
 
 /* --------------------------------------------------------------------------------------------------------------- calls -- */
 
-static goe_plan_t usual_plan(run_t *run) {
-    goe_plan_t plan;
-    memset(&plan, 0, sizeof plan);
+static goe_intent_t usual_intent(run_t *run) {
+    goe_intent_t intent;
+    memset(&intent, 0, sizeof intent);
     fuzz_noise_t *noise = &run->view.noise;
     const float speed_m_s = run->view.path.speed_m_s;
-    plan.velocity_ned_m_s[0] = speed_m_s * cosf(run->view.path.course_rad) + fuzz_noise(noise);
-    plan.velocity_ned_m_s[1] = speed_m_s * sinf(run->view.path.course_rad) + 3.0f * fuzz_noise(noise);
-    plan.velocity_ned_m_s[2] = -run->view.path.climb_m_s;
-    plan.margin_m = 15.0f + 15.0f * fuzz_noise(noise);
-    plan.clearance_m = 10.0f + 10.0f * fuzz_noise(noise);
-    plan.since_image_s = fuzz_noise_bits(noise) % 4u == 0 ? 0.5f + 0.5f * fuzz_noise(noise) : 0.0f;
-    return plan;
+    intent.velocity_ned_m_s[0] = speed_m_s * cosf(run->view.path.course_rad) + fuzz_noise(noise);
+    intent.velocity_ned_m_s[1] = speed_m_s * sinf(run->view.path.course_rad) + 3.0f * fuzz_noise(noise);
+    intent.velocity_ned_m_s[2] = -run->view.path.climb_m_s;
+    intent.margin_m = 15.0f + 15.0f * fuzz_noise(noise);
+    intent.clearance_m = 10.0f + 10.0f * fuzz_noise(noise);
+    intent.since_image_s = fuzz_noise_bits(noise) % 4u == 0 ? 0.5f + 0.5f * fuzz_noise(noise) : 0.0f;
+    return intent;
 }
 
-static goe_plan_t any_plan(fuzz_input_t *in) {
-    goe_plan_t plan;
-    memset(&plan, 0, sizeof plan);
+static goe_intent_t any_intent(fuzz_input_t *in) {
+    goe_intent_t intent;
+    memset(&intent, 0, sizeof intent);
     for (int i = 0; i < 3; i++) {
-        plan.velocity_ned_m_s[i] = fuzz_any(in, -1.0e3f, 1.0e3f);
+        intent.velocity_ned_m_s[i] = fuzz_any(in, -1.0e3f, 1.0e3f);
     }
-    plan.margin_m = fuzz_any(in, 0.0f, 1.0e4f);
-    plan.clearance_m = fuzz_any(in, 0.0f, 1.0e4f);
-    plan.since_image_s = fuzz_any(in, 0.0f, 1.0e3f);
-    plan.velocity_sd_m_s =
-        plan.margin_m > 5.0e3f ? 1.0e-2f * plan.clearance_m : 0.0f; /* the corpus has no bytes for it */
-    return plan;
+    intent.margin_m = fuzz_any(in, 0.0f, 1.0e4f);
+    intent.clearance_m = fuzz_any(in, 0.0f, 1.0e4f);
+    intent.since_image_s = fuzz_any(in, 0.0f, 1.0e3f);
+    intent.velocity_sd_m_s =
+        intent.margin_m > 5.0e3f ? 1.0e-2f * intent.clearance_m : 0.0f; /* the corpus has no bytes for it */
+    return intent;
 }
 
-/* The estimator's own latest answer is what both calls are about. */
+/* Both calls refer to the estimator's own latest answer. */
 static void ask(run_t *run, bool covariance, bool hazard) {
     const goe_estimate_t *latest = &memory.estimator.estimate;
     if (covariance) {
@@ -176,13 +176,13 @@ static void ask(run_t *run, bool covariance, bool hazard) {
         count(COVARIANCES);
     }
     if (hazard) {
-        const goe_plan_t plan = usual_plan(run);
-        check_hazard(&memory.estimator, latest, &plan, true);
+        const goe_intent_t intent = usual_intent(run);
+        check_hazard(&memory.estimator, latest, &intent, true);
         count(HAZARDS);
     }
 }
 
-/* Seconds between, as goe.h counts them: at most 4000. */
+/* Seconds between them, as goe.h counts them: at most 4000. */
 static float age_s(int64_t from_us, int64_t to_us) {
     const uint64_t span_us = (uint64_t)to_us - (uint64_t)from_us;
     return (float)(span_us < 4000000000u ? (uint32_t)span_us : 4000000000u) * 1.0e-6f;
@@ -199,25 +199,25 @@ static void follow_age(run_t *run, int64_t image_us, bool refused, const goe_est
         }
     } else if ((e->valid & GOE_HAS_POSITION) != 0u) {
         const float expected_s = age_s(run->solved_us, image_us > run->taken_us ? image_us : run->taken_us);
-        FUZZ_HOLDS(run->has_solved);
-        FUZZ_HOLDS(fuzz_bits_of(e->age_s) == fuzz_bits_of(expected_s));
+        FUZZ_CHECK(run->has_solved);
+        FUZZ_CHECK(fuzz_bits_of(e->age_s) == fuzz_bits_of(expected_s));
     }
 }
 
 static goe_status_t update(run_t *run, const goe_image_t *image) {
     const goe_estimate_t *e = &memory.estimate;
     keep();
-    memset(&memory.estimate, 0xFF, sizeof memory.estimate); /* NaN, if it were left so */
+    memset(&memory.estimate, 0xFF, sizeof memory.estimate); /* a NaN must not remain */
     const goe_status_t status = goe_update(&memory.estimator, image, &memory.estimate);
-    FUZZ_HOLDS(check_is_image_status(status));
+    FUZZ_CHECK(check_is_image_status(status));
     if (check_is_refusal(status)) {
-        kept.causes[-(int)status]++;
+        kept.fault_counts[-(int)status]++;
         check_kept();
     }
     check_estimate(&run->settings, status, e);
     guard_check();
-    if (memory.estimator.causes[-(int)GOE_BAD_HEIGHT] != kept.causes[-(int)GOE_BAD_HEIGHT]) {
-        count(STATUSES + (int)GOE_NOTHING_SEEN - (int)GOE_BAD_HEIGHT); /* told by its counter alone */
+    if (memory.estimator.fault_counts[-(int)GOE_BAD_HEIGHT] != kept.fault_counts[-(int)GOE_BAD_HEIGHT]) {
+        count(STATUSES + (int)GOE_NO_DETECTION - (int)GOE_BAD_HEIGHT); /* its counter alone reports it */
     }
     follow_age(run, image->pose.time_us, check_is_refusal(status), e);
     run->hash = check_hash(run->hash, status, e);
@@ -231,51 +231,51 @@ static goe_status_t update(run_t *run, const goe_image_t *image) {
 }
 
 static void forget(run_t *run) {
-    FUZZ_HOLDS(goe_reset(&memory.estimator) == GOE_OK);
+    FUZZ_CHECK(goe_reset(&memory.estimator) == GOE_OK);
     guard_check();
     run->has_solved = false;
     run->model = GOE_MODEL_NONE;
     count(RESETS);
 }
 
-/* True if the settings were taken; if not, nothing has changed. */
+/* True if the settings were accepted; otherwise nothing has changed. */
 static bool start(run_t *run, const goe_settings_t *settings) {
     const char *bad = "";
     keep();
     const goe_status_t status = goe_init(&memory.estimator, sizeof memory.estimator, settings, &bad);
     guard_check();
     if (status == GOE_OK) {
-        FUZZ_HOLDS(bad == NULL);
+        FUZZ_CHECK(bad == NULL);
         run->settings = *settings;
         run->has_solved = false;
         run->model = GOE_MODEL_NONE;
         count(STARTS);
         return true;
     }
-    FUZZ_HOLDS(status == GOE_BAD_SETTINGS && bad != NULL && *bad != '\0');
+    FUZZ_CHECK(status == GOE_BAD_SETTINGS && bad != NULL && *bad != '\0');
     check_kept();
     count(STARTS_REFUSED);
     return false;
 }
 
-/* Calls that are wrong in themselves change nothing. */
+/* Invalid calls change nothing. */
 static void misuse(run_t *run) {
     goe_estimator_t *estimator = &memory.estimator;
     goe_image_t image;
     goe_hazard_t hazard;
-    const goe_plan_t plan = usual_plan(run);
+    const goe_intent_t intent = usual_intent(run);
     const char *bad = "";
     memset(&image, 0, sizeof image);
     keep();
-    FUZZ_HOLDS(goe_update(NULL, &image, &memory.estimate) == GOE_BAD_ARGUMENT && memory.estimate.valid == 0u);
-    FUZZ_HOLDS(goe_update(estimator, NULL, &memory.estimate) == GOE_BAD_ARGUMENT && memory.estimate.valid == 0u);
-    FUZZ_HOLDS(goe_update(estimator, &image, NULL) == GOE_BAD_ARGUMENT);
-    FUZZ_HOLDS(goe_init(estimator, sizeof *estimator - 8u, &run->settings, &bad) == GOE_BAD_ARGUMENT && bad == NULL);
-    FUZZ_HOLDS(goe_init(estimator, sizeof *estimator, NULL, NULL) == GOE_BAD_ARGUMENT);
-    FUZZ_HOLDS(goe_init(NULL, sizeof *estimator, &run->settings, NULL) == GOE_BAD_ARGUMENT);
-    FUZZ_HOLDS(goe_covariance(estimator, NULL) == GOE_BAD_ARGUMENT && goe_reset(NULL) == GOE_BAD_ARGUMENT);
-    FUZZ_HOLDS(goe_hazard(estimator, NULL, &hazard) == GOE_BAD_ARGUMENT && !hazard.has_clearance);
-    FUZZ_HOLDS(goe_hazard(estimator, &plan, NULL) == GOE_BAD_ARGUMENT);
+    FUZZ_CHECK(goe_update(NULL, &image, &memory.estimate) == GOE_BAD_ARGUMENT && memory.estimate.valid == 0u);
+    FUZZ_CHECK(goe_update(estimator, NULL, &memory.estimate) == GOE_BAD_ARGUMENT && memory.estimate.valid == 0u);
+    FUZZ_CHECK(goe_update(estimator, &image, NULL) == GOE_BAD_ARGUMENT);
+    FUZZ_CHECK(goe_init(estimator, sizeof *estimator - 8u, &run->settings, &bad) == GOE_BAD_ARGUMENT && bad == NULL);
+    FUZZ_CHECK(goe_init(estimator, sizeof *estimator, NULL, NULL) == GOE_BAD_ARGUMENT);
+    FUZZ_CHECK(goe_init(NULL, sizeof *estimator, &run->settings, NULL) == GOE_BAD_ARGUMENT);
+    FUZZ_CHECK(goe_covariance(estimator, NULL) == GOE_BAD_ARGUMENT && goe_reset(NULL) == GOE_BAD_ARGUMENT);
+    FUZZ_CHECK(goe_hazard(estimator, NULL, &hazard) == GOE_BAD_ARGUMENT && !hazard.has_clearance);
+    FUZZ_CHECK(goe_hazard(estimator, &intent, NULL) == GOE_BAD_ARGUMENT);
     goe_settings_default(NULL);
     check_kept();
     guard_check();
@@ -289,25 +289,25 @@ static void texts(fuzz_input_t *in) {
     goe_reason_t reason;
     memcpy(&status, &number, sizeof status);
     memcpy(&reason, &number, sizeof reason);
-    FUZZ_HOLDS(*goe_status_text(status) != '\0' && strlen(goe_status_text(status)) < 32u);
-    FUZZ_HOLDS(*goe_reason_text(reason) != '\0' && strlen(goe_reason_text(reason)) < 32u);
+    FUZZ_CHECK(*goe_status_text(status) != '\0' && strlen(goe_status_text(status)) < 32u);
+    FUZZ_CHECK(*goe_reason_text(reason) != '\0' && strlen(goe_reason_text(reason)) < 32u);
 }
 
 /* ------------------------------------------------------------------------------------------------------------- sections -- */
 
 enum { CALL_RESET, CALL_HAZARD, CALL_COVARIANCE, CALL_MISUSE, CALL_TEXTS, CALL_BAD_START, CALL_SAME_START, CALLS };
 
-/* Something else between two images. */
+/* Another call between two images. */
 static void call(run_t *run) {
     goe_settings_t settings = run->settings;
-    goe_plan_t plan;
+    goe_intent_t intent;
     switch (fuzz_below(&run->in, CALLS)) {
         case CALL_RESET:
             forget(run);
             break;
         case CALL_HAZARD:
-            plan = any_plan(&run->in);
-            check_hazard(&memory.estimator, &memory.estimator.estimate, &plan, false);
+            intent = any_intent(&run->in);
+            check_hazard(&memory.estimator, &memory.estimator.estimate, &intent, false);
             break;
         case CALL_COVARIANCE:
             ask(run, true, true);
@@ -324,7 +324,7 @@ static void call(run_t *run) {
             break;
         case CALL_SAME_START:
         default:
-            FUZZ_HOLDS(start(run, &settings));
+            FUZZ_CHECK(start(run, &settings));
             break;
     }
 }
@@ -339,7 +339,7 @@ static void begin(run_t *run) {
             fuzz_change_settings(&run->in, how % 4u == 1u, &changed);
         }
         if (!start(run, &changed)) {
-            FUZZ_HOLDS(start(run, &usual));
+            FUZZ_CHECK(start(run, &usual));
         }
     } else if ((how & 4u) != 0u) {
         forget(run);
@@ -355,7 +355,7 @@ static void section(run_t *run) {
     const uint32_t limit = spoiled < 192u ? spoiled / 24u : spoiled - 128u;
     for (uint32_t i = 0; i < images && run->updates < UPDATES_MAX; i++) {
         if (fuzz_view_image(&run->view, &image) && fuzz_noise_bits(&run->view.noise) % 4u != 0u) {
-            forget(run); /* or it is not told */
+            forget(run); /* or no reset is reported */
         }
         if (fuzz_noise_bits(&run->view.noise) % 256u < limit) {
             if (fuzz_byte(&run->in) % 4u == 3u) {
@@ -368,14 +368,14 @@ static void section(run_t *run) {
     }
 }
 
-/* Of memory that was never initialised. */
+/* Memory that was never initialized. */
 static void check_not_ready(void) {
     goe_image_t image;
     float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
     memset(&image, 0, sizeof image);
-    FUZZ_HOLDS(goe_update(&memory.estimator, &image, &memory.estimate) == GOE_NOT_INITIALISED);
-    FUZZ_HOLDS(memory.estimate.valid == 0u && goe_reset(&memory.estimator) == GOE_NOT_INITIALISED);
-    FUZZ_HOLDS(goe_covariance(&memory.estimator, covariance) == GOE_NOT_INITIALISED);
+    FUZZ_CHECK(goe_update(&memory.estimator, &image, &memory.estimate) == GOE_NOT_INITIALIZED);
+    FUZZ_CHECK(memory.estimate.valid == 0u && goe_reset(&memory.estimator) == GOE_NOT_INITIALIZED);
+    FUZZ_CHECK(goe_covariance(&memory.estimator, covariance) == GOE_NOT_INITIALIZED);
 }
 
 static uint64_t fly(const uint8_t *data, size_t size, int fill) {

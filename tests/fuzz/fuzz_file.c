@@ -25,11 +25,11 @@ static void remove_all(void) {
 static void make_folder(void) {
     const char *parent = getenv("TMPDIR");
     if (parent == NULL) {
-        parent = access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp"; /* in memory, where there is such a place */
+        parent = access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp"; /* in memory where possible */
     }
     (void)snprintf(folder, sizeof folder, "%s/goe-fuzz-XXXXXX", parent);
-    FUZZ_HOLDS(mkdtemp(folder) != NULL);
-    FUZZ_HOLDS(atexit(remove_all) == 0);
+    FUZZ_CHECK(mkdtemp(folder) != NULL);
+    FUZZ_CHECK(atexit(remove_all) == 0);
 }
 
 const char *fuzz_file(int slot, const char *name, const void *bytes, size_t size) {
@@ -38,9 +38,9 @@ const char *fuzz_file(int slot, const char *name, const void *bytes, size_t size
     }
     (void)snprintf(paths[slot], sizeof paths[slot], "%s/%s", folder, name);
     FILE *to = fopen(paths[slot], "wb");
-    FUZZ_HOLDS(to != NULL);
-    FUZZ_HOLDS(fwrite(bytes, 1, size, to) == size);
-    FUZZ_HOLDS(fclose(to) == 0);
+    FUZZ_CHECK(to != NULL);
+    FUZZ_CHECK(fwrite(bytes, 1, size, to) == size);
+    FUZZ_CHECK(fclose(to) == 0);
     return paths[slot];
 }
 

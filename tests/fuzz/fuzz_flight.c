@@ -1,12 +1,12 @@
-/* The flight layer's public API, fuzzed. SPDX-License-Identifier: MIT
+/* Fuzzes the flight layer's public API. SPDX-License-Identifier: MIT
  *
- * Bytes become sections: settings, a flight past one to three obstacles, its samples of attitude and position, the frames that a
- * detector makes of it with their delay, and the calls that ask for the outcome; some samples and frames are spoiled. After every
- * call what goe_flight.h promises is asked:
- *   - the status is one that it names; every number that comes out is finite and within its range;
- *   - a call that failed, or was answered by GOE_FLIGHT_TOO_NEW, changed nothing but counters (a clock that was set back is the one
- *     exception, and told by its counter);
- *   - nothing beside the state is written; the same bytes give the same bits (one input in 32). */
+ * Bytes become sections: settings, a flight past one to three obstacles, its samples of attitude and position, the detector's frames
+ * with their delay, and the calls that query the result; some samples and frames are spoiled. After every call the promises of
+ * goe_flight.h are checked:
+ *   - the status is one of those documented; every number returned is finite and within its range;
+ *   - a call that failed, or returned GOE_FLIGHT_TOO_NEW, changed nothing but counters (a clock that was set back is the one
+ *     exception, and has its own counter);
+ *   - only the state is written; the same bytes give the same bits (one input in 32). */
 #include <math.h>
 #include <string.h>
 
@@ -21,7 +21,7 @@
 #define SOLIDS_MAX 3u
 #define SAMPLE_US 20000u
 #define SAMPLE_S 0.02f
-#define SAMPLES_MAX 6000u /* of one input */
+#define SAMPLES_MAX 6000u /* for one input */
 #define ASSESS_EVERY 5u
 #define READ_EVERY 7u
 
@@ -92,7 +92,7 @@ typedef struct {
 
 static void check_floats(const float *numbers, size_t many) {
     for (size_t i = 0; i < many; i++) {
-        FUZZ_HOLDS(fuzz_is_finite(numbers[i]));
+        FUZZ_CHECK(fuzz_is_finite(numbers[i]));
     }
 }
 
@@ -104,21 +104,22 @@ static void hash_bytes(run_t *run, const void *from, size_t size) {
 }
 
 static void check_hazard(const goe_hazard_t *h) {
-    check_floats(&h->time_s, 7);
-    FUZZ_HOLDS(h->violation >= 0.0f && h->violation <= 1.0f && h->time_s >= 0.0f && h->miss_m >= 0.0f);
-    FUZZ_HOLDS(h->time_sd_s >= 0.0f && h->miss_sd_m >= 0.0f && h->clearance_sd_m >= 0.0f);
+    check_floats(&h->tcpa_s, 7);
+    FUZZ_CHECK(h->conflict_probability >= 0.0f && h->conflict_probability <= 1.0f && h->tcpa_s >= 0.0f &&
+               h->dcpa_m >= 0.0f);
+    FUZZ_CHECK(h->tcpa_sd_s >= 0.0f && h->dcpa_sd_m >= 0.0f && h->clearance_sd_m >= 0.0f);
 }
 
 static void before_call(void) { memcpy(&kept, &memory.flight, sizeof kept); }
 
 static void after_call(run_t *run, goe_flight_status_t status) {
-    FUZZ_HOLDS(((int)status <= (int)GOE_FLIGHT_TOO_NEW && (int)status >= (int)GOE_FLIGHT_NOTHING) ||
-               ((int)status <= (int)GOE_FLIGHT_BAD_SETTINGS && (int)status >= (int)GOE_FLIGHT_NOT_INITIALISED));
-    FUZZ_HOLDS(fuzz_same(memory.before, guard, GUARD_BYTES) && fuzz_same(memory.behind, guard, GUARD_BYTES));
+    FUZZ_CHECK(((int)status <= (int)GOE_FLIGHT_TOO_NEW && (int)status >= (int)GOE_FLIGHT_NOTHING) ||
+               ((int)status <= (int)GOE_FLIGHT_BAD_SETTINGS && (int)status >= (int)GOE_FLIGHT_NOT_INITIALIZED));
+    FUZZ_CHECK(fuzz_same(memory.before, guard, GUARD_BYTES) && fuzz_same(memory.behind, guard, GUARD_BYTES));
     if (status != GOE_FLIGHT_OK && memory.flight.counters.lost == kept.counters.lost) {
         kept.counters = memory.flight.counters;
         kept.history.stale = memory.flight.history.stale;
-        FUZZ_HOLDS(fuzz_same(&kept, &memory.flight, sizeof kept));
+        FUZZ_CHECK(fuzz_same(&kept, &memory.flight, sizeof kept));
     }
     hash_bytes(run, &status, sizeof status);
     count(CALLS);
@@ -152,7 +153,7 @@ static void send_attitude(run_t *run, const goe_pose_t *pose) {
     count(ATTITUDES);
 }
 
-/* Its filter jumps, and tells by what, or does not. */
+/* Its filter jumps, and reports the jump or not. */
 static void jump(run_t *run, goe_flight_position_t *sample) {
     const uint32_t how = fuzz_byte(&run->in);
     for (int i = 0; i < 3; i++) {
@@ -266,7 +267,7 @@ static void spoil_detection(run_t *run, goe_flight_detection_t *d) {
             d->id = fuzz_byte(&run->in);
             break;
         case 2:
-            d->box.seen = fuzz_byte(&run->in);
+            d->box.sides = fuzz_byte(&run->in);
             break;
         default:
             d->pixel_px = fuzz_any(&run->in, 0.0f, 100.0f);
@@ -359,17 +360,17 @@ static void assess(run_t *run) {
     before_call();
     const goe_flight_status_t status = goe_flight_assess(&memory.flight, now_us, (run->shows & 32u) != 0, &a);
     after_call(run, status);
-    FUZZ_HOLDS((int)a.action >= (int)GOE_FLIGHT_NONE && (int)a.action <= (int)GOE_FLIGHT_HOLD);
-    FUZZ_HOLDS(a.worst >= -1 && a.worst < GOE_FLIGHT_SLOTS && a.avoided >= -1 && a.avoided < GOE_FLIGHT_SLOTS);
-    FUZZ_HOLDS(a.obstacles <= GOE_FLIGHT_SLOTS && fuzz_is_finite(a.needed_s) && a.needed_s >= 0.0f);
+    FUZZ_CHECK((int)a.action >= (int)GOE_FLIGHT_NONE && (int)a.action <= (int)GOE_FLIGHT_HOLD);
+    FUZZ_CHECK(a.worst >= -1 && a.worst < GOE_FLIGHT_SLOTS && a.avoided >= -1 && a.avoided < GOE_FLIGHT_SLOTS);
+    FUZZ_CHECK(a.obstacles <= GOE_FLIGHT_SLOTS && fuzz_is_finite(a.needed_s) && a.needed_s >= 0.0f);
     check_floats(a.target_ned_m, 3);
     check_hazard(&a.hazard);
-    FUZZ_HOLDS(status == GOE_FLIGHT_OK || (a.action == GOE_FLIGHT_NONE && a.worst == -1 && a.avoided == -1));
-    FUZZ_HOLDS(a.target_lat_e7 >= -900000000 && a.target_lat_e7 <= 900000000);
-    FUZZ_HOLDS(a.target_lon_e7 >= -1800000000 && a.target_lon_e7 <= 1800000000);
-    FUZZ_HOLDS(*goe_flight_action_text(a.action) != '\0');
+    FUZZ_CHECK(status == GOE_FLIGHT_OK || (a.action == GOE_FLIGHT_NONE && a.worst == -1 && a.avoided == -1));
+    FUZZ_CHECK(a.target_lat_e7 >= -900000000 && a.target_lat_e7 <= 900000000);
+    FUZZ_CHECK(a.target_lon_e7 >= -1800000000 && a.target_lon_e7 <= 1800000000);
+    FUZZ_CHECK(*goe_flight_action_text(a.action) != '\0');
     hash_bytes(run, a.target_ned_m, sizeof a.target_ned_m);
-    hash_bytes(run, &a.hazard.time_s, 7 * sizeof(float));
+    hash_bytes(run, &a.hazard.tcpa_s, 7 * sizeof(float));
     count(ASSESSED);
     if (a.worst >= 0) {
         count(HAZARDS);
@@ -387,16 +388,16 @@ static void read_obstacle(run_t *run, int slot) {
     memset(&o, GUARD, sizeof o);
     const goe_flight_status_t status = goe_flight_obstacle(&memory.flight, slot, &o);
     after_call(run, status);
-    FUZZ_HOLDS(fuzz_is_finite(o.age_s) && o.age_s >= 0.0f);
+    FUZZ_CHECK(fuzz_is_finite(o.age_s) && o.age_s >= 0.0f);
     check_floats(o.center_ned_m, 3);
     check_floats(o.covariance_ne_m2, 3);
     check_floats(&o.radius_m, 6);
     check_floats(o.nearest_ned_m, 3);
     check_floats(o.nearest_body_m, 3);
     check_hazard(&o.hazard);
-    FUZZ_HOLDS(o.covariance_ne_m2[0] >= 0.0f && o.covariance_ne_m2[2] >= 0.0f && o.radius_m >= 0.0f);
-    FUZZ_HOLDS(o.length_heading_deg >= 0.0f && o.length_heading_deg <= 180.0f);
-    FUZZ_HOLDS(status != GOE_FLIGHT_OK || (slot >= 0 && slot < GOE_FLIGHT_SLOTS));
+    FUZZ_CHECK(o.covariance_ne_m2[0] >= 0.0f && o.covariance_ne_m2[2] >= 0.0f && o.radius_m >= 0.0f);
+    FUZZ_CHECK(o.length_heading_deg >= 0.0f && o.length_heading_deg <= 180.0f);
+    FUZZ_CHECK(status != GOE_FLIGHT_OK || (slot >= 0 && slot < GOE_FLIGHT_SLOTS));
     hash_bytes(run, o.center_ned_m, sizeof o.center_ned_m);
     if (status == GOE_FLIGHT_OK && (o.valid & GOE_HAS_POSITION) != 0u) {
         count(OBSTACLES);
@@ -410,7 +411,7 @@ static void read_sectors(run_t *run) {
     const goe_flight_status_t status = goe_flight_sectors(&memory.flight, max_cm, sector_cm);
     after_call(run, status);
     for (int i = 0; i < GOE_FLIGHT_SECTORS && (status == GOE_FLIGHT_OK || status == GOE_FLIGHT_NO_POSE); i++) {
-        FUZZ_HOLDS(sector_cm[i] == GOE_FLIGHT_SECTOR_UNKNOWN ||
+        FUZZ_CHECK(sector_cm[i] == GOE_FLIGHT_SECTOR_UNKNOWN ||
                    (sector_cm[i] > 0u && (uint32_t)sector_cm[i] <= max_cm + 1u));
     }
     hash_bytes(run, sector_cm, sizeof sector_cm);
@@ -425,10 +426,10 @@ static void read_pose(run_t *run) {
     after_call(run, status);
     check_floats(pose.position_ned_m, 3);
     check_floats(pose.attitude, 4);
-    FUZZ_HOLDS(fuzz_is_finite(pose.height_m) && fuzz_is_finite(sd_deg) && sd_deg >= 0.0f);
+    FUZZ_CHECK(fuzz_is_finite(pose.height_m) && fuzz_is_finite(sd_deg) && sd_deg >= 0.0f);
     const float *q = pose.attitude;
     const float norm2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-    FUZZ_HOLDS(status == GOE_FLIGHT_OK ? (norm2 > 0.98f && norm2 < 1.03f) : norm2 <= 0.0f);
+    FUZZ_CHECK(status == GOE_FLIGHT_OK ? (norm2 > 0.98f && norm2 < 1.03f) : norm2 <= 0.0f);
     hash_bytes(run, pose.position_ned_m, sizeof pose.position_ned_m);
 }
 
@@ -439,7 +440,7 @@ static void read_all(run_t *run) {
     }
     read_sectors(run);
     read_pose(run);
-    FUZZ_HOLDS(fuzz_same(&kept, &memory.flight, sizeof kept));
+    FUZZ_CHECK(fuzz_same(&kept, &memory.flight, sizeof kept));
 }
 
 /* ------------------------------------------------------------------------------------------------------------ sections -- */
@@ -477,13 +478,13 @@ static void start(run_t *run) {
         fuzz_change_settings(&run->in, true, &run->settings);
     }
     if (goe_flight_init(&memory.flight, sizeof memory.flight, &run->settings, &settings, &bad) != GOE_FLIGHT_OK) {
-        FUZZ_HOLDS(bad != NULL && *bad != '\0');
+        FUZZ_CHECK(bad != NULL && *bad != '\0');
         count(STARTS_REFUSED);
         goe_settings_default(&run->settings);
         run->settings.camera.fx_px = run->settings.camera.fy_px = 900.0f;
         run->settings.camera.cx_px = run->settings.camera.cy_px = 640.0f;
         run->settings.camera.width_px = run->settings.camera.height_px = 1280.0f;
-        FUZZ_HOLDS(goe_flight_init(&memory.flight, sizeof memory.flight, &run->settings, NULL, NULL) == GOE_FLIGHT_OK);
+        FUZZ_CHECK(goe_flight_init(&memory.flight, sizeof memory.flight, &run->settings, NULL, NULL) == GOE_FLIGHT_OK);
     }
     count(STARTS);
     run->attitude_resets = run->horizontal_resets = run->vertical_resets = 0;

@@ -1,9 +1,9 @@
-/* Images of a flight, and what is done to some of them. SPDX-License-Identifier: MIT */
+/* Images of a flight, and faults in some of them. SPDX-License-Identifier: MIT */
 #include "fuzz_image.h"
 
 #define US_PER_S 1000000u
 #define PERIOD_US 125000u
-#define UNSEEN_MAX 6u /* images in a row before the flight begins anew */
+#define INVISIBLE_MAX 6u /* images in a row before the flight restarts */
 #define AHEAD_MAX_US (INT64_MAX / 2)
 
 /* ------------------------------------------------------------------------------------------------------------- images -- */
@@ -30,9 +30,9 @@ void fuzz_view_begin(fuzz_input_t *in, const goe_settings_t *settings, fuzz_view
     view->late_s = (kind & 12u) == 12u ? fuzz_between(in, -0.2f, 0.4f) : 0.0f;
     view->period_us = (kind & 48u) == 48u ? 1000u + 10u * fuzz_half(in) : PERIOD_US;
     if ((kind & 192u) == 192u) {
-        view->hint.attitude_deg = fuzz_between(in, 0.0f, 3.0f);
-        view->hint.height_m = fuzz_between(in, 0.0f, 10.0f);
-        view->hint.pixel_px = fuzz_between(in, 0.0f, 8.0f);
+        view->hint.attitude_sd_deg = fuzz_between(in, 0.0f, 3.0f);
+        view->hint.height_sd_m = fuzz_between(in, 0.0f, 10.0f);
+        view->hint.pixel_sd_px = fuzz_between(in, 0.0f, 8.0f);
     }
 }
 
@@ -45,10 +45,10 @@ static const goe_camera_t *camera_of(const fuzz_view_t *view, uint8_t number) {
 #endif
 }
 
-/* The features; none where a part of the obstacle is not ahead. */
+/* The features; none if a part of the obstacle is not ahead. */
 static void show(fuzz_view_t *view, const goe_camera_t *camera, const goe_pose_t *truth, goe_image_t *image) {
     fuzz_sight_t sight;
-    view->unseen++;
+    view->invisible++;
     if (!fuzz_look(camera, truth, &view->solid, view->t_s, &sight)) {
         return;
     }
@@ -61,12 +61,12 @@ static void show(fuzz_view_t *view, const goe_camera_t *camera, const goe_pose_t
     if ((view->shows & (FUZZ_SHOWS_POINTS | FUZZ_SHOWS_BASE)) != 0) {
         fuzz_points(camera, &sight, (view->shows & FUZZ_SHOWS_BASE) != 0, image);
     }
-    if (image->box.seen != 0 || image->left.seen || image->right.seen) {
-        view->unseen = 0;
+    if (image->box.sides != 0 || image->left.visible || image->right.visible) {
+        view->invisible = 0;
     }
 }
 
-/* A camera that hangs shows the same features under new poses. */
+/* A camera that hangs repeats the same features with new poses. */
 static void repeat(fuzz_view_t *view, goe_image_t *image) {
     if (view->frozen > 0) {
         const goe_pose_t pose = image->pose;
@@ -80,10 +80,10 @@ static void repeat(fuzz_view_t *view, goe_image_t *image) {
 
 bool fuzz_view_image(fuzz_view_t *view, goe_image_t *image) {
     goe_pose_t truth;
-    const bool anew = view->unseen > UNSEEN_MAX;
+    const bool restarted = view->invisible > INVISIBLE_MAX;
     memset(image, 0, sizeof *image);
-    if (anew) {
-        view->unseen = 0;
+    if (restarted) {
+        view->invisible = 0;
         view->t_s = 0.0f;
         fuzz_path_pose(&view->path, 0.0f, &truth);
         const float distance_m = 3.0f * truth.height_m + 70.0f + 40.0f * fuzz_noise(&view->noise);
@@ -108,10 +108,10 @@ bool fuzz_view_image(fuzz_view_t *view, goe_image_t *image) {
     image->pose.height_m += view->height_off_m;
     image->noise = view->hint;
     repeat(view, image);
-    return anew;
+    return restarted;
 }
 
-/* ----------------------------------------------------------------------------------------------------- what is spoiled -- */
+/* -------------------------------------------------------------------------------------------------------------- faults -- */
 
 #define NUMBER(field) offsetof(goe_image_t, field)
 static const size_t numbers[] = {NUMBER(left.u_px),
@@ -138,9 +138,9 @@ static const size_t numbers[] = {NUMBER(left.u_px),
                                  NUMBER(pose.attitude[1]),
                                  NUMBER(pose.attitude[2]),
                                  NUMBER(pose.attitude[3]),
-                                 NUMBER(noise.attitude_deg),
-                                 NUMBER(noise.height_m),
-                                 NUMBER(noise.pixel_px),
+                                 NUMBER(noise.attitude_sd_deg),
+                                 NUMBER(noise.height_sd_m),
+                                 NUMBER(noise.pixel_sd_px),
                                  NUMBER(pose.reset_delta_ned_m),
                                  NUMBER(pose.reset_delta_ned_m[1]),
                                  NUMBER(pose.reset_delta_ned_m[2])};
@@ -166,24 +166,24 @@ static goe_pixel_t *point_of(goe_image_t *image, uint32_t i) {
 
 static void hide(goe_image_t *image) {
     for (uint32_t i = 0; i < 6u; i++) {
-        point_of(image, i)->seen = false;
+        point_of(image, i)->visible = false;
     }
-    image->box.seen = 0;
+    image->box.sides = 0;
 }
 
 static void hide_one(fuzz_input_t *in, goe_image_t *image) {
     const uint32_t which = fuzz_byte(in);
-    point_of(image, which)->seen = false;
-    image->box.seen = (uint8_t)(image->box.seen & ~(1u << (which >> 5) % 4u));
+    point_of(image, which)->visible = false;
+    image->box.sides = (uint8_t)(image->box.sides & ~(1u << (which >> 5) % 4u));
 }
 
-/* Truth values that are neither 0 nor 1: they count as 1. Nobody but the library may read them. */
+/* Bytes of bool that are neither 0 nor 1: they count as 1. Only the library may read them. */
 static void put_truths(fuzz_input_t *in, goe_image_t *image) {
     const uint8_t truth = fuzz_byte(in);
     const uint32_t which = fuzz_byte(in);
     for (uint32_t i = 0; i < 6u; i++) {
         if ((which >> i & 1u) != 0) {
-            memset(&point_of(image, i)->seen, truth, sizeof(bool));
+            memset(&point_of(image, i)->visible, truth, sizeof(bool));
         }
     }
     memset(&image->pose.reset_delta_known, truth >> 1, sizeof(bool));
@@ -199,20 +199,20 @@ static void swap_points(fuzz_input_t *in, goe_image_t *image) {
 }
 
 static void all_bits(fuzz_input_t *in, goe_image_t *image) {
-    const uint32_t seen = fuzz_half(in);
+    const uint32_t visible = fuzz_half(in);
     const uint32_t how = fuzz_byte(in);
     fuzz_noise_t noise = {fuzz_word(in) | 1u};
     for (size_t i = 0; i < NUMBERS; i++) {
         const bool pose = i >= FEATURE_NUMBERS;
         const float bits = fuzz_float_of(fuzz_noise_bits(&noise));
-        if ((how & 1u) == 0 || !pose) { /* or the pose stays, and the numbers lie within their range */
+        if ((how & 1u) == 0 || !pose) { /* or the pose stays, and the numbers are within their range */
             put_number(image, i, (how & 2u) == 0 ? bits : 1.0e5f * fuzz_noise(&noise));
         }
     }
     for (uint32_t i = 0; i < 6u; i++) {
-        point_of(image, i)->seen = (seen >> i & 1u) != 0;
+        point_of(image, i)->visible = (visible >> i & 1u) != 0;
     }
-    image->box.seen = (uint8_t)(seen >> 8);
+    image->box.sides = (uint8_t)(visible >> 8);
 }
 
 static int64_t any_time(fuzz_input_t *in, int64_t now_us) {
@@ -223,7 +223,7 @@ static int64_t any_time(fuzz_input_t *in, int64_t now_us) {
     return times[fuzz_below(in, sizeof times / sizeof times[0])];
 }
 
-/* The filter of the autopilot jumps, by what is told or by something else. */
+/* The autopilot's filter jumps, with a reported size or with another one. */
 static void jump(fuzz_input_t *in, fuzz_view_t *view, goe_image_t *image) {
     const uint32_t how = fuzz_byte(in);
     const bool true_to_it = (how & 3u) != 0;
@@ -267,7 +267,7 @@ enum {
     SPOIL_BITS,
     SPOIL_SWAP,
     SPOIL_SIDES,
-    SPOIL_STAND,
+    SPOIL_HANG,
     SPOIL_LEAP,
     SPOIL_FROZEN,
     SPOIL_SOLID,
@@ -279,10 +279,10 @@ enum {
     SPOILS
 };
 
-/* What changes from this image on. */
+/* A lasting change from this image on. */
 static void change_flight(fuzz_input_t *in, uint32_t what, fuzz_view_t *view) {
     switch (what) {
-        case SPOIL_STAND:
+        case SPOIL_HANG:
             view->t_s -= (float)view->period_us / (float)US_PER_S;
             view->path.speed_m_s = fuzz_below(in, 2) != 0 ? 0.0f : view->path.speed_m_s;
             break;
@@ -340,7 +340,7 @@ static void spoil_features(fuzz_input_t *in, uint32_t what, fuzz_view_t *view, g
             swap_points(in, image);
             break;
         case SPOIL_SIDES:
-            image->box.seen = fuzz_byte(in);
+            image->box.sides = fuzz_byte(in);
             break;
         case SPOIL_TRUTH:
             put_truths(in, image);
@@ -367,9 +367,9 @@ static void spoil_pose(fuzz_input_t *in, uint32_t what, fuzz_view_t *view, goe_i
             image->camera = fuzz_byte(in);
             break;
         case SPOIL_HINT:
-            image->noise.attitude_deg = fuzz_any(in, 0.0f, 30.0f);
-            image->noise.height_m = fuzz_any(in, 0.0f, 1.0e3f);
-            image->noise.pixel_px = fuzz_any(in, 0.0f, 100.0f);
+            image->noise.attitude_sd_deg = fuzz_any(in, 0.0f, 30.0f);
+            image->noise.height_sd_m = fuzz_any(in, 0.0f, 1.0e3f);
+            image->noise.pixel_sd_px = fuzz_any(in, 0.0f, 100.0f);
             break;
         case SPOIL_BITS:
         default:
@@ -394,7 +394,7 @@ void fuzz_view_spoil(fuzz_input_t *in, fuzz_view_t *view, goe_image_t *image) {
         case SPOIL_BITS:
             spoil_pose(in, what, view, image);
             break;
-        case SPOIL_STAND:
+        case SPOIL_HANG:
         case SPOIL_LEAP:
         case SPOIL_SOLID:
         case SPOIL_PATH:

@@ -1,27 +1,27 @@
-/* Images of a flight, and what is done to some of them. SPDX-License-Identifier: MIT */
+/* Images of a flight, and faults in some of them. SPDX-License-Identifier: MIT */
 #ifndef FUZZ_IMAGE_H
 #define FUZZ_IMAGE_H
 
 #include "fuzz_scene.h"
 
-/* A flight past an obstacle, as one camera, or two in turn, see it. */
+/* A flight past an obstacle, as one camera or two alternating cameras show it. */
 typedef struct {
     const goe_settings_t *settings;
     fuzz_noise_t noise;
     fuzz_path_t path;
     fuzz_solid_t solid;
-    float t_s, late_s;  /* time of the flight; by how much the poses are late */
+    float t_s, late_s;  /* time of the flight; delay of the poses */
     float pixel_px;     /* noise */
-    float height_off_m; /* of the told height above ground */
-    uint32_t unseen;    /* images in a row without the obstacle */
-    int64_t now_us;     /* ... of the images */
+    float height_off_m; /* error of the height above ground */
+    uint32_t invisible; /* images in a row without the obstacle */
+    int64_t now_us;     /* ... between the images */
     uint32_t period_us;
-    float jump_ned_m[3]; /* of the autopilot's filter, so far */
+    float jump_ned_m[3]; /* resets of the autopilot's filter so far */
     uint8_t resets;
     uint8_t shows; /* FUZZ_SHOWS_... */
     goe_image_noise_t hint;
-    goe_image_t before; /* the latest image as it was made ... */
-    uint32_t frozen;    /* ... and for how many images its features are shown again */
+    goe_image_t before; /* the latest image before it was spoiled ... */
+    uint32_t frozen;    /* ... and the number of images that still repeat its features */
 } fuzz_view_t;
 
 #define FUZZ_SHOWS_BOX 1u
@@ -29,13 +29,13 @@ typedef struct {
 #define FUZZ_SHOWS_BASE 4u
 #define FUZZ_SHOWS_TWO_CAMERAS 8u
 
-/* Another flight; its times go on from those before. The settings must stay where they are. */
+/* Begins another flight; its times continue those of the previous one. The settings must remain in place. */
 void fuzz_view_begin(fuzz_input_t *in, const goe_settings_t *settings, fuzz_view_t *view);
 
-/* The next image of it. True if the obstacle was passed and the flight begins anew, far from where it was. */
+/* The next image. True if the obstacle was passed and the flight restarts, far from its last place. */
 bool fuzz_view_image(fuzz_view_t *view, goe_image_t *image);
 
-/* Something that is wrong with this image, or changes with it. */
+/* Puts a fault into this image, or begins a lasting change with it. */
 void fuzz_view_spoil(fuzz_input_t *in, fuzz_view_t *view, goe_image_t *image);
 
 #endif

@@ -1,4 +1,4 @@
-/* Decisions and numbers out of a fuzzer's bytes. SPDX-License-Identifier: MIT */
+/* Decisions and numbers from a fuzzer's bytes. SPDX-License-Identifier: MIT */
 #include "fuzz_input.h"
 
 #include <stdio.h>
@@ -7,7 +7,7 @@
 #include "fuzz.h"
 
 void fuzz_broken(const char *file, int line, const char *what) {
-    (void)fprintf(stderr, "%s:%d: does not hold: %s\n", file, line, what);
+    (void)fprintf(stderr, "%s:%d: failed: %s\n", file, line, what);
     abort();
 }
 
@@ -22,7 +22,7 @@ static unsigned char copies[2][LARGEST];
 
 bool fuzz_same(const void *a, const void *b, size_t size) {
 #ifdef LARGEST
-    FUZZ_HOLDS(size <= LARGEST);
+    FUZZ_CHECK(size <= LARGEST);
     memcpy(copies[0], a, size);
     memcpy(copies[1], b, size);
     __msan_unpoison(copies[0], size);
@@ -41,8 +41,8 @@ static const uint32_t special_bits[] = {
     0x3F800000u, 0xBF800000u, 0x33800000u, 0x4B800000u               /* 1, -1, 2^-24, 2^24 */
 };
 
-/* The next number away from zero, or towards it. */
-static float beside(float number, bool away) {
+/* The next float away from zero, or towards it. */
+static float next_to(float number, bool away) {
     const uint32_t bits = fuzz_bits_of(number);
     const uint32_t magnitude = bits & 0x7FFFFFFFu;
     return magnitude == 0u && !away ? number : fuzz_float_of(away ? bits + 1u : bits - 1u);
@@ -56,9 +56,9 @@ float fuzz_any(fuzz_input_t *in, float low, float high) {
         case 9:
             return high;
         case 10:
-            return beside(low, low < 0.0f);
+            return next_to(low, low < 0.0f);
         case 11:
-            return beside(high, high > 0.0f);
+            return next_to(high, high > 0.0f);
         case 12:
         case 13:
             return fuzz_float_of(special_bits[fuzz_below(in, sizeof special_bits / sizeof special_bits[0])]);

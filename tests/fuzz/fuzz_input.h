@@ -1,6 +1,6 @@
-/* Decisions and numbers out of a fuzzer's bytes. SPDX-License-Identifier: MIT
+/* Decisions and numbers from a fuzzer's bytes. SPDX-License-Identifier: MIT
  *
- * Bytes are taken from the front; behind their end all are 0, so that a short input is one that asks for nothing special. */
+ * Bytes are taken from the front. After their end all are 0, so that a short input means default values. */
 #ifndef FUZZ_INPUT_H
 #define FUZZ_INPUT_H
 
@@ -33,13 +33,13 @@ static inline uint32_t fuzz_word(fuzz_input_t *in) {
     return low | fuzz_half(in) << 16;
 }
 
-/* 0 to limit - 1, by one byte; limit 1 to 256. */
+/* 0 to limit - 1, from one byte; limit 1 to 256. */
 static inline uint32_t fuzz_below(fuzz_input_t *in, uint32_t limit) { return fuzz_byte(in) % limit; }
 
-/* Never once the bytes are used up. */
+/* Always false once the bytes are used up. */
 static inline bool fuzz_one_in(fuzz_input_t *in, uint32_t n) { return fuzz_byte(in) % n == n - 1u; }
 
-/* low to high, by two bytes; 0 gives low. */
+/* low to high, from two bytes; 0 gives low. */
 static inline float fuzz_between(fuzz_input_t *in, float low, float high) {
     return low + (high - low) * (float)fuzz_half(in) * (1.0f / 65535.0f);
 }
@@ -56,13 +56,13 @@ static inline uint32_t fuzz_bits_of(float number) {
     return bits;
 }
 
-/* Told by the exponent's bits, so that it holds also under -ffast-math. */
+/* Uses the exponent's bits and therefore also works under -ffast-math. */
 static inline bool fuzz_is_finite(float number) { return (fuzz_bits_of(number) & 0x7F800000u) != 0x7F800000u; }
 
-/* A number that is often a limit, or just beyond one, or special, and sometimes any bits. */
+/* A number that is often a limit, or just beyond one, or special, and sometimes arbitrary bits. */
 float fuzz_any(fuzz_input_t *in, float low, float high);
 
-/* A cheap source of noise: an input needs no bytes for it. */
+/* A cheap source of noise that takes no bytes of the input. */
 typedef struct {
     uint32_t state; /* not 0 */
 } fuzz_noise_t;

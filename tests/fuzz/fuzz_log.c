@@ -1,7 +1,7 @@
-/* What goe_replay reads, fuzzed: camera.ini, frames.csv and --set. SPDX-License-Identifier: MIT
+/* Fuzzes all input of goe_replay: camera.ini, frames.csv and --set. SPDX-License-Identifier: MIT
  *
- * The input is text: frames.csv alone; or camera.ini, a line "%%" and frames.csv; or a further "%%" and settings, a line each. What is
- * read goes through the library and out again. */
+ * The input is text: frames.csv alone; or camera.ini, a line "%%" and frames.csv; or a further "%%" and settings, one per line. The
+ * frames read go through the library, and the answers are printed. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,12 +26,12 @@ static const char usual_camera[] =
     "camera.width = 1280\ncamera.height = 1280\ncamera.fx = 914\ncamera.fy = 914\ncamera.cx = 640\n"
     "camera.cy = 640\n";
 
-static FILE *sink; /* what is written goes nowhere */
+static FILE *sink; /* the output is discarded */
 
-/* A fault is told in one line that names the file. */
+/* An error is one line that names the file. */
 static void check_error(const input_error_t *error, const char *path) {
-    FUZZ_HOLDS(memchr(error->text, '\0', sizeof error->text) != NULL);
-    FUZZ_HOLDS(strncmp(error->text, path, strlen(path)) == 0 && strchr(error->text, '\n') == NULL);
+    FUZZ_CHECK(memchr(error->text, '\0', sizeof error->text) != NULL);
+    FUZZ_CHECK(strncmp(error->text, path, strlen(path)) == 0 && strchr(error->text, '\n') == NULL);
 }
 
 static void take_settings(const char *text, size_t size, goe_settings_t *settings) {
@@ -54,11 +54,11 @@ static void take_row(const frame_t *frame, track_table_t *tracks) {
     goe_image_t image;
     goe_estimate_t estimate;
     goe_estimator_t *estimator = track_table_get(tracks, frame->id);
-    FUZZ_HOLDS(estimator != NULL);
+    FUZZ_CHECK(estimator != NULL);
     frame_to_image(frame, &image);
     const goe_status_t status = goe_update(estimator, &image, &estimate);
-    FUZZ_HOLDS((int)status >= (int)GOE_NO_HEIGHT && (int)status <= (int)GOE_NOTHING_SEEN);
-    FUZZ_HOLDS(estimate_write_row(sink, frame->time_text, frame->id, status, &estimate, true));
+    FUZZ_CHECK((int)status >= (int)GOE_NO_HEIGHT && (int)status <= (int)GOE_NO_DETECTION);
+    FUZZ_CHECK(estimate_write_row(sink, frame->time_text, frame->id, status, &estimate, true));
     fuzz_counts[ROWS].times++;
     fuzz_counts[FRESH].times += estimate.fresh ? 1u : 0u;
 }
@@ -75,7 +75,7 @@ static void take_frames(const char *text, size_t size, const goe_settings_t *set
         return;
     }
     track_table_t *tracks = track_table_new(settings, &bad);
-    FUZZ_HOLDS(tracks != NULL);
+    FUZZ_CHECK(tracks != NULL);
     frame_reader_result_t result = frame_reader_next(reader, &frame, &error);
     for (int i = 0; i < ROWS_MAX && result == FRAME_READER_ROW; i++) {
         take_row(&frame, tracks);
@@ -83,7 +83,7 @@ static void take_frames(const char *text, size_t size, const goe_settings_t *set
     }
     if (result == FRAME_READER_ERROR) {
         check_error(&error, path);
-        FUZZ_HOLDS(frame_reader_next(reader, &frame, &error) == FRAME_READER_ERROR);
+        FUZZ_CHECK(frame_reader_next(reader, &frame, &error) == FRAME_READER_ERROR);
     }
     fuzz_counts[result == FRAME_READER_ERROR ? LOGS_REFUSED : LOGS].times++;
     track_table_free(tracks);
@@ -114,7 +114,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     size_t rest_size = 0;
     if (sink == NULL) {
         sink = fopen("/dev/null", "w");
-        FUZZ_HOLDS(sink != NULL);
+        FUZZ_CHECK(sink != NULL);
     }
     fuzz_counts[INPUTS].times++;
     const size_t first = fuzz_split(text, size, &rest, &rest_size);

@@ -1,13 +1,13 @@
-/* Drives a target where libFuzzer does not. SPDX-License-Identifier: MIT
+/* Runs a target without libFuzzer. SPDX-License-Identifier: MIT
  *
  *   fuzz_<target> FILE|FOLDER...                              each file once
- *   fuzz_<target> --random SEED [OPTION...] [FILE|FOLDER...]  inputs of a generator; with files: these, mutated
- *     --work N     until the target's first count has reached N
- *     --seconds S  ... or so long
- *     --keep DIR   where an input is left that breaks something; by default the current folder
+ *   fuzz_<target> --random SEED [OPTION...] [FILE|FOLDER...]  generated inputs; with files: mutations of these
+ *     --work N     until the target's first counter has reached N
+ *     --seconds S  ... or for this time
+ *     --keep DIR   folder for an input that fails; by default the current folder
  *
- * Prints the counts as one line of JSON at the end, also on SIGINT and SIGTERM. An input that breaks something, or takes longer
- * than a minute, is left in a file, and the program ends with SIGABRT. Not for libFuzzer, which brings its own main(). */
+ * Prints the counters as one line of JSON at the end, also on SIGINT and SIGTERM. An input that fails, or takes longer
+ * than a minute, is saved to a file, and the program ends with SIGABRT. Not for libFuzzer, which has its own main(). */
 #include <dirent.h>
 #include <inttypes.h>
 #include <signal.h>
@@ -34,12 +34,12 @@ typedef struct {
 } file_t;
 
 static struct {
-    uint8_t bytes[INPUT_MAX]; /* the input at hand */
+    uint8_t bytes[INPUT_MAX]; /* the present input */
     size_t size;
     uint64_t seed, runs, random;
     file_t file[FILES_MAX];
     size_t files;
-    char name[PATH_SIZE]; /* of the file at hand, or where a broken input goes */
+    char name[PATH_SIZE]; /* path of the present file, or of a failed input */
     const char *keep;
     bool is_random;
 } fuzz;
@@ -53,11 +53,11 @@ static void stop(int number) {
     stopped = 1;
 }
 
-/* Of an input that is already a file nothing needs to be kept. Nothing here may use stdio. */
+/* An input that is already a file need not be saved. Nothing here may use stdio. */
 static void keep_broken(int number) {
     static const char says[] = "fuzz: the input is ";
     if (fuzz.is_random) {
-        FILE *to = fopen(fuzz.name, "wb"); /* not safe in a handler; the program has broken already */
+        FILE *to = fopen(fuzz.name, "wb"); /* not safe in a handler, but the program has failed already */
         if (to != NULL) {
             (void)fwrite(fuzz.bytes, 1, fuzz.size, to);
             (void)fclose(to);
@@ -77,7 +77,7 @@ static void set_signals(void) {
     (void)signal(SIGTERM, stop);
     (void)signal(SIGABRT, keep_broken);
     (void)signal(SIGALRM, keep_broken);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(FUZZ_SANITIZED) /* these tell more of the signals below */
+#if !defined(__SANITIZE_ADDRESS__) && !defined(FUZZ_SANITIZED) /* these give more detail on the signals below */
     (void)signal(SIGSEGV, keep_broken);
     (void)signal(SIGBUS, keep_broken);
     (void)signal(SIGFPE, keep_broken);
@@ -107,7 +107,7 @@ static void random_bytes(void) {
     }
 }
 
-/* Makes room for `more` bytes at a place; false: they do not fit. */
+/* Makes space for `more` bytes at a place; false: they do not fit. */
 static bool open_gap(size_t at, size_t more) {
     if (fuzz.size + more > INPUT_MAX) {
         return false;
@@ -122,7 +122,7 @@ static void close_gap(size_t at, size_t less) {
     fuzz.size -= less;
 }
 
-/* Words of the formats that parsers know, and of those that they should not. */
+/* Words of the formats that parsers accept, and of those that they must refuse. */
 static const char *const words[] = {"\n",
                                     "\r\n",
                                     ",",
@@ -161,7 +161,7 @@ static void insert_word(size_t at) {
     }
 }
 
-/* A part of some file in the place of what is here, or before it. */
+/* Replaces the bytes here by a part of some file, or inserts that part. */
 static void splice(size_t at) {
     const file_t *from = &fuzz.file[below(fuzz.files)];
     if (from->size == 0) {
@@ -192,7 +192,7 @@ static void mutate(void) {
         case 3:
             fuzz.size = at; /* cut off */
             break;
-        case 4: /* once more */
+        case 4: /* repeated */
             if (part > 0 && open_gap(at, part)) {
                 memcpy(&fuzz.bytes[at], &fuzz.bytes[at + part], part);
             }
@@ -246,7 +246,7 @@ static int take_file(const char *path) {
     }
     uint8_t *bytes = fuzz.files < FILES_MAX ? malloc(fuzz.size + 1u) : NULL;
     if (bytes == NULL) {
-        return fail(path, "no room");
+        return fail(path, "too large");
     }
     memcpy(bytes, fuzz.bytes, fuzz.size);
     fuzz.file[fuzz.files].bytes = bytes;

@@ -1,7 +1,7 @@
-/* The MAVLink messages, fuzzed from the wire to the flight layer and back. SPDX-License-Identifier: MIT
+/* Fuzzes the MAVLink messages from the wire to the flight layer and back. SPDX-License-Identifier: MIT
  *
- * The first byte names a message, the rest is its payload. It is read, packed again and put into a frame; one that tells of an
- * obstacle goes on into the flight layer. */
+ * The first byte selects a message, the rest is its payload. The payload is read, packed again and put into a frame. A message about an
+ * obstacle also goes into the flight layer. */
 #include <string.h>
 
 #include "fuzz.h"
@@ -22,7 +22,7 @@ static void start(void) {
     settings.camera.fx_px = settings.camera.fy_px = 914.0f;
     settings.camera.cx_px = settings.camera.cy_px = 640.0f;
     settings.camera.width_px = settings.camera.height_px = 1280.0f;
-    FUZZ_HOLDS(goe_flight_init(&flight, sizeof flight, &settings, NULL, NULL) == GOE_FLIGHT_OK);
+    FUZZ_CHECK(goe_flight_init(&flight, sizeof flight, &settings, NULL, NULL) == GOE_FLIGHT_OK);
     for (uint32_t time_us = 0u; time_us <= 1000000u; time_us += 20000u) {
         goe_flight_attitude_t attitude;
         goe_flight_position_t position;
@@ -31,27 +31,27 @@ static void start(void) {
         attitude.time_us = position.time_us = time_us;
         attitude.q[0] = 1.0f;
         position.position_ned_m[2] = -20.0f;
-        FUZZ_HOLDS(goe_flight_attitude(&flight, &attitude) == GOE_FLIGHT_OK);
-        FUZZ_HOLDS(goe_flight_position(&flight, &position) == GOE_FLIGHT_OK);
+        FUZZ_CHECK(goe_flight_attitude(&flight, &attitude) == GOE_FLIGHT_OK);
+        FUZZ_CHECK(goe_flight_position(&flight, &position) == GOE_FLIGHT_OK);
     }
 }
 
 static void take(bool has, const goe_mavlink_sighting_t *sighting) {
-    FUZZ_HOLDS(sighting->frame.count == (has ? 1u : 0u) && sighting->frame.detection == &sighting->detection);
+    FUZZ_CHECK(sighting->frame.count == (has ? 1u : 0u) && sighting->frame.detection == &sighting->detection);
     fuzz_counts[SIGHTINGS].times += has ? 1u : 0u;
     const goe_flight_status_t status = goe_flight_frame(&flight, &sighting->frame);
     fuzz_counts[FRAMES].times += status == GOE_FLIGHT_OK ? 1u : 0u;
 }
 
-/* What was packed is read again as the same; and of the frame nothing lies outside. */
+/* A packed message is read back as the same, and no byte outside the frame is written. */
 #define TRY(kind, name)                                                                                                \
     do {                                                                                                               \
         goe_mavlink_##name##_t message, again;                                                                         \
         goe_mavlink_read_##name(payload, size, &message);                                                              \
         length = goe_mavlink_pack_##name(&message, packed);                                                            \
         goe_mavlink_read_##name(packed, length, &again);                                                               \
-        FUZZ_HOLDS(goe_mavlink_pack_##name(&again, twice) == length);                                                  \
-        FUZZ_HOLDS(memcmp(packed, twice, length) == 0 && length <= goe_mavlink_info(kind)->length);                    \
+        FUZZ_CHECK(goe_mavlink_pack_##name(&again, twice) == length);                                                  \
+        FUZZ_CHECK(memcmp(packed, twice, length) == 0 && length <= goe_mavlink_info(kind)->length);                    \
     } while (0)
 
 static size_t try_message(goe_mavlink_message_t kind, const uint8_t *payload, size_t size, uint8_t *packed) {
@@ -127,12 +127,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     fuzz_input_t in = {data, size};
     for (uint8_t k = 0; k < UINT8_MAX && in.left > 0; k++) {
         const goe_mavlink_message_t kind = (goe_mavlink_message_t)fuzz_below(&in, GOE_MAVLINK_MESSAGES);
-        const size_t asked = fuzz_byte(&in);
-        const size_t length = asked < in.left ? asked : in.left;
+        const size_t wanted = fuzz_byte(&in);
+        const size_t length = wanted < in.left ? wanted : in.left;
         const size_t most = try_message(kind, in.next, length, packed);
         memset(frame, GUARD, sizeof frame);
         const size_t bytes = goe_mavlink_frame(&sender, kind, packed, most, frame);
-        FUZZ_HOLDS(bytes == most + 12u && frame[bytes] == GUARD);
+        FUZZ_CHECK(bytes == most + 12u && frame[bytes] == GUARD);
         try_in(kind, in.next, length);
         in.next += length;
         in.left -= length;

@@ -1,4 +1,4 @@
-/* Flights that make sense. SPDX-License-Identifier: MIT */
+/* Realistic flights. SPDX-License-Identifier: MIT */
 #include "fuzz_scene.h"
 
 #include <math.h>
@@ -83,7 +83,7 @@ void fuzz_path_pose(const fuzz_path_t *path, float t_s, goe_pose_t *pose) {
            pose->attitude);
 }
 
-/* -------------------------------------------------------------------------------------------------------- what is seen -- */
+/* ----------------------------------------------------------------------------------------------------- visible features -- */
 
 static void product(const float a[4], const float b[4], float q[4]) {
     q[0] = a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3];
@@ -113,7 +113,7 @@ static void ring_of(const fuzz_solid_t *solid, float north_m, float east_m, floa
     float half_length = 0.5f * solid->length_m;
     float half_width = 0.5f * solid->width_m;
     float back = 0.0f;
-    if (solid->round && outside) { /* tangents: nearer than the middle, and not as far aside as the radius */
+    if (solid->round && outside) { /* tangents: nearer than the middle, and less far aside than the radius */
         const float sine = half_width / distance_m;
         c = north_m / distance_m;
         s = east_m / distance_m;
@@ -183,7 +183,7 @@ void fuzz_put_ahead(const goe_camera_t *camera, const goe_pose_t *pose, float di
 bool fuzz_look(const goe_camera_t *camera, const goe_pose_t *pose, const fuzz_solid_t *solid, float t_s,
                fuzz_sight_t *sight) {
     float body[3][3], axes[3][3], at_m[3], ring[4][2];
-    fuzz_sight_t seen;
+    fuzz_sight_t found;
     matrix_of(pose->attitude, body);
     axes_of(camera, pose, axes);
     for (int i = 0; i < 3; i++) {
@@ -199,13 +199,13 @@ bool fuzz_look(const goe_camera_t *camera, const goe_pose_t *pose, const fuzz_so
         for (int k = 0; k < 3; k++) {
             in_camera[k] = axes[0][k] * to[0] + axes[1][k] * to[1] + axes[2][k] * down;
         }
-        if (!project(camera, in_camera, &seen.u_px[i], &seen.v_px[i])) {
+        if (!project(camera, in_camera, &found.u_px[i], &found.v_px[i])) {
             return false;
         }
     }
-    seen.nearest = nearest_of(ring);
-    seen.round = solid->round;
-    *sight = seen;
+    found.nearest = nearest_of(ring);
+    found.round = solid->round;
+    *sight = found;
     return true;
 }
 
@@ -239,7 +239,7 @@ goe_box_t fuzz_box(const goe_camera_t *camera, const fuzz_sight_t *sight) {
     box.right_px = clamped(sight->u_px[most(sight->u_px, 1.0f)], camera->width_px);
     box.top_px = clamped(sight->v_px[most(sight->v_px, -1.0f)], camera->height_px);
     box.bottom_px = clamped(sight->v_px[most(sight->v_px, 1.0f)], camera->height_px);
-    box.seen = box.left_px < box.right_px && box.top_px < box.bottom_px ? GOE_SEES_BOX : 0u;
+    box.sides = box.left_px < box.right_px && box.top_px < box.bottom_px ? GOE_SIDES_ALL : 0u;
     return box;
 }
 
@@ -248,8 +248,8 @@ static goe_pixel_t pixel_of(const goe_camera_t *camera, const fuzz_sight_t *sigh
     memset(&pixel, 0, sizeof pixel);
     pixel.u_px = sight->u_px[i];
     pixel.v_px = sight->v_px[i];
-    pixel.seen = !(camera->width_px > 0.0f) || (pixel.u_px >= 0.0f && pixel.u_px <= camera->width_px &&
-                                                pixel.v_px >= 0.0f && pixel.v_px <= camera->height_px);
+    pixel.visible = !(camera->width_px > 0.0f) || (pixel.u_px >= 0.0f && pixel.u_px <= camera->width_px &&
+                                                   pixel.v_px >= 0.0f && pixel.v_px <= camera->height_px);
     return pixel;
 }
 

@@ -1,4 +1,4 @@
-/* Settings that bytes ask for. SPDX-License-Identifier: MIT */
+/* Settings by the fuzzer's bytes. SPDX-License-Identifier: MIT */
 #include "fuzz_settings.h"
 
 #include "goe_settings_list.h"
@@ -40,7 +40,7 @@ static void put(const field_t *field, float value, goe_settings_t *settings) {
     }
 }
 
-/* Near the usual value, by a factor of up to 8 each way, or anywhere in the range. */
+/* Near the default, by a factor of up to 8 up or down, or anywhere in the range. */
 static float within(fuzz_input_t *in, const field_t *field) {
     float value = fuzz_between(in, field->low, field->high);
     if (field->kind == KIND_REAL && field->usual > 0.0f && fuzz_below(in, 4) != 3) {
@@ -57,7 +57,7 @@ void fuzz_change_settings(fuzz_input_t *in, bool legal, goe_settings_t *settings
     const uint32_t changes = 1u + fuzz_below(in, 6);
     for (uint32_t i = 0; i < changes; i++) {
         const uint32_t which = fuzz_byte(in);
-        const bool camera = !legal || which % 16u == 15u; /* with most others nothing would be seen */
+        const bool camera = !legal || which % 16u == 15u; /* most other values leave no obstacle in view */
         const size_t first = camera ? 0u : CAMERA_FIELDS;
         const field_t *field = &fields[first + which % (FIELDS - first)];
         const bool inside = legal || fuzz_below(in, 4) != 3;
@@ -97,7 +97,7 @@ void fuzz_usual_settings(fuzz_input_t *in, goe_settings_t *settings) {
         usual_camera(in, &settings->more_cameras[0]);
     }
 #endif
-    settings->method = (kind & 12u) == 12u ? GOE_METHOD_WINDOW : GOE_METHOD_REFINED;
+    settings->method = (kind & 12u) == 12u ? GOE_METHOD_WINDOW : GOE_METHOD_FILTER;
     settings->model = (goe_model_t)(GOE_MODEL_AUTO + (int)((kind >> 4) % 6u == 4u   ? 1
                                                            : (kind >> 4) % 6u == 5u ? 2
                                                                                     : 0));

@@ -1,6 +1,6 @@
-/* What goe_sim reads, fuzzed: recorded flights and scenarios. SPDX-License-Identifier: MIT
+/* Fuzzes all input of goe_sim: recorded flights and scenarios. SPDX-License-Identifier: MIT
  *
- * The input is text; one that begins with '[' or '#' is a scenario, any other one a recorded flight. */
+ * The input is text. If it begins with '[' or '#' it is a scenario, otherwise a recorded flight. */
 #include <math.h>
 #include <string.h>
 
@@ -18,20 +18,20 @@ fuzz_count_t fuzz_counts[COUNTS + 1] = {{"inputs", 0},    {"flights", 0},       
                                         {"scenarios", 0}, {"scenarios_refused", 0}, {NULL, 0}};
 
 static void check_fault(const char *fault, size_t size, const char *path) {
-    FUZZ_HOLDS(memchr(fault, '\0', size) != NULL && strncmp(fault, path, strlen(path)) == 0);
+    FUZZ_CHECK(memchr(fault, '\0', size) != NULL && strncmp(fault, path, strlen(path)) == 0);
 }
 
 static void check_pose(const pose_t *pose) {
     const quat_t *q = &pose->attitude;
-    FUZZ_HOLDS(isfinite(pose->position_ned_m.x) && isfinite(pose->position_ned_m.y) &&
+    FUZZ_CHECK(isfinite(pose->position_ned_m.x) && isfinite(pose->position_ned_m.y) &&
                isfinite(pose->position_ned_m.z));
-    FUZZ_HOLDS(fabs(q->w * q->w + q->x * q->x + q->y * q->y + q->z * q->z - 1.0) < 1e-6);
+    FUZZ_CHECK(fabs(q->w * q->w + q->x * q->x + q->y * q->y + q->z * q->z - 1.0) < 1e-6);
 }
 
 /* Between its rows, at them and beyond them. */
 static void fly(const recorded_flight_t *flight) {
     const double duration_s = recorded_flight_duration(flight);
-    FUZZ_HOLDS(flight->count >= 2 && duration_s > 0.0);
+    FUZZ_CHECK(flight->count >= 2 && duration_s > 0.0);
     for (int i = -1; i <= TIMES; i++) {
         const recorded_pose_t at = recorded_flight_at(flight, duration_s * i / (TIMES - 1));
         check_pose(&at.truth);
@@ -50,13 +50,13 @@ static void try_flight(const char *text, size_t size) {
     } else {
         fuzz_counts[FLIGHTS_REFUSED].times++;
         check_fault(error.text, sizeof error.text, path);
-        FUZZ_HOLDS(flight.poses == NULL && flight.count == 0);
+        FUZZ_CHECK(flight.poses == NULL && flight.count == 0);
     }
 }
 
-/* Takes every option but those that begin with an x, for whatever reason. */
+/* Accepts every option except those that begin with an x. */
 static bool take_option(const char *name, const char *value, unsigned long line, char reason[SCENARIO_REASON_MAX]) {
-    FUZZ_HOLDS(name != NULL && value != NULL && *value != '\0' && line > 0);
+    FUZZ_CHECK(name != NULL && value != NULL && *value != '\0' && line > 0);
     (void)strcpy(reason, "it begins with an x");
     return *name != 'x' || name[1] == '0';
 }
@@ -67,7 +67,7 @@ static void try_scenario(const char *text, size_t size) {
     const char *path = fuzz_file(0, "scenario.ini", text, size);
     if (scenario_file_read(path, take_option, &scenario, fault, sizeof fault)) {
         fuzz_counts[SCENARIOS].times++;
-        FUZZ_HOLDS(scenario.neighbours >= 0 && scenario.neighbours <= SCENARIO_NEIGHBOURS_MAX);
+        FUZZ_CHECK(scenario.neighbors >= 0 && scenario.neighbors <= SCENARIO_NEIGHBORS_MAX);
     } else {
         fuzz_counts[SCENARIOS_REFUSED].times++;
         check_fault(fault, sizeof fault, path);

@@ -1,8 +1,7 @@
-/* What reads words and lines, fuzzed: numbers, names, settings, lines of configurations and of JSON. SPDX-License-Identifier: MIT
+/* Fuzzes the parsers of words and lines: numbers, names, settings, lines of configurations and of JSON. SPDX-License-Identifier: MIT
  *
- * The first letter of the input says which: n numbers, t numbers behind a word, m mistyped names, s a setting, i lines of a
- * configuration, l lines of JSON; any other one: a float's text. None of it needs a library, so that it runs under every
- * sanitizer. */
+ * The first letter of the input selects the kind: n numbers, t numbers after a word, m mistyped names, s a setting, i lines of a
+ * configuration, l lines of JSON; any other one: a float's text. No target needs a library, so all run under every sanitizer. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -33,22 +32,22 @@ static void try_numbers(size_t length) {
     char *end;
     if (number_parse(text, length, &value)) {
         const double expected = strtod(text, &end);
-        FUZZ_HOLDS(end == text + length);
-        FUZZ_HOLDS(memcmp(&expected, &value, sizeof value) == 0 || (isnan(expected) && isnan(value)));
-        FUZZ_HOLDS(strpbrk(text, "xXpP \t\n") == NULL);
+        FUZZ_CHECK(end == text + length);
+        FUZZ_CHECK(memcmp(&expected, &value, sizeof value) == 0 || (isnan(expected) && isnan(value)));
+        FUZZ_CHECK(strpbrk(text, "xXpP \t\n") == NULL);
         (void)number_to_float(value);
         fuzz_counts[NUMBERS].times++;
     } else {
-        FUZZ_HOLDS(memcmp(&value, &untouched, sizeof value) == 0);
+        FUZZ_CHECK(memcmp(&value, &untouched, sizeof value) == 0);
     }
     if (integer_parse(text, length, &whole)) {
-        FUZZ_HOLDS(whole == strtoll(text, &end, 10) && end == text + length);
+        FUZZ_CHECK(whole == strtoll(text, &end, 10) && end == text + length);
     } else {
-        FUZZ_HOLDS(whole == -7);
+        FUZZ_CHECK(whole == -7);
     }
 }
 
-/* Exactly as printf would write it, and back again. */
+/* Prints exactly as printf would, and reads the text back. */
 static void try_format(const uint8_t *data, size_t size) {
     fuzz_input_t in = {data, size};
     char ours[NUMBER_TEXT_MAX + 1];
@@ -56,10 +55,10 @@ static void try_format(const uint8_t *data, size_t size) {
     do {
         const float value = fuzz_float_of(fuzz_word(&in));
         const size_t length = number_format(ours, value);
-        FUZZ_HOLDS(length <= NUMBER_TEXT_MAX);
+        FUZZ_CHECK(length <= NUMBER_TEXT_MAX);
         ours[length] = '\0';
         (void)snprintf(theirs, sizeof theirs, "%.9g", (double)value);
-        FUZZ_HOLDS(strcmp(ours, theirs) == 0);
+        FUZZ_CHECK(strcmp(ours, theirs) == 0);
         fuzz_counts[NUMBERS].times++;
     } while (in.left > 0);
 }
@@ -67,18 +66,18 @@ static void try_format(const uint8_t *data, size_t size) {
 static void try_words(void) {
     double values[3] = {0.0, 0.0, 0.0};
     if (text_numbers(text, "box:", values, 3)) {
-        FUZZ_HOLDS(isfinite(values[0]) && isfinite(values[1]) && isfinite(values[2]));
+        FUZZ_CHECK(isfinite(values[0]) && isfinite(values[1]) && isfinite(values[2]));
         fuzz_counts[NUMBERS].times++;
     }
 }
 
 static void try_name(size_t length) {
-    static const char *const names[] = {"camera.fx", "navigation.height_bias_m", "x", "", "detector.box_share"};
+    static const char *const names[] = {"camera.fx", "navigation.height_bias_sd_m", "x", "", "detector.box_noise_rel"};
     nearest_name_t nearest = nearest_name_of(text, length);
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         nearest_name_try(&nearest, names[i]);
     }
-    FUZZ_HOLDS(nearest.name == NULL || nearest.edits <= (length > 64u ? length : 64u));
+    FUZZ_CHECK(nearest.name == NULL || nearest.edits <= (length > 64u ? length : 64u));
 }
 
 static void try_setting(void) {
@@ -90,15 +89,15 @@ static void try_setting(void) {
     settings.camera.fx_px = settings.camera.fy_px = 900.0f;
     before = settings;
     if (!setting_assign(&settings, text, &fault)) {
-        FUZZ_HOLDS(fault.text[0] != '\0' && memchr(fault.text, '\0', sizeof fault.text) != NULL);
-        FUZZ_HOLDS(memcmp(&before, &settings, sizeof before) == 0);
+        FUZZ_CHECK(fault.text[0] != '\0' && memchr(fault.text, '\0', sizeof fault.text) != NULL);
+        FUZZ_CHECK(memcmp(&before, &settings, sizeof before) == 0);
         fuzz_counts[SETTINGS_REFUSED].times++;
         return;
     }
     fuzz_counts[SETTINGS].times++;
     const bool taken = settings_in_range(&settings, &fault);
     const goe_status_t status = goe_init(&estimator, sizeof estimator, &settings, NULL);
-    FUZZ_HOLDS(taken == (status == GOE_OK));
+    FUZZ_CHECK(taken == (status == GOE_OK));
 }
 
 static void try_lines(size_t length) {
@@ -109,9 +108,9 @@ static void try_lines(size_t length) {
     }
     (void)memset(&lines, 0, sizeof lines);
     lines.stream = fmemopen(text, length, "r");
-    FUZZ_HOLDS(lines.stream != NULL);
+    FUZZ_CHECK(lines.stream != NULL);
     for (const char *line = ini_lines_next(&lines, &fault); line != NULL; line = ini_lines_next(&lines, &fault)) {
-        FUZZ_HOLDS(fault == NULL && strpbrk(line, "#\n") == NULL);
+        FUZZ_CHECK(fault == NULL && strpbrk(line, "#\n") == NULL);
         fuzz_counts[LINES].times++;
     }
     (void)fclose(lines.stream);
@@ -124,7 +123,7 @@ typedef struct {
 
 static void take_text(void *user, const char *line, size_t length) {
     taken_t *taken = user;
-    FUZZ_HOLDS(length > 0 && length <= DETECTION_LINE_MAX);
+    FUZZ_CHECK(length > 0 && length <= DETECTION_LINE_MAX);
     for (size_t i = 0; i < length; i++) {
         taken->hash = (taken->hash ^ (uint8_t)line[i]) * 0x100000001B3u;
     }
@@ -132,7 +131,7 @@ static void take_text(void *user, const char *line, size_t length) {
     taken->texts++;
 }
 
-/* The same texts come out, in whatever pieces the bytes come. */
+/* The same texts come out for any split of the bytes. */
 static void try_json_texts(size_t length) {
     static line_reader_t at_once, in_pieces;
     taken_t whole = {0, 0};
@@ -148,7 +147,7 @@ static void try_json_texts(size_t length) {
         i += size;
     }
     line_reader_end(&in_pieces, take_text, &pieces);
-    FUZZ_HOLDS(whole.hash == pieces.hash && whole.texts == pieces.texts);
+    FUZZ_CHECK(whole.hash == pieces.hash && whole.texts == pieces.texts);
     fuzz_counts[JSON_TEXTS].times += whole.texts;
 }
 

@@ -1,9 +1,9 @@
-/* The same bytes give the same bits, whatever the memory held before. SPDX-License-Identifier: MIT */
+/* The same bytes give the same bits, for any previous content of the memory. SPDX-License-Identifier: MIT */
 #include "fuzz_twice.h"
 
 #include "fuzz.h"
 
-#define TWICE_IN 32u /* inputs, one of which runs twice */
+#define TWICE_IN 32u /* inputs of which one runs twice */
 #define OTHER_FILL 0xA5
 
 static bool is_repeat;
@@ -16,6 +16,6 @@ void fuzz_twice(fuzz_flown_t *fly, const uint8_t *data, size_t size, int counter
     if ((hash >> 32) % TWICE_IN == 0) {
         fuzz_count_once(counter);
         is_repeat = true;
-        FUZZ_HOLDS(fly(data, size, OTHER_FILL) == hash);
+        FUZZ_CHECK(fly(data, size, OTHER_FILL) == hash);
     }
 }

@@ -1,4 +1,4 @@
-/* An estimator and its answer, with bytes around them that no call may write. SPDX-License-Identifier: MIT */
+/* An estimator and its answer, between guard bytes that no call may write. SPDX-License-Identifier: MIT */
 #ifndef GUARDED_ESTIMATOR_H
 #define GUARDED_ESTIMATOR_H
 
@@ -17,7 +17,7 @@ typedef struct {
 
 extern guarded_estimator_t memory;
 
-/* The estimator's bytes become `fill`, all others GUARD. */
+/* Fills the estimator's bytes with `fill`, all others with GUARD. */
 void guard_begin(int fill);
 
 void guard_check(void);

@@ -1,8 +1,8 @@
-/* The decision rule as in the README, flown. SPDX-License-Identifier: MIT
+/* Flies the decision rule of the README. SPDX-License-Identifier: MIT
  *
- * Collision courses: an aircraft flies level towards an obstacle that is higher than its path, and rolls. The features are what a
- * detector gives: upright bounding boxes whose errors stay alike for a second; or, as they should not be given, the middles of
- * their sides as points, a case in which the estimates are suspect most of the time. */
+ * Collision courses: an aircraft flies level towards an obstacle that is higher than its path, and rolls. The features are a
+ * detector's: upright bounding boxes with an error correlation time of one second; or, which is discouraged, the middles of
+ * their sides as points, for which the estimates are suspect most of the time. */
 #include <math.h>
 #include <string.h>
 
@@ -16,12 +16,12 @@
 #define SPEED_M_S 20.0
 #define RATE_HZ 8.0
 #define FIRST_RANGE_M 500.0
-#define MARGIN_M 15.0 /* of the README's plan */
-#define AHEAD_S 8.0   /* the least that an order must come before the obstacle is reached */
+#define MARGIN_M 15.0 /* of the README's intended velocity */
+#define AHEAD_S 8.0   /* an order must come at least this long before the obstacle is reached */
 #define BOX_PX 0.5
-#define BOX_SHARE 0.04   /* of a side's error that stays alike, of the box's size */
-#define BOX_ALIKE_S 1.0  /* ... for so long */
-#define IMAGE_PX 1280.0f /* width and height of the image */
+#define BOX_SHARE 0.04        /* correlated side error, relative to the box's size */
+#define BOX_CORRELATION_S 1.0 /* ... and its correlation time */
+#define IMAGE_PX 1280.0f      /* width and height of the image */
 
 static check_random_t any;
 static scene_t scene;
@@ -30,13 +30,13 @@ static goe_estimator_t estimator;
 void setUp(void) { any = check_random_start("going around"); }
 void tearDown(void) {}
 
-/* What of a flight is counted. */
+/* Counts of a flight. */
 typedef struct {
     double ordered_s;    /* before the obstacle is reached; negative: never */
     int suspect, images; /* until then */
 } outcome_t;
 
-/* aside_m: of the path from the middle of the obstacle. */
+/* aside_m: distance of the path from the middle of the obstacle. */
 static void make_course(double aside_m, double roll_deg) {
     scene_default(&scene);
     if (check_random_bits(&any) % 3u == 0u) {
@@ -59,13 +59,13 @@ static void make_course(double aside_m, double roll_deg) {
     scene.camera.width_px = scene.camera.height_px = IMAGE_PX;
 }
 
-/* The box of a real detector: errors that stay alike, sides no farther out than the image. */
+/* The box of a real detector: correlated errors, sides not outside the image. */
 static void spoil_box(goe_image_t *image, double error[4]) {
     goe_box_t *box = &image->box;
     float *side[4] = {&box->left_px, &box->top_px, &box->right_px, &box->bottom_px};
     const double width = (double)box->right_px - (double)box->left_px;
     const double height = (double)box->bottom_px - (double)box->top_px;
-    const double kept = exp(-1.0 / RATE_HZ / BOX_ALIKE_S);
+    const double kept = exp(-1.0 / RATE_HZ / BOX_CORRELATION_S);
     for (int i = 0; i < 4; i++) {
         const double size = i % 2 == 0 ? width : height;
         error[i] = kept * error[i] + sqrt(1.0 - kept * kept) * check_random_normal(&any);
@@ -75,8 +75,8 @@ static void spoil_box(goe_image_t *image, double error[4]) {
     }
 }
 
-/* seen: whether the detector sees the obstacle in image k. */
-static outcome_t fly(bool (*seen)(int k)) {
+/* detected: whether the detector finds the obstacle in image k. */
+static outcome_t fly(bool (*detected)(int k)) {
     static const float velocity_ned_m_s[3] = {(float)SPEED_M_S, 0.0f, 0.0f};
     outcome_t outcome = {-1.0, 0, 0};
     bool go_around = false;
@@ -99,9 +99,9 @@ static outcome_t fly(bool (*seen)(int k)) {
         } else {
             scene_add_noise(&image, &any, BOX_PX);
         }
-        if (!seen(k)) {
-            image.box.seen = 0;
-            image.left.seen = image.right.seen = image.top.seen = false;
+        if (!detected(k)) {
+            image.box.sides = 0;
+            image.left.visible = image.right.visible = image.top.visible = false;
         }
         (void)goe_update(&estimator, &image, &estimate);
         outcome.suspect += estimate.suspect ? 1 : 0;
@@ -120,11 +120,11 @@ static bool always(int k) {
 /* Two seconds of every five. */
 static bool with_gaps(int k) { return k % 40 >= 16; }
 
-static double least_ordered_s(double roll_deg, bool (*seen)(int k), int *suspect, int *images) {
+static double least_ordered_s(double roll_deg, bool (*detected)(int k), int *suspect, int *images) {
     double least_s = 1.0e9;
     for (int run = 0; run < RUNS; run++) {
         make_course(check_random_between(&any, -2.0, 2.0), roll_deg);
-        const outcome_t outcome = fly(seen);
+        const outcome_t outcome = fly(detected);
         least_s = outcome.ordered_s < least_s ? outcome.ordered_s : least_s;
         *suspect += outcome.suspect;
         *images += outcome.images;
@@ -146,7 +146,7 @@ static void the_order_comes_on_every_collision_course(void) {
     }
 }
 
-/* [GOE_DECISION_ACT, goe_decide] The same by boxes as they are. */
+/* [GOE_DECISION_ACT, goe_decide] The same by unmodified boxes. */
 static void the_order_comes_by_boxes(void) {
     static const double roll_deg[] = {0.0, 5.0, 10.0, 25.0};
     for (int i = 0; i < 4; i++) {
@@ -163,7 +163,7 @@ static void the_order_comes_by_boxes(void) {
     }
 }
 
-/* [goe_decide] ... and the path that keeps twice the margin from the outline is left alone, 19 times of 20. */
+/* [goe_decide] ... and the path that keeps twice the margin from the outline fault_counts no order, 19 times of 20. */
 static void a_pass_at_twice_the_margin_by_boxes(void) {
     static const double roll_deg[] = {0.0, 25.0};
     for (int i = 0; i < 2; i++) {
@@ -218,7 +218,7 @@ static void doubt_warns_no_later(void) {
             doubtful.estimate.suspect = true;
             old.estimate.fresh = false;
             old.estimate_time_us -=
-                old.estimate.valid != 0u ? 3000000 : 0; /* without an answer it is the least of all times */
+                old.estimate.valid != 0u ? 3000000 : 0; /* without an answer it is the smallest of all times */
             if (orders(&estimator)) {
                 TEST_ASSERT_TRUE(orders(&doubtful));
                 TEST_ASSERT_TRUE(orders(&old));
@@ -230,8 +230,8 @@ static void doubt_warns_no_later(void) {
 }
 
 /* [GOE_DECISION_KEEP, goe_decide]
- * GIVEN an order that stands WHEN the rule cannot be asked: a velocity that is no number, flipped settings, an estimator that was
- * never set, no position THEN the order stands; and none is given out of nothing. */
+ * GIVEN an active order WHEN the rule cannot decide, because of a NaN velocity, flipped settings, an estimator that was
+ * never initialized, or no position THEN the order stays; and no new one is given. */
 static void no_failure_means_clear(void) {
     static goe_estimator_t broken;
     const float ahead[3] = {(float)SPEED_M_S, 0.0f, 0.0f};
@@ -239,8 +239,8 @@ static void no_failure_means_clear(void) {
     const float too_fast[3] = {0.0f, 2.0e3f, 0.0f};
     make_course(0.0, 0.0);
     (void)fly(always);
-    for (int stands = 0; stands < 2; stands++) {
-        bool go_around = stands == 1;
+    for (int ordered = 0; ordered < 2; ordered++) {
+        bool go_around = ordered == 1;
         decide(&estimator, no_number, &go_around);
         decide(&estimator, too_fast, &go_around);
         broken = estimator;
@@ -252,11 +252,11 @@ static void no_failure_means_clear(void) {
         CHECK_STATUS(GOE_OK, goe_reset(&broken));
         decide(&broken, ahead, &go_around);
         decide(NULL, ahead, &go_around);
-        TEST_ASSERT_EQUAL_INT(stands, go_around);
+        TEST_ASSERT_EQUAL_INT(ordered, go_around);
     }
 }
 
-/* [goe_decide] ... and one that flies past at a distance is left alone. */
+/* [goe_decide] ... and an obstacle passed at a distance fault_counts no order. */
 static void a_wide_pass_is_no_reason(void) {
     int ordered = 0;
     for (int run = 0; run < RUNS; run++) {

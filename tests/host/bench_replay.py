@@ -1,4 +1,5 @@
-"""Prints how many rows goe_replay takes in a second of the processor: of a long log, all columns filled, from a pipe.
+"""Prints how many rows goe_replay processes in a second of processor time: a long log from a pipe with all columns
+filled.
 
 python tests/host/bench_replay.py ROWS      tools/bench.sh runs it
 """

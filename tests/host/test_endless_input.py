@@ -1,4 +1,4 @@
-"""Input without an end: every reader of the programs and of the Python tools ends with a word, in bounded memory.
+"""Endless input: every reader of the programs and of the Python tools ends with an error message, in bounded memory.
 
 GOE_REPLAY, GOE_SIM and GOE_COMPANION name the programs; by default they are looked for in build/.
 """
@@ -19,8 +19,8 @@ PLACES = {
     "goe_sim": ("GOE_SIM", "sim_host"),
     "goe_companion": ("GOE_COMPANION", "port/companion"),
 }
-MEMORY_KIB = {"goe_replay": 400_000, "goe_sim": 400_000, "goe_companion": 100_000}  # of addresses, all in all
-SECONDS = 600  # only a guard against what hangs
+MEMORY_KIB = {"goe_replay": 400_000, "goe_sim": 400_000, "goe_companion": 100_000}  # of address space in total
+SECONDS = 600  # guard against a hang
 FRAMES = "t_s,id,n_m,e_m,d_m,qw,qx,qy,qz"
 RECORDING = "t_s," + ",".join(
     f"{kind}_{axis}" for kind in ("true", "est") for axis in ("n_m", "e_m", "d_m", "qw", "qx", "qy", "qz")
@@ -36,12 +36,12 @@ def program(name: str) -> str:
     return str(path)
 
 
-def told(name: str, feed: str, *words: str) -> str:
-    """What a program says of an endless file: /dev/stdin, which a command of the shell feeds, or a device."""
+def error_of(name: str, feed: str, *words: str) -> str:
+    """The error message of a program for an endless file: /dev/stdin, fed by a shell command, or a device."""
     path, limit = program(name), MEMORY_KIB[name]
     with_limit = ["sh", "-c", f'ulimit -v {limit}; exec "$@"', "sh", path]
     if subprocess.run([*with_limit, "--help"], capture_output=True, check=False).returncode != 0:
-        with_limit = [path]  # the address sanitizer needs more addresses than there is memory
+        with_limit = [path]  # the address sanitizer needs more address space than there is memory
     command = f"{feed} 2>/dev/null | {shlex.join([*with_limit, *words])}"
     done = subprocess.run(["sh", "-c", command], capture_output=True, text=True, timeout=SECONDS, check=False)
     assert done.returncode == 2, (done.returncode, done.stderr)
@@ -50,7 +50,7 @@ def told(name: str, feed: str, *words: str) -> str:
 
 
 def rows(header: str, row: str) -> str:
-    """``row``: awk's, by the number of the row."""
+    """A command that prints endless rows. ``row`` is an awk expression of the row number i."""
     return f"awk 'BEGIN {{ print \"{header}\"; for (i = 1;; i++) print {row} }}'"
 
 
@@ -78,7 +78,7 @@ QUOTE = "{{ echo {}; printf '1,\"'; yes; }}"
 def test_frames(tmp_path: Path, feed: str, reason: str) -> None:
     (tmp_path / "camera.ini").write_text(CAMERA)
     words = ("--camera", str(tmp_path / "camera.ini"), "--frames", "/dev/stdin", "--out", str(tmp_path / "out.csv"))
-    assert f"/dev/stdin{reason}" in told("goe_replay", feed, *words)
+    assert f"/dev/stdin{reason}" in error_of("goe_replay", feed, *words)
     assert [path.name for path in tmp_path.iterdir()] == ["camera.ini"]
 
 
@@ -92,7 +92,7 @@ def test_frames(tmp_path: Path, feed: str, reason: str) -> None:
     ids=["zeros", "line", "columns", "quote", "poses"],
 )
 def test_recorded_flights(tmp_path: Path, feed: str, reason: str) -> None:
-    assert f"/dev/stdin{reason}" in told("goe_sim", feed, "--flight", "/dev/stdin", "--out", str(tmp_path / "log"))
+    assert f"/dev/stdin{reason}" in error_of("goe_sim", feed, "--flight", "/dev/stdin", "--out", str(tmp_path / "log"))
     assert list(tmp_path.iterdir()) == []
 
 
@@ -113,7 +113,7 @@ def test_settings(tmp_path: Path, feed: str, reason: str) -> None:
         ("goe_companion", "--check", "/dev/stdin"),
         ("goe_companion", "--check", str(tmp_path / "companion.ini")),
     ):
-        assert f"/dev/stdin{reason}" in told(name, feed, *words)
+        assert f"/dev/stdin{reason}" in error_of(name, feed, *words)
 
 
 READ_IN_PYTHON = f"""
@@ -126,7 +126,7 @@ from goe_tools.logs.obslog import TRUTH_COLUMNS, LogError, read_cameras, read_fr
 resource.setrlimit(resource.RLIMIT_AS, (300 << 20, 300 << 20))
 fields.ROWS_MAX, fields.TABLE_BYTES_MAX = 2000, 1 << 22  # as many as there are would take a while
 
-def told(read, feed):
+def error_of(read, feed):
     with subprocess.Popen(["sh", "-c", feed], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as source:
         try:
             read(Path(f"/dev/fd/{{source.stdout.fileno()}}"))
@@ -141,14 +141,14 @@ for read, header, row in (
     (read_truth, truth, None),
     (read_estimates, estimates, "1,1,ok,disc,8" + "," * len(NUMBERS)),
 ):
-    told(read, "cat /dev/zero")
-    told(read, {ENDLESS_LINE!r})
-    told(read, "echo " + header + "; printf '1,\\"'; yes")
-    told(read, "echo " + header + "; yes '" + 4000 * " " + "'")
+    error_of(read, "cat /dev/zero")
+    error_of(read, {ENDLESS_LINE!r})
+    error_of(read, "echo " + header + "; printf '1,\\"'; yes")
+    error_of(read, "echo " + header + "; yes '" + 4000 * " " + "'")
     if row:
-        told(read, "echo " + header + "; yes " + row)
-told(read_cameras, "cat /dev/zero")
-told(read_cameras, "yes '# a comment'")
+        error_of(read, "echo " + header + "; yes " + row)
+error_of(read_cameras, "cat /dev/zero")
+error_of(read_cameras, "yes '# a comment'")
 """
 
 

@@ -1,5 +1,5 @@
-"""What goe_replay says of logs in other units, signs and spellings, and that it says nothing of good ones.
-The Python tools say the same.
+"""goe_replay's hints for logs in other units, signs and spellings; good logs get none. The Python tools print the same
+hints.
 
 GOE_REPLAY names the program; by default it is looked for in build/.
 """
@@ -46,13 +46,13 @@ def write(folder: Path, table: list[Row], delimiter: str = ",") -> Path:
 
 
 def said(folder: Path) -> tuple[int, str]:
-    """Exit status and standard error of the program, less its name."""
+    """Exit status, and standard error without the program's name."""
     done = subprocess.run([PROGRAM, "--out", os.devnull, str(folder)], capture_output=True, text=True, check=False)
     return done.returncode, done.stderr.replace("goe_replay: ", "")
 
 
 def python_said(folder: Path, capsys: pytest.CaptureFixture[str]) -> str:
-    """What the tools' reader has to say."""
+    """The message of the tools' reader."""
     try:
         read_log(folder)
     except LogError as error:
@@ -74,7 +74,7 @@ def moved(row: Row) -> dict[str, object]:
 
 
 def descending(table: list[Row]) -> list[Row]:
-    """The same above a ground at 0, from 90 m down to 30 m."""
+    """The same log above a ground at 0, from 90 m down to 30 m."""
     return [row | {"d_m": str(-90.0 + 0.5 * k), "agl_m": str(90.0 - 0.5 * k)} for k, row in enumerate(table)]
 
 
@@ -103,7 +103,7 @@ WARNINGS = [
 def test_other_units_signs_and_orders_are_hinted_at(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], spoil: Callable[[list[Row]], list[Row]], hint: str
 ) -> None:
-    """A hint refuses nothing."""
+    """A hint is no error: the log is read."""
     folder = write(tmp_path / "log", spoil(rows()))
     status, text = said(folder)
     warnings = [line for line in text.splitlines() if line.startswith("warning: ")]
@@ -171,7 +171,7 @@ def test_a_file_in_place_of_its_folder(tmp_path: Path, capsys: pytest.CaptureFix
 
 
 def test_a_long_read_shows_on_a_terminal_how_far_it_is(tmp_path: Path) -> None:
-    """From a pipe that pauses for longer than the two seconds before the first sign."""
+    """From a pipe that pauses for longer than the two seconds before the first progress line."""
     camera, text = str(CORNER / "camera.ini"), (CORNER / "frames.csv").read_text()
     row = text.splitlines()[1].split(",", 1)[1]
     lines = [f"{k}.5,{row}" for k in range(4000)]
@@ -186,11 +186,11 @@ def test_a_long_read_shows_on_a_terminal_how_far_it_is(tmp_path: Path) -> None:
     os.close(other)
     shown = os.read(terminal, 4096).decode()
     os.close(terminal)
-    assert running.returncode == 1 and "goe_replay: 1024 rows" in shown  # an aircraft that stands learns nothing
+    assert running.returncode == 1 and "goe_replay: 1024 rows" in shown  # from an aircraft at rest nothing is learned
 
 
 def test_every_row_by_the_fast_way_or_the_careful_one(tmp_path: Path) -> None:
-    """The same numbers in forms that only the careful way reads."""
+    """The same numbers in formats that only the slower parser reads."""
     fast = read_log(write(tmp_path / "fast", rows())).frames
     careful = change(
         lambda row: {"id": "+1", "agl_m": f"{row['agl_m']}e0" if row["agl_m"] else "", "left_u": row["left_u"]}

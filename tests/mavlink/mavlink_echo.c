@@ -1,5 +1,5 @@
-/* Reads MAVLink 2 frames, one a line in hexadecimal digits, and prints each again: read into its structure, packed and framed
- * anew. "?": not a frame of a message that is known. SPDX-License-Identifier: MIT */
+/* Reads MAVLink 2 frames, one per line in hexadecimal digits, and prints each again: read into its structure, packed and framed
+ * again. "?": not a valid frame of a known message. SPDX-License-Identifier: MIT */
 #include <stdio.h>
 #include <string.h>
 

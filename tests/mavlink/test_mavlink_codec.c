@@ -1,4 +1,4 @@
-/* Payloads and frames. What the fields are called is held against mavgen in tests/python/test_mavlink.py.
+/* Payloads and frames. tests/python/test_mavlink.py compares the fields with mavgen's.
  * SPDX-License-Identifier: MIT */
 #include <string.h>
 
@@ -28,7 +28,7 @@ static goe_mavlink_features_t some_features(void) {
                                              .time_sd = 1500u,
                                              .image_width = 1280u,
                                              .image_height = 960u,
-                                             .seen = 0x20Fu,
+                                             .visible = 0x20Fu,
                                              .camera_id = 1u,
                                              .time_base = 2u,
                                              .number = 3u,
@@ -39,12 +39,12 @@ static goe_mavlink_features_t some_features(void) {
     return features;
 }
 
-/* What pymavlink 2.4.50 makes of the same values. */
+/* The output of pymavlink 2.4.50 for the same values. */
 static const uint8_t features_frame[] = {
     0xfd, 0x3d, 0x00, 0x00, 0xc9, 0x07, 0xbf, 0xcc, 0xa6, 0x00, 0xcb, 0x04, 0xfb, 0x71, 0x1f, 0x01, 0x00, 0x00, 0xc8,
     0xaf, 0x00, 0x00, 0x4d, 0x00, 0x00, 0x00, 0x9c, 0xff, 0x38, 0xff, 0x2c, 0x01, 0x90, 0x01, 0xdc, 0x05, 0x00, 0x05,
     0xc0, 0x03, 0x0f, 0x02, 0x01, 0x02, 0x03, 0x04, 0x5f, 0x01, 0x00, 0x02, 0x00, 0x03, 0x00, 0x04, 0x00, 0x05, 0x00,
-    0xfa, 0xff, 0x07, 0x00, 0x08, 0x00, 0x09, 0x00, 0x0a, 0x00, 0x0b, 0x00, 0xf4, 0xff, 0xbc, 0xc1};
+    0xfa, 0xff, 0x07, 0x00, 0x08, 0x00, 0x09, 0x00, 0x0a, 0x00, 0x0b, 0x00, 0xf4, 0xff, 0x09, 0x10};
 static const uint8_t status_frame[] = {0xfd, 0x1f, 0x00, 0x00, 0xc8, 0x07, 0xbf, 0xcf, 0xa6, 0x00, 0x15,
                                        0xcd, 0x5b, 0x07, 0x01, 0x00, 0x02, 0x00, 0x03, 0x00, 0x04, 0x00,
                                        0x05, 0x00, 0x06, 0x00, 0x07, 0x00, 0x08, 0x00, 0x09, 0x00, 0x0a,
@@ -92,7 +92,7 @@ static void features_are_read_field_by_field(void) {
     TEST_ASSERT_EQUAL_UINT16(expected.time_sd, features.time_sd);
     TEST_ASSERT_EQUAL_UINT16(expected.image_width, features.image_width);
     TEST_ASSERT_EQUAL_UINT16(expected.image_height, features.image_height);
-    TEST_ASSERT_EQUAL_HEX16(expected.seen, features.seen);
+    TEST_ASSERT_EQUAL_HEX16(expected.visible, features.visible);
     TEST_ASSERT_EQUAL_UINT8(expected.camera_id, features.camera_id);
     TEST_ASSERT_EQUAL_UINT8(expected.time_base, features.time_base);
     TEST_ASSERT_EQUAL_UINT8(expected.number, features.number);
@@ -102,7 +102,7 @@ static void features_are_read_field_by_field(void) {
     TEST_ASSERT_EQUAL_INT16_ARRAY(expected.v, features.v, GOE_MAVLINK_POINTS);
 }
 
-/* A sender that knows no points leaves the extension out. */
+/* A sender without points omits the extension. */
 static void an_extension_may_be_missing(void) {
     goe_mavlink_features_t features;
     const goe_mavlink_info_t *info = goe_mavlink_info(GOE_MAVLINK_FEATURES);
@@ -114,7 +114,7 @@ static void an_extension_may_be_missing(void) {
     }
 }
 
-/* Whatever a payload of the whole length holds comes out again, but for zeros at its end. */
+/* Any payload of full length is read and packed to the same bytes, except for zeros at its end. */
 static void every_byte_comes_back(void) {
     for (int k = 0; k < ROUNDS; k++) {
         const goe_mavlink_message_t message = (goe_mavlink_message_t)(k % (int)GOE_MAVLINK_MESSAGES);

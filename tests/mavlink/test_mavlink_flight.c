@@ -1,5 +1,5 @@
-/* The test scene by GOE_FEATURES: what the flight layer makes of the messages is what it makes of the detector's own boxes, to
- * the last bit if those are rounded as on the wire, and by less than a sigma if not. SPDX-License-Identifier: MIT */
+/* The test scene by GOE_FEATURES: the flight layer answers as for the detector's own boxes, to the last bit if those are
+ * rounded as on the wire, and otherwise within a sigma. SPDX-License-Identifier: MIT */
 #include <math.h>
 #include <string.h>
 
@@ -35,7 +35,7 @@ static goe_mavlink_features_t features_of(const goe_flight_frame_t *frame) {
     features.box[GOE_MAVLINK_BOTTOM] = tenths(d->box.bottom_px);
     features.time_sd = (uint16_t)frame->time_sd_us;
     features.image_width = features.image_height = (uint16_t)(2.0f * HALF_PX);
-    features.seen = d->box.seen;
+    features.visible = d->box.sides;
     features.number = frame->number;
     features.score = (uint8_t)lround(100.0 * (double)d->score);
     return features;
@@ -72,7 +72,7 @@ static void step(flown_t *flown, bool message, bool round) {
         return;
     }
     goe_flight_detection_t detection = flown_detection(flown, exposed);
-    TEST_ASSERT_EQUAL_HEX8(GOE_SEES_BOX, detection.box.seen);
+    TEST_ASSERT_EQUAL_HEX8(GOE_SIDES_ALL, detection.box.sides);
     const goe_flight_frame_t frame = flown_frame(flown, exposed, &detection, 1);
     if (round) {
         round_box(&detection.box);

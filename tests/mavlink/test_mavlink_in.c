@@ -1,4 +1,4 @@
-/* From messages to frames of the flight layer: pixels, times and what is refused. SPDX-License-Identifier: MIT */
+/* From messages to frames of the flight layer: pixels, times and refused input. SPDX-License-Identifier: MIT */
 #include <math.h>
 #include <string.h>
 
@@ -21,9 +21,9 @@ void setUp(void) {
     memset(&sighting, 0xA5, sizeof sighting);
     features.time_usec = 1900000u;
     features.obstacle_id = 70000u;
-    features.image_width = 1281u; /* odd: its middle lies at 640.5 */
+    features.image_width = 1281u; /* odd: its middle is at 640.5 */
     features.image_height = 960u;
-    features.seen = GOE_MAVLINK_SEES_BOX;
+    features.visible = GOE_MAVLINK_FEATURE_BOX;
     features.number = 2u;
     features.score = 85u;
     camera.width_px = 1000.0f;
@@ -53,7 +53,7 @@ static void check_box(double left, double top, double right, double bottom) {
     CHECK_CLOSE(2e-3, top, sighting.detection.box.top_px);
     CHECK_CLOSE(2e-3, right, sighting.detection.box.right_px);
     CHECK_CLOSE(2e-3, bottom, sighting.detection.box.bottom_px);
-    TEST_ASSERT_EQUAL_HEX8(GOE_SEES_BOX, sighting.detection.box.seen);
+    TEST_ASSERT_EQUAL_HEX8(GOE_SIDES_ALL, sighting.detection.box.sides);
     TEST_ASSERT_EQUAL_PTR(&sighting.detection, sighting.frame.detection);
     TEST_ASSERT_EQUAL_UINT8(1u, sighting.frame.count);
 }
@@ -70,26 +70,26 @@ static void features_are_tenths_from_the_middle(void) {
     CHECK_CLOSE(1e-6, 0.85, sighting.detection.score);
     CHECK_CLOSE(1e-6, 2.5, sighting.detection.pixel_px);
     TEST_ASSERT_EQUAL_UINT8(2u, sighting.frame.number);
-    TEST_ASSERT_FALSE(sighting.detection.left.seen || sighting.detection.base_right.seen);
+    TEST_ASSERT_FALSE(sighting.detection.left.visible || sighting.detection.base_right.visible);
 }
 
 static void points_keep_their_order(void) {
-    features.seen = 0;
+    features.visible = 0;
     for (int i = 0; i < GOE_MAVLINK_POINTS; i++) {
         features.u[i] = (int16_t)(100 * i);
         features.v[i] = (int16_t)(-10 * i);
     }
     for (int i = 0; i < GOE_MAVLINK_POINTS; i++) {
-        features.seen = (uint16_t)(GOE_MAVLINK_SEES_POINT << i);
+        features.visible = (uint16_t)(GOE_MAVLINK_FEATURE_POINT << i);
         TEST_ASSERT_TRUE(goe_mavlink_from_features(&features, ARRIVAL_US, &sighting));
         const goe_flight_detection_t *d = &sighting.detection;
         const goe_pixel_t points[] = {d->left, d->right, d->top, d->base_left, d->base_near, d->base_right};
         for (int k = 0; k < GOE_MAVLINK_POINTS; k++) {
-            TEST_ASSERT_EQUAL(k == i, points[k].seen);
+            TEST_ASSERT_EQUAL(k == i, points[k].visible);
             CHECK_CLOSE(1e-3, 640.5 + 10.0 * k, points[k].u_px);
             CHECK_CLOSE(1e-3, 480.0 - k, points[k].v_px);
         }
-        TEST_ASSERT_EQUAL_HEX8(0, d->box.seen);
+        TEST_ASSERT_EQUAL_HEX8(0, d->box.sides);
     }
 }
 
@@ -127,7 +127,7 @@ static void a_score_that_is_not_known_is_whole(void) {
     }
 }
 
-static void an_image_of_nothing_tells_that_the_detector_is_alive(void) {
+static void an_image_without_detections_shows_that_the_detector_is_alive(void) {
     features.number = 0u;
     features.image_width = 0u; /* of no use then */
     TEST_ASSERT_FALSE(goe_mavlink_from_features(&features, ARRIVAL_US, &sighting));
@@ -135,9 +135,9 @@ static void an_image_of_nothing_tells_that_the_detector_is_alive(void) {
     TEST_ASSERT_EQUAL_UINT32(1900000u, sighting.frame.capture_us);
 }
 
-/* One of several obstacles is not seen: this must not read as an image of nothing. */
+/* One of several obstacles is not visible: this must not count as an image without detections. */
 static void a_message_that_sees_nothing_is_no_empty_image(void) {
-    features.seen = 0xFC00u; /* bits that mean nothing yet */
+    features.visible = 0xFC00u; /* bits without a meaning yet */
     TEST_ASSERT_FALSE(goe_mavlink_from_features(&features, ARRIVAL_US, &sighting));
     check_empty(2u);
 }
@@ -266,7 +266,7 @@ static void a_rectangle_is_a_share_of_the_image(void) {
 }
 
 static void a_point_is_a_square(void) {
-    tracking.tracking_status = 1u | 4u; /* moving target indicators do no harm */
+    tracking.tracking_status = 1u | 4u; /* moving target indicators are ignored */
     tracking.tracking_mode = 1u;
     tracking.point_x = 0.5f;
     tracking.point_y = 0.25f;
@@ -303,7 +303,7 @@ int main(void) {
     RUN_TEST(points_keep_their_order);
     RUN_TEST(times_are_of_their_clock);
     RUN_TEST(a_score_that_is_not_known_is_whole);
-    RUN_TEST(an_image_of_nothing_tells_that_the_detector_is_alive);
+    RUN_TEST(an_image_without_detections_shows_that_the_detector_is_alive);
     RUN_TEST(a_message_that_sees_nothing_is_no_empty_image);
     RUN_TEST(what_cannot_be_understood_has_no_camera);
     RUN_TEST(angles_become_pixels_by_their_tangents);

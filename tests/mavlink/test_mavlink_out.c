@@ -1,4 +1,4 @@
-/* From the flight layer's answers to messages: numbers by hand, what is not known, and what other programs read.
+/* From the flight layer's answers to messages: numbers by hand, unknown values, and the interpretation by other programs.
  * SPDX-License-Identifier: MIT */
 #include <math.h>
 #include <string.h>
@@ -44,14 +44,14 @@ void setUp(void) {
     set3(obstacle.nearest_body_m, 197.0f, -29.0f, 1.0f);
     obstacle.lat_e7 = 475000000;
     obstacle.lon_e7 = 190000000;
-    obstacle.hazard.time_s = 10.0f;
-    obstacle.hazard.time_sd_s = 1.0f;
-    obstacle.hazard.miss_m = 4.0f;
-    obstacle.hazard.miss_sd_m = 2.0f;
+    obstacle.hazard.tcpa_s = 10.0f;
+    obstacle.hazard.tcpa_sd_s = 1.0f;
+    obstacle.hazard.dcpa_m = 4.0f;
+    obstacle.hazard.dcpa_sd_m = 2.0f;
     obstacle.hazard.clearance_m = -22.0f;
     obstacle.hazard.clearance_sd_m = 3.0f;
     obstacle.hazard.has_clearance = true;
-    obstacle.hazard.violation = 0.3f;
+    obstacle.hazard.conflict_probability = 0.3f;
     assessment.worst = 2;
     assessment.avoided = -1;
     assessment.needed_s = 6.0f;
@@ -59,7 +59,7 @@ void setUp(void) {
     own.unix_usec = 1700000000000000u;
     own.origin_known = true;
     own.origin_alt_m = 100.0f;
-    set3(own.position_ned_m, 0.0f, 0.0f, -30.0f); /* 130 m over the sea */
+    set3(own.position_ned_m, 0.0f, 0.0f, -30.0f); /* 130 m above sea level */
     for (int i = 0; i < GOE_FLIGHT_SECTORS; i++) {
         sector_cm[i] = CLEAR;
     }
@@ -79,7 +79,7 @@ static void check_nan(float x) { TEST_ASSERT_FALSE(check_is_finite(x)); }
 
 /* ---------------------------------------------------------------------------------------------------- goe's messages -- */
 
-static void an_obstacle_is_told_as_it_is(void) {
+static void an_obstacle_is_reported_as_it_is(void) {
     goe_mavlink_obstacle_t m;
     obstacle.suspect = obstacle.in_view = true;
     goe_mavlink_to_obstacle(&obstacle, 3, &own, &m);
@@ -107,7 +107,7 @@ static void an_obstacle_is_told_as_it_is(void) {
 static void what_is_not_known_is_nan(void) {
     goe_mavlink_obstacle_t m;
     obstacle.valid = GOE_HAS_POSITION;
-    obstacle.passed = true;
+    obstacle.receding = true;
     own.origin_known = false;
     goe_mavlink_to_obstacle(&obstacle, 0, &own, &m);
     CHECK_SAME(200.0f, m.north);
@@ -119,7 +119,7 @@ static void what_is_not_known_is_nan(void) {
     check_nan(m.heading);
     TEST_ASSERT_EQUAL_INT32(INT32_MAX, m.lat);
     TEST_ASSERT_EQUAL_INT32(INT32_MAX, m.lon);
-    TEST_ASSERT_EQUAL_HEX8(GOE_MAVLINK_PASSED, m.flags);
+    TEST_ASSERT_EQUAL_HEX8(GOE_MAVLINK_RECEDING, m.flags);
     obstacle.valid = 0u;
     own.origin_known = true;
     goe_mavlink_to_obstacle(&obstacle, 0, &own, &m);
@@ -134,13 +134,13 @@ static void what_is_not_known_is_nan(void) {
 static void a_hazard_without_an_order_has_no_target(void) {
     goe_mavlink_hazard_t m;
     TEST_ASSERT_TRUE(goe_mavlink_to_hazard(&obstacle, 2, &assessment, &own, &m));
-    CHECK_SAME(10.0f, m.time_to);
-    CHECK_SAME(1.0f, m.time_sd);
-    CHECK_SAME(4.0f, m.miss);
-    CHECK_SAME(2.0f, m.miss_sd);
+    CHECK_SAME(10.0f, m.tcpa);
+    CHECK_SAME(1.0f, m.tcpa_sd);
+    CHECK_SAME(4.0f, m.dcpa);
+    CHECK_SAME(2.0f, m.dcpa_sd);
     CHECK_SAME(-22.0f, m.clearance);
     CHECK_SAME(3.0f, m.clearance_sd);
-    CHECK_SAME(0.3f, m.violation);
+    CHECK_SAME(0.3f, m.conflict_probability);
     check_nan(m.needed);
     for (int i = 0; i < 3; i++) {
         check_nan(m.target[i]);
@@ -156,7 +156,7 @@ static void a_hazard_without_an_order_has_no_target(void) {
     TEST_ASSERT_EQUAL_HEX8(0u, m.flags);
 }
 
-static void an_order_is_told_with_what_it_is_about(void) {
+static void an_order_is_reported_with_its_obstacle(void) {
     goe_mavlink_hazard_t m;
     order(GOE_FLIGHT_RIGHT, 1);
     TEST_ASSERT_TRUE(goe_mavlink_to_hazard(&obstacle, 1, &assessment, &own, &m));
@@ -166,10 +166,10 @@ static void an_order_is_told_with_what_it_is_about(void) {
     TEST_ASSERT_EQUAL_MEMORY(assessment.target_ned_m, m.target, sizeof m.target);
     TEST_ASSERT_EQUAL_INT32(475010000, m.target_lat);
     TEST_ASSERT_EQUAL_INT32(190020000, m.target_lon);
-    TEST_ASSERT_TRUE(goe_mavlink_to_hazard(&obstacle, 2, &assessment, &own, &m)); /* the worst is another */
+    TEST_ASSERT_TRUE(goe_mavlink_to_hazard(&obstacle, 2, &assessment, &own, &m)); /* the worst is another one */
     TEST_ASSERT_EQUAL_UINT8(GOE_FLIGHT_NONE, m.action);
     TEST_ASSERT_EQUAL_HEX8(GOE_MAVLINK_WORST, m.flags);
-    order(GOE_FLIGHT_HOLD, -1); /* what it was about was given up */
+    order(GOE_FLIGHT_HOLD, -1); /* its obstacle was given up */
     own.origin_known = false;
     TEST_ASSERT_TRUE(goe_mavlink_to_hazard(&obstacle, 2, &assessment, &own, &m));
     TEST_ASSERT_EQUAL_UINT8(GOE_FLIGHT_HOLD, m.action);
@@ -191,7 +191,7 @@ static void the_status_counts(void) {
     TEST_ASSERT_EQUAL_UINT8(4u, m.obstacles);
     TEST_ASSERT_EQUAL_UINT8(GOE_FLIGHT_CLIMB, m.action);
     TEST_ASSERT_EQUAL_HEX8(GOE_MAVLINK_POSE_ALIVE, m.alive);
-    TEST_ASSERT_EQUAL_UINT8(255u, m.self_check); /* never cut to "right" */
+    TEST_ASSERT_EQUAL_UINT8(255u, m.self_check); /* never truncated to "right" */
     assessment.detector_alive = true;
     goe_mavlink_to_status(&counters, &assessment, 0u, &own, &m);
     TEST_ASSERT_EQUAL_HEX8(GOE_MAVLINK_DETECTOR_ALIVE | GOE_MAVLINK_POSE_ALIVE, m.alive);
@@ -218,11 +218,11 @@ static void sectors_of_5_degrees_go_out_as_they_are(void) {
     }
     const goe_mavlink_obstacle_distance_t m = distances(5u);
     TEST_ASSERT_EQUAL_UINT16_ARRAY(sector_cm, m.distances, GOE_FLIGHT_SECTORS);
-    sector_cm[1] = 0u; /* which ArduPilot would pass over */
+    sector_cm[1] = 0u; /* ArduPilot would ignore it */
     TEST_ASSERT_EQUAL_UINT16(1u, distances(5u).distances[1]);
 }
 
-/* By angles in floating point: every degree of an element has the distance of a sector that holds it, or a nearer one. */
+/* By angles in floating point: every degree of an element has the distance of the sector that contains it, or a nearer one. */
 static void no_obstacle_gets_lost_between_elements(void) {
     check_random_t any = check_random_start("sectors");
     for (unsigned increment = 5; increment <= 180; increment++) {
@@ -246,7 +246,7 @@ static void no_obstacle_gets_lost_between_elements(void) {
     }
 }
 
-static void elements_hold_nothing_of_others(void) {
+static void elements_contain_nothing_of_others(void) {
     sector_cm[9] = 700u; /* 42.5 to 47.5 degrees */
     sector_cm[36] = UNKNOWN;
     const goe_mavlink_obstacle_distance_t m = distances(15u);
@@ -259,7 +259,7 @@ static void elements_hold_nothing_of_others(void) {
     TEST_ASSERT_EQUAL_UINT16(CLEAR, distances(10u).distances[3]);
 }
 
-/* The element at bearing b lies at body angle b - heading = angle_offset + index times increment. */
+/* The element at bearing b is at body angle b - heading = angle_offset + index times increment. */
 static void elements_are_turned_into_the_body_frame(void) {
     const float heading_deg[] = {0.0f, 30.0f, 359.0f, -90.0f, 725.0f};
     const double offset_deg[] = {0.0, -30.0, -359.0, -270.0, -5.0};
@@ -269,7 +269,7 @@ static void elements_are_turned_into_the_body_frame(void) {
     }
 }
 
-static void what_cannot_be_told_in_sectors_is_refused(void) {
+static void input_that_does_not_fit_sectors_is_refused(void) {
     goe_mavlink_obstacle_distance_t m;
     TEST_ASSERT_FALSE(goe_mavlink_to_obstacle_distance(sector_cm, MAX_CM, 0u, &own, &m));
     TEST_ASSERT_FALSE(goe_mavlink_to_obstacle_distance(sector_cm, MAX_CM, 4u, &own, &m));
@@ -283,7 +283,7 @@ static void what_cannot_be_told_in_sectors_is_refused(void) {
 
 /* ------------------------------------------------------------------------------------------ other standard messages -- */
 
-static void the_nearest_point_is_told_in_the_body_frame(void) {
+static void the_nearest_point_is_reported_in_the_body_frame(void) {
     goe_mavlink_obstacle_distance_3d_t m;
     TEST_ASSERT_TRUE(goe_mavlink_to_obstacle_distance_3d(&obstacle, 250.0f, &own, &m));
     TEST_ASSERT_EQUAL_UINT32(705032704u, m.time_boot_ms);
@@ -309,7 +309,7 @@ static void a_collision_threatens_by_its_violation(void) {
     const uint8_t threat[] = {0u, 1u, 1u, 2u, 2u};
     goe_mavlink_collision_t m;
     for (int i = 0; i < 5; i++) {
-        obstacle.hazard.violation = violation[i];
+        obstacle.hazard.conflict_probability = violation[i];
         TEST_ASSERT_TRUE(goe_mavlink_to_collision(&obstacle, 1, &assessment, 0.1f, &m));
         TEST_ASSERT_EQUAL_UINT8(threat[i], m.threat_level);
         TEST_ASSERT_EQUAL_UINT8(1u, m.action);
@@ -332,7 +332,7 @@ static void a_collision_threatens_by_its_violation(void) {
 static void a_collision_names_the_action(void) {
     const uint8_t expected[] = {1u, 3u, 3u, 2u, 2u, 6u};
     goe_mavlink_collision_t m;
-    obstacle.hazard.violation = 0.2f;
+    obstacle.hazard.conflict_probability = 0.2f;
     for (int action = GOE_FLIGHT_NONE; action <= GOE_FLIGHT_HOLD; action++) {
         order((goe_flight_action_t)action, 1);
         TEST_ASSERT_TRUE(goe_mavlink_to_collision(&obstacle, 1, &assessment, 0.1f, &m));
@@ -402,17 +402,17 @@ static void traffic_lies_just_below_the_aircraft_or_at_the_top(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(an_obstacle_is_told_as_it_is);
+    RUN_TEST(an_obstacle_is_reported_as_it_is);
     RUN_TEST(what_is_not_known_is_nan);
     RUN_TEST(a_hazard_without_an_order_has_no_target);
-    RUN_TEST(an_order_is_told_with_what_it_is_about);
+    RUN_TEST(an_order_is_reported_with_its_obstacle);
     RUN_TEST(the_status_counts);
     RUN_TEST(sectors_of_5_degrees_go_out_as_they_are);
     RUN_TEST(no_obstacle_gets_lost_between_elements);
-    RUN_TEST(elements_hold_nothing_of_others);
+    RUN_TEST(elements_contain_nothing_of_others);
     RUN_TEST(elements_are_turned_into_the_body_frame);
-    RUN_TEST(what_cannot_be_told_in_sectors_is_refused);
-    RUN_TEST(the_nearest_point_is_told_in_the_body_frame);
+    RUN_TEST(input_that_does_not_fit_sectors_is_refused);
+    RUN_TEST(the_nearest_point_is_reported_in_the_body_frame);
     RUN_TEST(a_collision_threatens_by_its_violation);
     RUN_TEST(a_collision_names_the_action);
     RUN_TEST(a_target_is_the_middle_of_the_base);

@@ -1,7 +1,7 @@
-/* Whatever comes in: no number out of its range, no byte outside, and of what the headers promise finite numbers only.
+/* For any input: no number out of its range, no byte written outside, and finite numbers only where the headers promise them.
  * SPDX-License-Identifier: MIT
  *
- * Payloads, structures and answers of random bits, told by bits alone, so that the test holds also where the sources were
+ * Payloads, structures and answers are random bits, checked by their bits alone, so that the test also works if the sources were
  * compiled with -ffast-math. GOE_TEST_SEED and GOE_TEST_UPDATES set seed and length. */
 #include <stdlib.h>
 #include <string.h>
@@ -32,7 +32,7 @@ static void random_bytes(void *to, size_t count) {
     }
 }
 
-/* A number of the size that belongs there; sometimes anything. */
+/* A number of plausible size; sometimes arbitrary bits. */
 static float some(double low, double high) {
     return one_in(20) ? check_from_bits(check_random_bits(&any)) : (float)check_random_between(&any, low, high);
 }
@@ -148,7 +148,7 @@ static goe_flight_obstacle_t some_obstacle(void) {
     fill(obstacle.covariance_ne_m2, 3, 0.0, 1.0e3);
     fill(&obstacle.height_m, 1, 0.0, 200.0);
     fill(obstacle.nearest_body_m, 3, -1.0, 1.0);
-    fill(&obstacle.hazard.time_s, 7, 0.0, 1.0);
+    fill(&obstacle.hazard.tcpa_s, 7, 0.0, 1.0);
     obstacle.hazard.has_clearance = one_in(2);
     return obstacle;
 }
@@ -181,9 +181,9 @@ static void fuzz_distance(const goe_mavlink_own_t *own) {
     goe_mavlink_obstacle_distance_t m;
     random_bytes(sector_cm, sizeof sector_cm);
     const uint16_t max_cm = (uint16_t)check_random_bits(&any);
-    const bool told = goe_mavlink_to_obstacle_distance(sector_cm, max_cm, check_random_bits(&any) % 100u, own, &m);
+    const bool written = goe_mavlink_to_obstacle_distance(sector_cm, max_cm, check_random_bits(&any) % 100u, own, &m);
     check_floats(&m.increment_f, 2);
-    for (int i = 0; told && i < GOE_FLIGHT_SECTORS; i++) {
+    for (int i = 0; written && i < GOE_FLIGHT_SECTORS; i++) {
         TEST_ASSERT_TRUE(m.distances[i] >= 1u && (m.distances[i] <= max_cm + 1u || m.distances[i] == 65535u));
     }
 }
@@ -191,10 +191,10 @@ static void fuzz_distance(const goe_mavlink_own_t *own) {
 static void fuzz_vehicle(const goe_flight_obstacle_t *obstacle, const goe_mavlink_own_t *own) {
     goe_mavlink_adsb_vehicle_t m;
     const int slot = (int)(check_random_bits(&any) % 2000u) - 1000;
-    const bool told = goe_mavlink_to_adsb_vehicle(obstacle, slot, check_random_bits(&any), own, &m);
+    const bool written = goe_mavlink_to_adsb_vehicle(obstacle, slot, check_random_bits(&any), own, &m);
     TEST_ASSERT_TRUE(m.icao_address <= 0xFFFFFFu);
     TEST_ASSERT_EQUAL(0, m.callsign[8]);
-    TEST_ASSERT_TRUE(!told || (m.altitude >= -2000000000 && m.altitude <= 2000000000));
+    TEST_ASSERT_TRUE(!written || (m.altitude >= -2000000000 && m.altitude <= 2000000000));
 }
 
 static void fuzz_out(void) {
@@ -203,15 +203,15 @@ static void fuzz_out(void) {
     const goe_mavlink_own_t own = some_own();
     const int slot = (int)(check_random_bits(&any) % 4u);
     goe_flight_counters_t counters;
-    goe_mavlink_obstacle_t told;
+    goe_mavlink_obstacle_t message;
     goe_mavlink_hazard_t hazard;
     goe_mavlink_status_t status;
     goe_mavlink_obstacle_distance_3d_t distance_3d;
     goe_mavlink_collision_t collision;
     goe_mavlink_target_absolute_t target;
     random_bytes(&counters, sizeof counters);
-    goe_mavlink_to_obstacle(&obstacle, slot, &own, &told);
-    TEST_ASSERT_TRUE(own.origin_known || told.lat == INT32_MAX);
+    goe_mavlink_to_obstacle(&obstacle, slot, &own, &message);
+    TEST_ASSERT_TRUE(own.origin_known || message.lat == INT32_MAX);
     (void)goe_mavlink_to_hazard(&obstacle, slot, &assessment, &own, &hazard);
     TEST_ASSERT_TRUE((hazard.flags & GOE_MAVLINK_ORDER) != 0u || hazard.action == 0u);
     goe_mavlink_to_status(&counters, &assessment, check_random_bits(&any), &own, &status);

@@ -1,8 +1,8 @@
-/* What a change of the library could change, as one hash for each kind of input. SPDX-License-Identifier: MIT
+/* Computes one hash of the library's behavior for each kind of input. SPDX-License-Identifier: MIT
  *
  * `python -m ci evidence --only mutation` runs it with the library and with each mutant that no unit test notices: lines
- * that differ tell what the mutant changes, and a mutant that changes none counts as the same program. It asserts nothing, and its
- * hashes are of this machine: they are compared with those of the library as it is, never kept. */
+ * that differ show what the mutant changes, and a mutant that changes none counts as the same program. It asserts nothing. Its
+ * hashes depend on this machine: they are compared with those of the unchanged library, never stored. */
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>
@@ -42,7 +42,7 @@ static void add_number(int number) { add_bytes(&number, sizeof number); }
 
 static void add_text(const char *text) { add_bytes(text ? text : "", text ? strlen(text) : 0u); }
 
-/* A struct's own padding is nobody's. */
+/* A struct's own padding is undefined. */
 static void add_estimate(const goe_estimate_t *e) {
     add_number((int)e->method);
     add_number((int)e->model);
@@ -50,7 +50,7 @@ static void add_estimate(const goe_estimate_t *e) {
     add_number(e->fresh ? 1 : 0);
     add_number(e->suspect ? 1 : 0);
     add_number((int)e->reason);
-    add_bytes(&e->points, sizeof *e - offsetof(goe_estimate_t, points));
+    add_bytes(&e->images_used, sizeof *e - offsetof(goe_estimate_t, images_used));
 }
 
 static void begin(uint64_t seed) {
@@ -61,7 +61,7 @@ static void begin(uint64_t seed) {
     }
 }
 
-static void tell(const char *what) { printf("%s %016llx\n", what, (unsigned long long)hash); }
+static void print_hash(const char *what) { printf("%s %016llx\n", what, (unsigned long long)hash); }
 
 static void add_answers(void) {
     float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
@@ -69,12 +69,13 @@ static void add_answers(void) {
     add_bytes(covariance, sizeof covariance);
     for (int i = 0; i < PLANS; i++) {
         goe_hazard_t hazard;
-        const goe_plan_t plan = {{(float)between(-20.0, 25.0), (float)between(-20.0, 20.0), (float)between(-3.0, 3.0)},
-                                 (float)between(0.0, 30.0),
-                                 (float)between(0.0, 20.0),
-                                 one_in(3) ? (float)between(0.0, 2.0) : 0.0f,
-                                 one_in(3) ? (float)between(0.0, 1.0) : 0.0f};
-        add_number((int)goe_hazard(&estimator, &plan, &hazard));
+        const goe_intent_t intent = {
+            {(float)between(-20.0, 25.0), (float)between(-20.0, 20.0), (float)between(-3.0, 3.0)},
+            (float)between(0.0, 30.0),
+            (float)between(0.0, 20.0),
+            one_in(3) ? (float)between(0.0, 2.0) : 0.0f,
+            one_in(3) ? (float)between(0.0, 1.0) : 0.0f};
+        add_number((int)goe_hazard(&estimator, &intent, &hazard));
         add_bytes(&hazard, offsetof(goe_hazard_t, has_clearance));
         add_number(hazard.has_clearance ? 1 : 0);
     }
@@ -90,7 +91,7 @@ static void update(const goe_image_t *image) {
 
 /* ------------------------------------------------------------------------------------------------------------- flights -- */
 
-/* What is flown past, how, and what the pose and the detector do wrong. */
+/* Obstacle and path of a flight, and the errors of its pose and detector. */
 typedef struct {
     scene_t scene;
     bool moving, late, outline_only, gaps, resets, own_noise;
@@ -151,24 +152,24 @@ static void any_settings(const flight_t *flight, goe_settings_t *settings) {
     settings->window.points = 3 + (int)below(6);
     settings->window.line_points = 1 + (int)below(12);
     settings->window.orientation_memory = 1 + (int)below(30);
-    navigation->attitude_drift_deg = one_in(3) ? (float)between(0.0, 0.3) : 0.0f;
-    navigation->position_walk_m = (float)between(0.0, 0.3);
-    navigation->position_white_m = one_in(3) ? (float)between(0.0, 0.5) : 0.0f;
-    navigation->height_white_m = one_in(3) ? (float)between(0.0, 1.0) : 0.0f;
-    navigation->velocity_bias_m_s = (float)between(0.0, 0.3);
-    navigation->slope = one_in(3) ? (float)between(0.0, 0.1) : 0.0f;
-    navigation->ground_m = (float)between(0.0, 5.0);
-    detector->point_px = (float)(0.3 + flight->noise_px);
-    detector->point_share = one_in(3) ? (float)between(0.0, 0.1) : 0.0f;
+    navigation->attitude_walk_sd_deg = one_in(3) ? (float)between(0.0, 0.3) : 0.0f;
+    navigation->position_walk_sd_m = (float)between(0.0, 0.3);
+    navigation->position_white_sd_m = one_in(3) ? (float)between(0.0, 0.5) : 0.0f;
+    navigation->height_white_sd_m = one_in(3) ? (float)between(0.0, 1.0) : 0.0f;
+    navigation->velocity_bias_sd_m_s = (float)between(0.0, 0.3);
+    navigation->terrain_slope_sd = one_in(3) ? (float)between(0.0, 0.1) : 0.0f;
+    navigation->terrain_height_sd_m = (float)between(0.0, 5.0);
+    detector->point_noise_px = (float)(0.3 + flight->noise_px);
+    detector->point_noise_rel = one_in(3) ? (float)between(0.0, 0.1) : 0.0f;
     detector->point_correlation = one_in(3) ? (float)between(0.0, 0.9) : 0.0f;
-    detector->shape_share = one_in(3) ? (float)between(0.0, 0.2) : 0.0f;
-    detector->box_px = (float)(0.3 + flight->noise_px);
-    detector->box_share = (float)between(0.0, 0.1);
-    detector->correlation_s = (float)between(0.0, 3.0);
-    settings->refined.top_is_highest = one_in(2);
-    settings->refined.misfit_max = (float)between(0.5, 3.0);
-    settings->refined.range_share = one_in(3) ? (float)between(0.05, 1.0) : 0.25f;
-    settings->refined.typical_size_m = (float)between(2.0, 30.0);
+    detector->shape_error_rel = one_in(3) ? (float)between(0.0, 0.2) : 0.0f;
+    detector->box_noise_px = (float)(0.3 + flight->noise_px);
+    detector->box_noise_rel = (float)between(0.0, 0.1);
+    detector->box_correlation_time_s = (float)between(0.0, 3.0);
+    settings->filter.top_is_highest = one_in(2);
+    settings->filter.nis_ratio_max = (float)between(0.5, 3.0);
+    settings->filter.range_sd_rel_max = one_in(3) ? (float)between(0.05, 1.0) : 0.25f;
+    settings->filter.prior_width_m = (float)between(2.0, 30.0);
 }
 
 static void any_flight(flight_t *flight) {
@@ -190,10 +191,10 @@ static void drop_features(const flight_t *flight, goe_image_t *image) {
                                &image->base_left, &image->base_near, &image->base_right};
     for (size_t i = 0; i < 6; i++) {
         const bool base = i >= 3;
-        features[i]->seen =
-            features[i]->seen && !(flight->outline_only && base) && !(flight->gaps && one_in(base ? 5u : 8u));
+        features[i]->visible =
+            features[i]->visible && !(flight->outline_only && base) && !(flight->gaps && one_in(base ? 5u : 8u));
     }
-    image->box.seen = (uint8_t)(image->box.seen & (flight->gaps && one_in(5) ? below(16) : 15u));
+    image->box.sides = (uint8_t)(image->box.sides & (flight->gaps && one_in(5) ? below(16) : 15u));
 }
 
 static void disturb(const flight_t *flight, int k, goe_image_t *image) {
@@ -245,7 +246,7 @@ static void fly(int number) {
         disturb(&flight, k, &image);
         update(&image);
     }
-    add_bytes(estimator.causes, sizeof estimator.causes);
+    add_bytes(estimator.fault_counts, sizeof estimator.fault_counts);
 }
 
 static void flights(void) {
@@ -255,7 +256,7 @@ static void flights(void) {
         all = all * 31u + hash;
     }
     hash = all;
-    tell("flights");
+    print_hash("flights");
 }
 
 /* ---------------------------------------------------------------------------------------------------------- bad input -- */
@@ -265,7 +266,7 @@ static void spoil(void *memory, size_t size) {
     memcpy((unsigned char *)memory + 4u * below((uint32_t)(size / 4u)), &bits, sizeof bits);
 }
 
-/* An estimator that is being flown, and images of which words are overwritten; all of a bool's values are legal ones. */
+/* An estimator in flight, and images with overwritten words; only legal values for a bool. */
 static void hostile(void) {
     uint64_t all = 0;
     for (int i = 0; i < HOSTILE_TRACKS; i++) {
@@ -291,16 +292,16 @@ static void hostile(void) {
             image.camera = one_in(30) ? 1 : 0;
             update(&image);
         }
-        add_bytes(estimator.causes, sizeof estimator.causes);
+        add_bytes(estimator.fault_counts, sizeof estimator.fault_counts);
         all = all * 31u + hash;
     }
     hash = all;
-    tell("hostile");
+    print_hash("hostile");
 }
 
-/* ----------------------------------------------------------------------------------------------------- what is no flight -- */
+/* ------------------------------------------------------------------------------------------------ calls without a flight -- */
 
-/* Every number of the settings, alone, to each end of what a float is; told by name which is refused. */
+/* Each number of the settings alone, set to each end of the float range; the name of a refused one is reported. */
 static void settings_alone(void) {
     static const float values[] = {0.0f,   -1.0f,  1.0e-4f, 0.05f, 0.5f,   1.0f,     2.0f,    30.0f,
                                    100.0f, 360.0f, 1000.0f, 1e4f,  1.0e5f, 1.001e5f, -1.0e5f, 1.0e30f};
@@ -319,14 +320,14 @@ static void settings_alone(void) {
             add_text(bad);
         }
     }
-    tell("settings");
+    print_hash("settings");
 }
 
 static void calls(void) {
     goe_estimate_t estimate;
     goe_image_t image;
     goe_hazard_t hazard;
-    const goe_plan_t plan = {{1.0f, 0.0f, 0.0f}, 1.0f, 1.0f, 0.0f, 0.0f};
+    const goe_intent_t intent = {{1.0f, 0.0f, 0.0f}, 1.0f, 1.0f, 0.0f, 0.0f};
     begin(2);
     for (int i = -40; i < 40; i++) {
         add_text(goe_status_text((goe_status_t)i));
@@ -341,13 +342,13 @@ static void calls(void) {
     add_number((int)goe_update(&estimator, &image, NULL));
     add_number((int)goe_reset(&estimator));
     add_number((int)goe_reset(NULL));
-    add_number((int)goe_hazard(&estimator, &plan, &hazard));
-    add_number((int)goe_hazard(NULL, &plan, &hazard));
+    add_number((int)goe_hazard(&estimator, &intent, &hazard));
+    add_number((int)goe_hazard(NULL, &intent, &hazard));
     add_number((int)goe_hazard(&estimator, NULL, &hazard));
-    add_number((int)goe_hazard(&estimator, &plan, NULL));
+    add_number((int)goe_hazard(&estimator, &intent, NULL));
     add_number((int)goe_init(NULL, sizeof estimator, NULL, NULL));
     add_number((int)goe_init(&estimator, 1, NULL, NULL));
-    tell("calls");
+    print_hash("calls");
 }
 
 int main(void) {

@@ -1,4 +1,4 @@
-/* What each part of the library answers, as hashes; and that what is left out is refused. SPDX-License-Identifier: MIT */
+/* Prints the answers of each part of the library as hashes, and checks that a missing part is refused. SPDX-License-Identifier: MIT */
 #include <stdio.h>
 #include <string.h>
 
@@ -12,7 +12,7 @@ static void print(const char *name, const replay_t *replay, bool present) {
     }
 }
 
-/* A method that is not there is named by goe_init. */
+/* goe_init names a method that is not compiled in. */
 static bool refuses(goe_method_t method) {
     goe_estimator_t estimator;
     goe_settings_t settings;
@@ -20,14 +20,14 @@ static bool refuses(goe_method_t method) {
     goe_settings_default(&settings);
     settings.camera.fx_px = settings.camera.fy_px = 900.0f;
     if (goe_init(&estimator, sizeof estimator, &settings, &bad) != GOE_OK) {
-        return false; /* the default method is one that is there */
+        return false; /* the default method is a compiled one */
     }
     settings.method = method;
     return goe_init(&estimator, sizeof estimator, &settings, &bad) == GOE_BAD_SETTINGS && bad &&
            strcmp(bad, "method") == 0;
 }
 
-/* Settings of a part that is not there are neither read nor checked; those of one that is are. */
+/* Settings of a missing part are neither read nor checked; those of an existing one are. */
 static bool ignores(bool present, void (*spoil)(goe_settings_t *settings)) {
     goe_estimator_t estimator;
     goe_settings_t settings;
@@ -38,18 +38,18 @@ static bool ignores(bool present, void (*spoil)(goe_settings_t *settings)) {
 }
 
 static void spoil_window(goe_settings_t *settings) { settings->window.points = -1; }
-static void spoil_refined(goe_settings_t *settings) { settings->refined.gate_sigma = -1.0f; }
+static void spoil_refined(goe_settings_t *settings) { settings->filter.gate_sigma = -1.0f; }
 
 int main(void) {
     replay_parts_t parts;
     replay_parts(&parts);
     print("window", &parts.window, GOE_WITH_WINDOW);
-    print("refined", &parts.refined, GOE_WITH_REFINED);
+    print("filter", &parts.filter, GOE_WITH_FILTER);
     print("window_hazard", &parts.window_hazard, GOE_WITH_WINDOW && GOE_WITH_HAZARD);
-    print("refined_hazard", &parts.refined_hazard, GOE_WITH_REFINED && GOE_WITH_HAZARD);
+    print("refined_hazard", &parts.refined_hazard, GOE_WITH_FILTER && GOE_WITH_HAZARD);
     printf("bytes %zu\n", sizeof(goe_estimator_t));
     const bool refused =
-        (GOE_WITH_WINDOW || refuses(GOE_METHOD_WINDOW)) && (GOE_WITH_REFINED || refuses(GOE_METHOD_REFINED));
-    const bool ignored = ignores(GOE_WITH_WINDOW, spoil_window) && ignores(GOE_WITH_REFINED, spoil_refined);
+        (GOE_WITH_WINDOW || refuses(GOE_METHOD_WINDOW)) && (GOE_WITH_FILTER || refuses(GOE_METHOD_FILTER));
+    const bool ignored = ignores(GOE_WITH_WINDOW, spoil_window) && ignores(GOE_WITH_FILTER, spoil_refined);
     return refused && ignored ? 0 : 1;
 }

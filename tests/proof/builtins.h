@@ -1,9 +1,9 @@
-/* What the compiler has built in and the analyser has not, and all of <math.h> that the library takes: without the conditions that
- * Frama-C's own puts on a root, as that of a negative number is no number, and nothing else. SPDX-License-Identifier: MIT */
+/* Functions built into the compiler but unknown to the analyzer, and all of <math.h> that the library uses. Frama-C's own declarations
+ * put conditions on a root, because the root of a negative number is NaN; these do not. SPDX-License-Identifier: MIT */
 #ifndef GOE_PROOF_BUILTINS_H
 #define GOE_PROOF_BUILTINS_H
 
-#define __FC_MATH /* Frama-C's own is there */
+#define __FC_MATH /* Frama-C's own is used */
 
 /*@ assigns \result \from x; */
 float sqrtf(float x);

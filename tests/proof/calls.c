@@ -12,9 +12,9 @@ static void update(int method) {
 }
 
 void proof_update_window(void) { update(GOE_METHOD_WINDOW); }
-void proof_update_refined(void) { update(GOE_METHOD_REFINED); }
+void proof_update_refined(void) { update(GOE_METHOD_FILTER); }
 
-/* Null pointers, memory that was never initialised, an image of a camera that there is none of. */
+/* Null pointers, memory that was never initialized, an image of a camera that does not exist. */
 static void update_refuses(void) {
     goe_estimator_t estimator;
     goe_image_t image;
@@ -62,33 +62,33 @@ void proof_covariance(void) {
 
 void proof_hazard(void) {
     goe_estimator_t estimator;
-    goe_plan_t plan;
+    goe_intent_t intent;
     goe_hazard_t hazard;
     any_estimator(&estimator, 0);
-    ANY_BITS(plan);
-    (void)goe_hazard(NULL, &plan, &hazard);
+    ANY_BITS(intent);
+    (void)goe_hazard(NULL, &intent, &hazard);
     (void)goe_hazard(&estimator, NULL, &hazard);
-    (void)goe_hazard(&estimator, &plan, NULL);
-    (void)goe_hazard(&estimator, &plan, &hazard);
+    (void)goe_hazard(&estimator, &intent, NULL);
+    (void)goe_hazard(&estimator, &intent, &hazard);
 }
 
 void proof_decide(void) {
     goe_estimator_t estimator;
-    goe_plan_t plan;
+    goe_intent_t intent;
     goe_rule_t rule;
     goe_hazard_t hazard;
     any_estimator(&estimator, 0);
-    ANY_BITS(plan);
+    ANY_BITS(intent);
     ANY_BITS(rule);
     ANY_BITS(hazard);
     goe_rule_default(NULL);
-    (void)goe_soonest_s(NULL);
-    (void)goe_soonest_s(&hazard);
-    (void)goe_decide(NULL, &plan, &rule, &hazard);
+    (void)goe_earliest_tcpa_s(NULL);
+    (void)goe_earliest_tcpa_s(&hazard);
+    (void)goe_decide(NULL, &intent, &rule, &hazard);
     (void)goe_decide(&estimator, NULL, &rule, &hazard);
-    (void)goe_decide(&estimator, &plan, &rule, ANY_TRUTH() ? &hazard : NULL);
+    (void)goe_decide(&estimator, &intent, &rule, ANY_TRUTH() ? &hazard : NULL);
     goe_rule_default(&rule);
-    (void)goe_decide(&estimator, &plan, NULL, NULL);
+    (void)goe_decide(&estimator, &intent, NULL, NULL);
 }
 
 static void texts(void) {
@@ -100,7 +100,7 @@ static void texts(void) {
 
 static void self_check(void) { (void)goe_self_check(); }
 
-/* What is analysed in a moment. */
+/* The calls that are analyzed quickly. */
 void proof_short_calls(void) {
     update_refuses();
     init();

@@ -1,4 +1,4 @@
-/* Finite for what is finite and within its range: analysed with an alarm for every result that is not.
+/* Finite results for finite arguments within their ranges: analyzed with an alarm for every result that is not finite.
  * SPDX-License-Identifier: MIT */
 #include <float.h>
 
@@ -14,7 +14,7 @@
 
 #define BETWEEN(low, high) Frama_C_float_interval((low), (high))
 #define FINITE() BETWEEN(-FLT_MAX, FLT_MAX)
-#define METRES_MAX 1.0e9f
+#define METERS_MAX 1.0e9f
 
 void proof_finite_angle(void) {
     float sine;
@@ -62,9 +62,9 @@ void proof_finite_mean(void) {
     ANY_BITS(mean.next);
     ANY_BITS(mean.count);
     for (int i = 0; i < GOE_WINDOW_MAX; i++) {
-        mean.value[i] = BETWEEN(-METRES_MAX, METRES_MAX);
+        mean.value[i] = BETWEEN(-METERS_MAX, METERS_MAX);
     }
-    const goe_average_t average = goe_mean_add(&mean, ANY(3, GOE_WINDOW_MAX), BETWEEN(-METRES_MAX, METRES_MAX));
+    const goe_average_t average = goe_mean_add(&mean, ANY(3, GOE_WINDOW_MAX), BETWEEN(-METERS_MAX, METERS_MAX));
     //@ check \is_finite(average.mean) && \is_finite(average.variance);
     //@ check 0 <= average.variance;
 }

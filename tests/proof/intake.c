@@ -1,5 +1,5 @@
-/* What is beyond its range, or no number, is refused, whatever the rest holds: so what passes is within. One number at a time, as
- * the analyser keeps intervals: each is set to what lies above its range, below it, and to what is no number.
+/* Values beyond their ranges and NaN are refused whatever the other fields contain, so accepted values are within. One number at a time,
+ * because the analyzer keeps intervals: each is set to the values above its range, below it, and to NaN.
  * SPDX-License-Identifier: MIT */
 #include <float.h>
 
@@ -14,14 +14,14 @@
 
 #define SET_BITS(x, low, high) (*(uint32_t *)(void *)&(x) = Frama_C_unsigned_int_interval((low), (high)))
 
-/* Both infinities. Of a NaN that is given by value the analyser keeps no bits: that each is refused is left to the unit tests. */
+/* Both infinities. The analyzer keeps no bits of a NaN that is passed by value, so the unit tests check that each NaN is refused. */
 #define INFINITIES(x, is_refused)                                                                                      \
     SET_BITS(x, 0x7F800000u, 0x7F800000u);                                                                             \
     is_refused;                                                                                                        \
     SET_BITS(x, 0xFF800000u, 0xFF800000u);                                                                             \
     is_refused;
 
-/* ... and every NaN, for what reads the bits where they lie. */
+/* ... and every NaN, for code that reads the bits in place. */
 #define NO_NUMBERS(x, is_refused)                                                                                      \
     SET_BITS(x, 0x7F800000u, 0x7FFFFFFFu);                                                                             \
     is_refused;                                                                                                        \
@@ -38,7 +38,7 @@ static void image_is_refused(void) {
     //@ check GOE_BAD_ATTITUDE <= status <= GOE_NOT_FINITE;
 }
 
-/* The field of the image that is at this place, with all else as it is. */
+/* The field of the image at this place, with all others as they are. */
 static void refuses(float *field, float limit) {
     *field = Frama_C_float_interval(JUST_OVER(limit), FLT_MAX);
     image_is_refused();
@@ -49,16 +49,16 @@ static void refuses(float *field, float limit) {
 }
 
 static void refuses_pixel(goe_pixel_t *pixel) {
-    pixel->seen = true;
+    pixel->visible = true;
     refuses(&pixel->u_px, 1.0e5f);
     refuses(&pixel->v_px, 1.0e5f);
-    ANY_BITS(pixel->seen);
+    ANY_BITS(pixel->visible);
 }
 
 static void refuses_side(float *side, uint8_t bit) {
-    image.box.seen = bit;
+    image.box.sides = bit;
     refuses(side, 1.0e5f);
-    ANY_BITS(image.box.seen);
+    ANY_BITS(image.box.sides);
 }
 
 static void refuses_pixels(void) {
@@ -68,10 +68,10 @@ static void refuses_pixels(void) {
     refuses_pixel(&image.base_left);
     refuses_pixel(&image.base_near);
     refuses_pixel(&image.base_right);
-    refuses_side(&image.box.left_px, GOE_SEES_LEFT);
-    refuses_side(&image.box.top_px, GOE_SEES_TOP);
-    refuses_side(&image.box.right_px, GOE_SEES_RIGHT);
-    refuses_side(&image.box.bottom_px, GOE_SEES_BOTTOM);
+    refuses_side(&image.box.left_px, GOE_SIDE_LEFT);
+    refuses_side(&image.box.top_px, GOE_SIDE_TOP);
+    refuses_side(&image.box.right_px, GOE_SIDE_RIGHT);
+    refuses_side(&image.box.bottom_px, GOE_SIDE_BOTTOM);
 }
 
 static void refuses_reset(void) {
@@ -116,9 +116,9 @@ static void refuses_noise(float *field, float limit) {
 
 void proof_intake_noise(void) {
     ANY_BITS(noise);
-    refuses_noise(&noise.attitude_deg, 30.0f);
-    refuses_noise(&noise.height_m, 1.0e3f);
-    refuses_noise(&noise.pixel_px, 100.0f);
+    refuses_noise(&noise.attitude_sd_deg, 30.0f);
+    refuses_noise(&noise.height_sd_m, 1.0e3f);
+    refuses_noise(&noise.pixel_sd_px, 100.0f);
 }
 
 /* ----------------------------------------------------------------------------------------------------------- settings -- */
@@ -149,7 +149,7 @@ static void refuses_COUNT(void *field, int low, int high) {
     ANY_BITS(*at);
 }
 
-/* The compiler may take an enumeration for an unsigned number. */
+/* The compiler may represent an enumeration as an unsigned number. */
 static void refuses_CHOICE(void *field, int low, int high) {
     int *at = field;
     *at = ANY(high + 1, INT32_MAX);
@@ -185,7 +185,7 @@ void proof_settings_general(void) {
 
 void proof_settings_refined(void) {
     ANY_BITS(settings);
-    GOE_SETTINGS_REFINED(REFUSES)
+    GOE_SETTINGS_FILTER(REFUSES)
 }
 
 /* ------------------------------------------------------------------------------------------------------------ answers -- */
@@ -199,7 +199,7 @@ static void numbers_are_refused(void) {
     //@ check !finite;
 }
 
-/* What goe_update() asks of an answer before it leaves: one infinity or NaN among any other bits is found, wherever it is. */
+/* goe_update() checks each answer before it returns: one infinity or NaN among any other bits is found, at any place. */
 void proof_answer(void) {
     for (int i = 0; i < NUMBERS; i++) {
         ANY_BITS(numbers);

@@ -1,5 +1,5 @@
-/* The replay of tests/targets/flight_main.c, whose hash must stay the golden one while every sample and every frame goes the way that
- * it goes in PX4: as a topic, through GoeConversion. Linked with --wrap. SPDX-License-Identifier: MIT */
+/* The replay of tests/targets/flight_main.c, whose hash must stay the golden one while every sample and every frame is sent as in PX4:
+ * as a topic, through GoeConversion. Linked with --wrap. SPDX-License-Identifier: MIT */
 #include <cstring>
 
 #include "GoeConversion.hpp"
@@ -15,9 +15,9 @@ goe_flight_status_t __wrap_goe_flight_frame(goe_flight_t *flight, const goe_flig
 
 namespace {
 
-constexpr uint64_t EPOCH_US = uint64_t{7} << 32; /* of PX4's 64 bits, which the layer does not see */
+constexpr uint64_t EPOCH_US = uint64_t{7} << 32; /* PX4's upper 32 of 64 bits, which the layer does not get */
 
-/* PX4 tells of every jump how large it is; one of unknown size is one that was missed. */
+/* PX4 reports the size of every jump; a jump of unknown size is one that was missed. */
 uint8_t count_reset(const goe_flight_position_t &sample) {
     static uint32_t mark;
     static uint8_t count;
@@ -81,11 +81,11 @@ goe_flight_status_t __wrap_goe_flight_frame(goe_flight_t *flight, const goe_flig
     topic.box[1] = detection.box.top_px;
     topic.box[2] = detection.box.right_px;
     topic.box[3] = detection.box.bottom_px;
-    topic.seen = detection.box.seen;
+    topic.sides = detection.box.sides;
     for (unsigned i = 0; i < sizeof point / sizeof point[0]; i++) {
         topic.u[i] = point[i].u_px;
         topic.v[i] = point[i].v_px;
-        topic.points = static_cast<uint8_t>(topic.points | (point[i].seen ? 1u << i : 0u));
+        topic.points = static_cast<uint8_t>(topic.points | (point[i].visible ? 1u << i : 0u));
     }
     goe_px4::sighting(topic, sighting);
     return __real_goe_flight_frame(flight, &sighting.frame);

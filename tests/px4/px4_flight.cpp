@@ -1,7 +1,7 @@
-/* A flight as PX4's topics tell it. SPDX-License-Identifier: MIT */
+/* A flight as PX4's topics. SPDX-License-Identifier: MIT */
 #include "px4_flight.hpp"
 
-static constexpr uint64_t LATE_US = 4000; /* from a sample to its publication */
+static constexpr uint64_t LATE_US = 4000; /* between a sample and its publication */
 static constexpr float CAMERA_PX = 1280.f;
 
 int goe_command(const char *word) {
@@ -23,7 +23,7 @@ void Px4Flight::begin(uint64_t clock_us, bool set_camera) {
         standin::set("GOE_CAM_H", CAMERA_PX);
         standin::set("GOE_CAM_FX", flown.scene.camera.fx_px);
     }
-    tells_pose = tells_images = in_step = true;
+    sends_pose = sends_images = in_step = true;
     follows = set_camera;
     position = vehicle_local_position_s{};
     quat_reset_counter = 0;
@@ -87,14 +87,14 @@ void Px4Flight::publish_pose() {
 goe_features_s Px4Flight::features_of(int k) const {
     goe_features_s topic{};
     const goe_flight_detection_t detection = flown_detection(&flown, k);
-    const bool sees = flown.sees && detection.box.seen == GOE_SEES_BOX;
+    const bool detects = flown.detects && detection.box.sides == GOE_SIDES_ALL;
     topic.timestamp = standin::now_us();
     topic.timestamp_sample = time_of(k);
     topic.time_sd = 1000u;
-    topic.number = sees ? 1 : 0;
+    topic.number = detects ? 1 : 0;
     topic.id = detection.id;
     topic.score = detection.score;
-    topic.seen = detection.box.seen;
+    topic.sides = detection.box.sides;
     topic.box[0] = detection.box.left_px;
     topic.box[1] = detection.box.top_px;
     topic.box[2] = detection.box.right_px;
@@ -111,17 +111,17 @@ void Px4Flight::publish_image(int k, uint64_t capture_us) {
 void Px4Flight::step() {
     standin::advance(in_step ? time_of(flown.sample) + LATE_US - standin::now_us() : STEP_US);
     follow_status();
-    if (tells_pose) {
+    if (sends_pose) {
         publish_pose();
     }
     const int exposed = flown.sample - FLOWN_DELAY;
     flown.sample++;
-    if (tells_images && exposed >= 0 && exposed % FLOWN_IMAGE_EVERY == 0) {
+    if (sends_images && exposed >= 0 && exposed % FLOWN_IMAGE_EVERY == 0) {
         publish_image(exposed, time_of(exposed));
         if (follows) {
             const goe_flight_detection_t detection = flown_detection(&flown, exposed);
-            const bool sees = flown.sees && detection.box.seen == GOE_SEES_BOX;
-            goe_flight_frame_t frame = flown_frame(&flown, exposed, &detection, sees ? 1 : 0);
+            const bool detects = flown.detects && detection.box.sides == GOE_SIDES_ALL;
+            goe_flight_frame_t frame = flown_frame(&flown, exposed, &detection, detects ? 1 : 0);
             (void)goe_flight_frame(&reference, &frame);
         }
     }
@@ -170,7 +170,7 @@ static void compare_obstacle(const goe_flight_obstacle_t &o, const goe_obstacle_
     TEST_ASSERT_EQUAL_UINT32(o.id, topic.id);
     TEST_ASSERT_EQUAL(o.model, topic.model);
     TEST_ASSERT_EQUAL(o.suspect, topic.suspect);
-    TEST_ASSERT_EQUAL(o.passed, topic.passed);
+    TEST_ASSERT_EQUAL(o.receding, topic.receding);
     TEST_ASSERT_EQUAL(o.in_view, topic.in_view);
     CHECK_SAME(o.center_ned_m[0], topic.north);
     CHECK_SAME(o.center_ned_m[1], topic.east);
@@ -184,9 +184,9 @@ static void compare_obstacle(const goe_flight_obstacle_t &o, const goe_obstacle_
     same(o.width_m, (o.valid & GOE_HAS_WIDTH) != 0u, topic.width);
     same(o.length_m, (o.valid & GOE_HAS_LENGTH) != 0u, topic.length);
     same(o.height_m, (o.valid & GOE_HAS_HEIGHT) != 0u, topic.height);
-    same(o.hazard.time_s, o.has_hazard, topic.time_to);
-    same(o.hazard.miss_m, o.has_hazard, topic.miss);
-    same(o.hazard.violation, o.has_hazard, topic.violation);
+    same(o.hazard.tcpa_s, o.has_hazard, topic.tcpa);
+    same(o.hazard.dcpa_m, o.has_hazard, topic.dcpa);
+    same(o.hazard.conflict_probability, o.has_hazard, topic.conflict_probability);
     same(o.hazard.clearance_m, o.has_hazard && o.hazard.has_clearance, topic.clearance);
 }
 

@@ -1,5 +1,5 @@
-/* A flight of tests/flight/flown.h as PX4's topics tell it, the module on the stand-in's work queue, and beside it a flight layer that
- * is given the same by hand. SPDX-License-Identifier: MIT */
+/* A flight of tests/flight/flown.h as PX4's topics, the module on the stand-in's work queue, and a reference flight layer that gets the
+ * same input directly. SPDX-License-Identifier: MIT */
 #pragma once
 
 #include <cmath>
@@ -28,11 +28,11 @@ int goe_command(const char *word);
 
 class Px4Flight {
   public:
-    /* Sets the camera's parameters, starts the module. clock_us: of the first sample. */
+    /* Sets the camera's parameters and starts the module. clock_us: of the first sample. */
     void begin(uint64_t clock_us = 5000000u, bool set_camera = true);
     void end();
 
-    /* One sample on: 20 ms, and the image of 100 ms ago if one was taken then. */
+    /* Advances by one sample: 20 ms, and the image of 100 ms ago if one was taken then. */
     void step();
     void fly(double seconds);
 
@@ -48,9 +48,9 @@ class Px4Flight {
     uint64_t time_of(int k) const { return _start_us + STEP_US * static_cast<uint64_t>(k); }
 
     flown_t flown;
-    goe_flight_t reference; /* not told of what a test publishes itself */
-    bool tells_pose{true}, tells_images{true}, in_step{true};
-    bool follows{true}; /* the reference takes part and is compared at each status */
+    goe_flight_t reference; /* false: the test publishes this itself */
+    bool sends_pose{true}, sends_images{true}, in_step{true};
+    bool follows{true}; /* the reference runs, and is compared at each status */
     vehicle_local_position_s position{};
     uint8_t quat_reset_counter{0};
     unsigned compared{0}; /* obstacles */

@@ -1,5 +1,5 @@
-"""Makes the headers that PX4 would make of port/px4's messages and parameters, for the stand-in: the topics'
-structures, and a table of the parameters with their ranges."""
+"""Generates the headers that PX4 would generate from port/px4's messages and parameters, for the stand-in: the
+topics' structures, and a table of the parameters with their ranges."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ TYPES = {
     "int16": "int16_t", "uint32": "uint32_t", "int32": "int32_t", "uint64": "uint64_t", "int64": "int64_t",
 }  # fmt: skip
 HEAD = "/* Made by tests/px4/px4_headers.py. */\n#pragma once\n\n"
-NAME_MAX = 16  # characters of a parameter's name, MAVLink's limit
+NAME_MAX = 16  # MAVLink's limit on the characters of a parameter's name
 
 
 def topic_of(message: Path) -> str:
@@ -66,7 +66,7 @@ class Parameter:
 
 
 def parameters_of(module: Path) -> list[Parameter]:
-    """Reads the one form of YAML that module.yaml has: a name by six blanks, its keys by eight, bits by ten."""
+    """Reads the subset of YAML in module.yaml: a name is indented by six blanks, its keys by eight, bits by ten."""
     found: list[Parameter] = []
     for line in module.read_text(encoding="utf-8").splitlines():
         if name := re.fullmatch(r" {6}(GOE_\w+):", line):

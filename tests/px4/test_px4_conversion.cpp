@@ -1,11 +1,11 @@
-/* Topics of PX4 as the flight layer's input, MAVLink's images among them, and parameters as its settings. SPDX-License-Identifier: MIT */
+/* Topics of PX4, including MAVLink's images, as the flight layer's input, and parameters as its settings. SPDX-License-Identifier: MIT */
 #include "px4_flight.hpp"
 
 #include "goe_mavlink.h"
 
 static constexpr uint8_t NO_CAMERA = 255;
 static constexpr uint16_t FEATURES = 4270;
-static constexpr uint8_t SYSTEM = 1, COMPONENT = 1; /* as Px4Flight::set_mode() has them */
+static constexpr uint8_t SYSTEM = 1, COMPONENT = 1; /* as in Px4Flight::set_mode() */
 
 extern "C" void setUp(void) { standin::begin(1000000u); }
 extern "C" void tearDown(void) {}
@@ -73,13 +73,13 @@ static void the_controller_reports_the_flare() {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_FLARE, landing.phase());
 }
 
-/* PX4 publishes the flare while it lands, and does not take it back when it stops to. */
+/* PX4 publishes the flare while it lands, and does not withdraw it when it stops landing. */
 static void the_flare_of_an_earlier_landing_is_none() {
     Landing landing;
     landing.status.flaring = true;
     landing.status.timestamp = NOW_US - 600000u;
     TEST_ASSERT_EQUAL(GOE_FLIGHT_APPROACH, landing.phase());
-    landing.status.timestamp = NOW_US + 4000u; /* published between the cycle's begin and its assessment */
+    landing.status.timestamp = NOW_US + 4000u; /* published between the start of the cycle and its assessment */
     TEST_ASSERT_EQUAL(GOE_FLIGHT_FLARE, landing.phase());
     landing.setpoint.type = position_setpoint_s::SETPOINT_TYPE_LOITER;
     TEST_ASSERT_EQUAL(GOE_FLIGHT_FLYING, landing.phase());
@@ -150,7 +150,7 @@ static goe_mavlink_features_t features(uint32_t id) {
     message.time_usec = 900000u;
     message.obstacle_id = id;
     message.image_width = message.image_height = 1280;
-    message.seen = GOE_MAVLINK_SEES_BOX;
+    message.visible = GOE_MAVLINK_FEATURE_BOX;
     message.number = 3;
     message.score = 90;
     message.box[GOE_MAVLINK_LEFT] = -100;
@@ -169,7 +169,7 @@ static void append(mavlink_tunnel_s &tunnel, const goe_mavlink_features_t &messa
     tunnel.payload_length = static_cast<uint8_t>(tunnel.payload_length + 1u + length);
 }
 
-static void a_tunnel_holds_three_boxes() {
+static void a_tunnel_carries_three_boxes() {
     mavlink_tunnel_s tunnel{};
     goe_mavlink_sighting_t sighting;
     unsigned offset = 0;
@@ -190,7 +190,7 @@ static void a_tunnel_holds_three_boxes() {
     TEST_ASSERT_FALSE(goe_px4::next_of_tunnel(tunnel, offset, sighting));
 }
 
-static void a_tunnel_that_is_cut_holds_one_less() {
+static void a_tunnel_that_is_cut_carries_one_less() {
     mavlink_tunnel_s tunnel{};
     goe_mavlink_sighting_t sighting;
     unsigned offset = 0;
@@ -206,20 +206,20 @@ static void others_tunnels_are_theirs() {
     mavlink_tunnel_s tunnel{};
     goe_mavlink_sighting_t sighting;
     append(tunnel, features(1));
-    for (const uint16_t type : {0, 200, 42700}) { /* types above 32767 are for experiments that nobody else sees */
+    for (const uint16_t type : {0, 200, 42700}) { /* types above 32767 are for private experiments */
         unsigned offset = 0;
         tunnel.payload_type = type;
         TEST_ASSERT_FALSE(goe_px4::next_of_tunnel(tunnel, offset, sighting));
     }
 }
 
-/* Images that are taken of one TUNNEL to this system and component, by a vehicle that is system 1, component 1. */
+/* Number of images taken from one TUNNEL to this system and component, by a vehicle with system 1, component 1. */
 static unsigned taken_of_tunnel_to(uint8_t system, uint8_t component, bool knows_itself) {
     static Px4Flight flight;
     mavlink_tunnel_s tunnel{};
     flight.system = knows_itself ? SYSTEM : 0;
     flight.begin();
-    flight.follows = flight.tells_images = false;
+    flight.follows = flight.sends_images = false;
     flight.fly(0.5);
     goe_mavlink_features_t message = features(1);
     message.time_usec = standin::now_us() - 50000u;
@@ -240,17 +240,17 @@ static void a_tunnel_to_another_vehicle_is_not_taken() {
     TEST_ASSERT_EQUAL(1, taken_of_tunnel_to(SYSTEM, 0, true)); /* any component */
     TEST_ASSERT_EQUAL(0, taken_of_tunnel_to(SYSTEM, 191, true));
     TEST_ASSERT_EQUAL(0, taken_of_tunnel_to(2, COMPONENT, true));
-    TEST_ASSERT_EQUAL(0, taken_of_tunnel_to(0, 0, true)); /* to everybody: boxes are of one vehicle's camera */
+    TEST_ASSERT_EQUAL(0, taken_of_tunnel_to(0, 0, true)); /* to all systems: boxes belong to one vehicle's camera */
     TEST_ASSERT_EQUAL(0, taken_of_tunnel_to(SYSTEM, COMPONENT, false));
     TEST_ASSERT_EQUAL(0, taken_of_tunnel_to(0, 0, false));
 }
 
-/* Random bytes, lengths and types: each call moves on or ends, and what is not understood names no camera that there is. */
+/* Random bytes, lengths and types: each call advances or ends, and malformed data name no camera that does not exist. */
 static void any_bytes_in_a_tunnel_are_borne() {
     check_random_t random = check_random_start("tunnel");
     static Px4Flight flight;
     flight.begin();
-    flight.follows = flight.tells_images = false;
+    flight.follows = flight.sends_images = false;
     for (int i = 0; i < 2000; i++) {
         mavlink_tunnel_s tunnel{};
         for (uint8_t &byte : tunnel.payload) {
@@ -269,14 +269,14 @@ static void any_bytes_in_a_tunnel_are_borne() {
     flight.end();
 }
 
-/* The same flight by goe_features and by TUNNEL, boxes rounded to 0.1 px: the same to less than a sigma. */
+/* The same flight by goe_features and by TUNNEL, with boxes rounded to 0.1 px: equal to less than a sigma. */
 static void a_flight_by_tunnel_is_that_by_topic() {
     static Px4Flight flight;
     goe_obstacle_s by[2];
     for (int i = 0; i < 2; i++) {
         flight.begin();
         flight.follows = false;
-        flight.tells_images = i == 0;
+        flight.sends_images = i == 0;
         for (int k = 0; k < 200; k++) {
             flight.step();
             const int exposed = flight.flown.sample - 1 - FLOWN_DELAY;
@@ -331,11 +331,11 @@ static void a_landing_target_is_a_box_of_a_calibrated_age() {
     TEST_ASSERT_EQUAL(NO_CAMERA, sighting.frame.camera);
 }
 
-/* By default they are not looked at: a landing target is no obstacle. */
-static void landing_targets_are_taken_only_if_asked_for() {
+/* By default they are ignored: a landing target is no obstacle. */
+static void landing_targets_are_taken_only_if_enabled() {
     static Px4Flight flight;
     flight.begin();
-    flight.follows = flight.tells_images = false;
+    flight.follows = flight.sends_images = false;
     for (const int32_t inputs : {1, 2}) {
         standin::set("GOE_IN", inputs);
         flight.fly(1.2);
@@ -349,7 +349,7 @@ static void landing_targets_are_taken_only_if_asked_for() {
         bool has_delay = false; /* of the last whole second */
         for (int i = 0; i < 12; i++) {
             flight.fly(0.1);
-            has_delay = has_delay || flight.status().delay_mean > 80.f; /* GOE_LT_DELAY; else NaN */
+            has_delay = has_delay || flight.status().delay_mean > 80.f; /* GOE_LT_DELAY; otherwise NaN */
         }
         TEST_ASSERT_EQUAL(inputs == 2, has_delay);
     }
@@ -358,7 +358,7 @@ static void landing_targets_are_taken_only_if_asked_for() {
 
 /* ----------------------------------------------------------------------------------------------------------------- out -- */
 
-/* An order about slot 2, the worst one is slot 1. */
+/* An order about slot 2; the worst one is slot 1. */
 static goe_flight_assessment_t an_order() {
     goe_flight_assessment_t assessment{};
     assessment.action = GOE_FLIGHT_RIGHT;
@@ -373,7 +373,7 @@ static goe_flight_assessment_t an_order() {
 }
 
 /* [goe_flight_obstacle_t.length_m, goe_flight_obstacle_t.length_heading_deg] */
-static void an_obstacle_is_told_in_px4s_units() {
+static void an_obstacle_is_reported_in_px4s_units() {
     static goe_flight_t flight;
     goe_flight_obstacle_t from{};
     memset(&flight, 0, sizeof flight);
@@ -391,14 +391,14 @@ static void an_obstacle_is_told_in_px4s_units() {
         TEST_ASSERT_TRUE(topic.timestamp_sample == 0x1FFFFFF00u && topic.timestamp == 0x200000100u);
         TEST_ASSERT_TRUE(std::fabs(topic.lat - 47.4) < 1e-9 && std::fabs(topic.lon + 8.5) < 1e-9);
         CHECK_CLOSE(1e-6, 1.5707963, topic.length_heading);
-        TEST_ASSERT_TRUE(__builtin_isnan(topic.miss) && __builtin_isnan(topic.height) && __builtin_isnan(topic.width));
+        TEST_ASSERT_TRUE(__builtin_isnan(topic.dcpa) && __builtin_isnan(topic.height) && __builtin_isnan(topic.width));
     }
     flight.origin_known = false;
     TEST_ASSERT_TRUE(__builtin_isnan(goe_px4::obstacle(flight, from, 0, an_order(), 1000u).lat));
 }
 
 /* [goe_flight_assessment_t.needed_s] */
-static void an_order_is_told_whole() {
+static void an_order_is_reported_completely() {
     static goe_flight_t flight;
     goe_flight_assessment_t assessment = an_order();
     goe_status_s topic{};
@@ -450,7 +450,7 @@ static void a_conflicts_level_follows_the_order() {
     from.nearest_ned_m[1] = 30.f;
     from.nearest_ned_m[2] = -40.f;
     from.has_hazard = true;
-    from.hazard.violation = 0.3f;
+    from.hazard.conflict_probability = 0.3f;
     const auto level = [&](int slot) {
         return goe_px4::detect_and_avoid(from, slot, assessment, own_ned_m, 0.2f, 1000u).conflict_level;
     };
@@ -458,14 +458,14 @@ static void a_conflicts_level_follows_the_order() {
     assessment.late = false;
     TEST_ASSERT_EQUAL(detect_and_avoid_s::DAA_CONFLICT_LVL_HIGH, level(2));
     TEST_ASSERT_EQUAL(detect_and_avoid_s::DAA_CONFLICT_LVL_LOW, level(0));
-    from.passed = true;
+    from.receding = true;
     TEST_ASSERT_EQUAL(detect_and_avoid_s::DAA_CONFLICT_LVL_NONE, level(0));
     const detect_and_avoid_s topic = goe_px4::detect_and_avoid(from, 0, assessment, own_ned_m, 0.2f, 1000u);
     CHECK_CLOSE(1e-4, 50, topic.aircraft_dist_hor);
     CHECK_CLOSE(1e-4, 10, topic.aircraft_dist_vert);
 }
 
-static void conflicts_are_told_where_px4_has_the_topic() {
+static void conflicts_are_reported_where_px4_has_the_topic() {
     static Px4Flight flight;
     flight.begin();
     standin::set("GOE_OUT", 3);
@@ -475,7 +475,7 @@ static void conflicts_are_told_where_px4_has_the_topic() {
     TEST_ASSERT_TRUE(standin::latest(ORB_ID(detect_and_avoid), 0, &topic));
     TEST_ASSERT_TRUE(flight.obstacle(obstacle));
     TEST_ASSERT_EQUAL(7u, topic.unique_id);
-    CHECK_SAME(obstacle.time_to, topic.expected_min_dist_time);
+    CHECK_SAME(obstacle.tcpa, topic.expected_min_dist_time);
     const double distance_m = std::sqrt(std::pow(static_cast<double>(topic.aircraft_dist_hor), 2.0) +
                                         std::pow(static_cast<double>(topic.aircraft_dist_vert), 2.0));
     CHECK_CLOSE(1e-3, distance_m, topic.aircraft_dist);
@@ -493,16 +493,16 @@ static void set_camera(GoeParameters &parameters) {
     camera.width_px = camera.height_px = 1280.f;
 }
 
-/* Those of the layer, but for what was measured with PX4's filter. */
+/* The layer's defaults, except those measured with PX4's filter. */
 static void the_defaults_are_the_layers_but_for_px4s_own() {
     GoeParameters parameters;
     GoeParameters expected;
     memset(&expected, 0, sizeof expected);
     goe_settings_default(&expected.estimator);
     goe_flight_settings_default(&expected.flight);
-    expected.estimator.navigation.attitude_bias_deg = 1.f;
-    expected.estimator.navigation.attitude_drift_deg = 0.5f;
-    expected.estimator.navigation.attitude_white_deg = 0.3f;
+    expected.estimator.navigation.attitude_bias_sd_deg = 1.f;
+    expected.estimator.navigation.attitude_walk_sd_deg = 0.5f;
+    expected.estimator.navigation.attitude_white_sd_deg = 0.3f;
     standin::begin(1000000u);
     standin::set_other("NAV_LOITER_RAD", 80.f);
     goe_parameters_read(parameters, false);
@@ -521,7 +521,7 @@ static GoeParameters of_wings(float loiter_m, float speed_m_s, float bank_deg) {
     return parameters;
 }
 
-static void a_fixed_wing_tells_loiter_bank_and_climb() {
+static void a_fixed_wings_parameters_give_loiter_bank_and_climb() {
     GoeParameters parameters = of_wings(90.f, 15.f, 50.f);
     CHECK_SAME(90.f, parameters.flight.loiter_m);
     CHECK_SAME(30.f, parameters.flight.bank_deg);
@@ -567,15 +567,15 @@ static void a_camera_of_square_pixels_needs_three_numbers() {
     standin::set("GOE_CAM_FY", NAN);
     goe_parameters_read(parameters, false);
     CHECK_SAME(350.f, parameters.estimator.camera.cy_px);
-    TEST_ASSERT_TRUE(__builtin_isnan(parameters.estimator.camera.fy_px)); /* which the layer refuses */
+    TEST_ASSERT_TRUE(__builtin_isnan(parameters.estimator.camera.fy_px)); /* refused by the layer */
 }
 
-/* Each parameter changes four bytes of the settings, and no two the same. */
+/* Each parameter changes four bytes of the settings, and no two change the same. */
 static void each_parameter_has_a_place_of_its_own() {
     GoeParameters before;
     GoeParameters after;
     bool taken[sizeof(GoeParameters) / sizeof(float)] = {};
-    const auto begin = [] { /* nothing of the camera follows from something else */
+    const auto begin = [] { /* no camera setting is derived */
                             standin::begin(1000000u);
                             for (const char *name : {"GOE_CAM_FY", "GOE_CAM_CX", "GOE_CAM_CY"}) {
                                 standin::set(name, 1.f);
@@ -605,7 +605,7 @@ static void each_parameter_has_a_place_of_its_own() {
     }
 }
 
-/* Both ends of every range that module.yaml tells are taken by the layer. */
+/* The layer accepts both ends of every range in module.yaml. */
 static void every_range_lies_within_the_layers() {
     static goe_flight_t flight;
     for (const auto &parameter : px4::standin_parameter) {
@@ -653,24 +653,24 @@ int main() {
     RUN_TEST(what_the_land_detector_says_is_landed);
     RUN_TEST(each_height_is_marked_by_its_source);
     RUN_TEST(each_clock_has_its_own_times);
-    RUN_TEST(a_tunnel_holds_three_boxes);
-    RUN_TEST(a_tunnel_that_is_cut_holds_one_less);
+    RUN_TEST(a_tunnel_carries_three_boxes);
+    RUN_TEST(a_tunnel_that_is_cut_carries_one_less);
     RUN_TEST(others_tunnels_are_theirs);
     RUN_TEST(a_tunnel_to_another_vehicle_is_not_taken);
     RUN_TEST(any_bytes_in_a_tunnel_are_borne);
     RUN_TEST(a_flight_by_tunnel_is_that_by_topic);
     RUN_TEST(a_landing_target_is_a_box_of_a_calibrated_age);
-    RUN_TEST(landing_targets_are_taken_only_if_asked_for);
-    RUN_TEST(an_obstacle_is_told_in_px4s_units);
-    RUN_TEST(an_order_is_told_whole);
+    RUN_TEST(landing_targets_are_taken_only_if_enabled);
+    RUN_TEST(an_obstacle_is_reported_in_px4s_units);
+    RUN_TEST(an_order_is_reported_completely);
     RUN_TEST(the_origin_is_rounded_and_no_pole);
     RUN_TEST(a_home_needs_both_to_be_valid);
 #ifdef GOE_HAS_DETECT_AND_AVOID
     RUN_TEST(a_conflicts_level_follows_the_order);
-    RUN_TEST(conflicts_are_told_where_px4_has_the_topic);
+    RUN_TEST(conflicts_are_reported_where_px4_has_the_topic);
 #endif
     RUN_TEST(the_defaults_are_the_layers_but_for_px4s_own);
-    RUN_TEST(a_fixed_wing_tells_loiter_bank_and_climb);
+    RUN_TEST(a_fixed_wings_parameters_give_loiter_bank_and_climb);
     RUN_TEST(a_circle_that_cannot_be_flown_is_widened);
     RUN_TEST(a_camera_of_square_pixels_needs_three_numbers);
     RUN_TEST(each_parameter_has_a_place_of_its_own);

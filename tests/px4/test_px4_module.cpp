@@ -1,5 +1,5 @@
-/* The module of port/px4 by a scripted broker: what it makes of a flight is what the flight layer makes of it, to the last bit, and what
- * becomes of it when topics are late, early, missing or jump. SPDX-License-Identifier: MIT */
+/* The module of port/px4 with a scripted broker: its result for a flight equals that of the flight layer, to the last bit; and its behavior
+ * when topics are late, early, missing or jump. SPDX-License-Identifier: MIT */
 #include "px4_flight.hpp"
 
 #include "GoeText.hpp"
@@ -52,7 +52,7 @@ static void statuses_come_ten_times_a_second() {
 static void an_image_that_is_too_new_waits_for_its_pose() {
     flight.fly(1.0);
     const uint16_t taken = flight.status().taken;
-    flight.follows = flight.tells_images = false;
+    flight.follows = flight.sends_images = false;
     flight.publish_image(flight.flown.sample, flight.time_of(flight.flown.sample) + 30000u);
     flight.fly(0.04);
     standin::advance(1000);
@@ -62,11 +62,11 @@ static void an_image_that_is_too_new_waits_for_its_pose() {
     TEST_ASSERT_EQUAL(0, flight.status().overdue);
 }
 
-/* A companion's clock, converted, may be some milliseconds ahead. */
+/* A companion's converted clock may be some milliseconds ahead. */
 static void an_image_that_was_sent_in_the_future_waits_too() {
     flight.fly(1.0);
     const uint16_t taken = flight.status().taken;
-    flight.follows = flight.tells_images = false;
+    flight.follows = flight.sends_images = false;
     goe_features_s topic = flight.features_of(flight.flown.sample);
     topic.timestamp_sample = flight.time_of(flight.flown.sample) + 30000u;
     topic.timestamp = topic.timestamp_sample + 20000u;
@@ -79,7 +79,7 @@ static void an_image_that_was_sent_in_the_future_waits_too() {
 static void an_image_that_no_pose_comes_for_is_given_up() {
     flight.fly(1.0);
     const uint16_t taken = flight.status().taken;
-    flight.follows = flight.tells_images = flight.tells_pose = false;
+    flight.follows = flight.sends_images = flight.sends_pose = false;
     flight.publish_image(0, flight.time_of(flight.flown.sample) + 50000u);
     flight.fly(0.4);
     TEST_ASSERT_EQUAL(0, flight.status().overdue);
@@ -91,7 +91,7 @@ static void an_image_that_no_pose_comes_for_is_given_up() {
 
 static void more_images_than_can_wait_cost_the_oldest() {
     flight.fly(1.0);
-    flight.follows = flight.tells_images = flight.tells_pose = false;
+    flight.follows = flight.sends_images = flight.sends_pose = false;
     for (int i = 0; i < 11; i++) {
         flight.publish_image(0, flight.time_of(flight.flown.sample) + 50000u + static_cast<uint64_t>(i));
         standin::advance(10000);
@@ -126,7 +126,7 @@ static void a_known_jump_keeps_the_track() {
     CHECK_CLOSE(2.0, -20.0, after.east - before.east);
 }
 
-/* ... and the obstacle is kept, suspect, until an image places it again. */
+/* ... and the obstacle is kept as suspect, until an image locates it again. */
 static void a_missed_reset_ends_the_track() {
     flight.fly(3.0);
     flight.position.z_reset_counter = static_cast<uint8_t>(flight.position.z_reset_counter + 2);
@@ -146,7 +146,7 @@ static void a_reset_of_the_heading_ends_the_track() {
 static void an_invalid_position_is_no_sample() {
     flight.fly(2.0);
     flight.follows = false;
-    flight.tells_pose = false;
+    flight.sends_pose = false;
     for (int i = 0; i < 40; i++) {
         flight.step();
         flight.position.timestamp_sample = standin::now_us();
@@ -157,7 +157,7 @@ static void an_invalid_position_is_no_sample() {
     TEST_ASSERT_EQUAL(0, flight.status().refused);
 }
 
-/* Without GPS a fixed wing's filter goes on, by the airspeed: the samples are valid, and drift. */
+/* Without GPS a fixed wing's filter continues by the airspeed: the samples are valid, and drift. */
 static void a_position_by_dead_reckoning_is_reported() {
     flight.fly(2.0);
     TEST_ASSERT_FALSE(flight.status().dead_reckoning);
@@ -185,8 +185,8 @@ static void a_position_by_dead_reckoning_is_reported() {
 
 /* ------------------------------------------------------------------------------------------------- who is there, who not -- */
 
-static void a_full_table_is_told() {
-    flight.follows = flight.tells_images = false;
+static void a_full_table_is_reported() {
+    flight.follows = flight.sends_images = false;
     for (int k = 0; k < 150; k++) {
         flight.step();
         if (k % 5 != 0) {
@@ -197,7 +197,7 @@ static void a_full_table_is_told() {
             topic.timestamp_sample = flight.time_of(flight.flown.sample - 1);
             topic.number = 6;
             topic.id = 100u + static_cast<uint32_t>(i);
-            topic.seen = goe_features_s::SEES_BOX;
+            topic.sides = goe_features_s::SIDES_ALL;
             topic.box[0] = 150.f * static_cast<float>(i + 1);
             topic.box[2] = topic.box[0] + 40.f;
             standin::publish(ORB_ID(goe_features), &topic);
@@ -209,7 +209,7 @@ static void a_full_table_is_told() {
 }
 
 static void two_obstacles_of_one_image_are_one_image() {
-    flight.follows = flight.tells_images = false;
+    flight.follows = flight.sends_images = false;
     for (int k = 0; k < 150; k++) {
         flight.step();
         const int exposed = flight.flown.sample - 1 - FLOWN_DELAY;
@@ -235,8 +235,8 @@ static void publish_range() {
     standin::publish(ORB_ID(distance_sensor), &sensor, 1);
 }
 
-/* With a distance sensor the ground is where it says, not where dist_bottom says. */
-static void a_distance_sensor_tells_the_ground() {
+/* With a distance sensor the ground follows its distance, not dist_bottom. */
+static void a_distance_sensor_gives_the_ground() {
     goe_obstacle_s by_terrain;
     goe_obstacle_s by_range;
     flight.fly(4.0);
@@ -252,19 +252,19 @@ static void a_distance_sensor_tells_the_ground() {
     CHECK_CLOSE(0.1, -2.0, by_range.ground_down - by_terrain.ground_down);
 }
 
-static void a_distance_sensor_that_has_fallen_silent_tells_nothing() {
+static void a_distance_sensor_that_has_fallen_silent_is_ignored() {
     goe_obstacle_s obstacle;
     flight.fly(4.0);
     TEST_ASSERT_TRUE(flight.obstacle(obstacle));
     const float by_terrain_m = obstacle.ground_down;
     flight.end();
     flight.begin();
-    flight.flown.sees = false;
+    flight.flown.detects = false;
     flight.fly(1.0);
     flight.follows = false;
     publish_range();
     flight.fly(0.5);
-    flight.flown.sees = true;
+    flight.flown.detects = true;
     flight.fly(3.0);
     TEST_ASSERT_TRUE(flight.obstacle(obstacle));
     CHECK_CLOSE(0.1, by_terrain_m, obstacle.ground_down);
@@ -281,11 +281,11 @@ static unsigned known_sectors() {
 }
 
 static void a_dead_detector_is_not_clear() {
-    flight.flown.sees = false;
+    flight.flown.detects = false;
     flight.fly(2.0);
-    TEST_ASSERT_TRUE(flight.status().detector_alive); /* images with nothing in view */
+    TEST_ASSERT_TRUE(flight.status().detector_alive); /* images without detections */
     TEST_ASSERT_GREATER_THAN(5, known_sectors());
-    flight.follows = flight.tells_images = false;
+    flight.follows = flight.sends_images = false;
     flight.fly(1.5);
     TEST_ASSERT_FALSE(flight.status().detector_alive);
     TEST_ASSERT_TRUE(flight.status().pose_alive);
@@ -296,7 +296,7 @@ static void a_dead_detector_is_not_clear() {
 
 static void without_an_attitude_the_status_still_comes() {
     flight.fly(1.0);
-    flight.follows = flight.tells_images = flight.tells_pose = false;
+    flight.follows = flight.sends_images = flight.sends_pose = false;
     const unsigned before = standin::published(ORB_ID(goe_status));
     flight.fly(2.0);
     TEST_ASSERT_INT_WITHIN(1, 20, static_cast<int>(standin::published(ORB_ID(goe_status)) - before));
@@ -327,7 +327,7 @@ static void statuses_go_on_while_the_clock_is_set_back() {
     TEST_ASSERT_GREATER_THAN(before + 3u, standin::published(ORB_ID(goe_status)));
 }
 
-/* The samples' own time goes back, as when the estimator starts anew: after 16 of them the layer begins anew, too. */
+/* The samples' own time goes back, as after a restart of the estimator: after 16 of them the layer restarts, too. */
 static void samples_that_go_back_in_time_begin_a_new_history() {
     flight.fly(2.0);
     flight.follows = false;
@@ -344,7 +344,7 @@ static void a_change_in_flight_waits_for_the_end_of_the_tracks() {
     flight.fly(4.0);
     TEST_ASSERT_EQUAL(1, flight.status().obstacles);
     standin::set("GOE_MARGIN", 40.f);
-    flight.fly(1.2); /* the reference goes on with the old one */
+    flight.fly(1.2); /* the reference continues with the old one */
     TEST_ASSERT_TRUE(flight.status().settings_waiting);
     TEST_ASSERT_EQUAL(1, flight.status().obstacles);
     TEST_ASSERT_TRUE(says(status_text(), "changed ones wait"));
@@ -377,14 +377,14 @@ static void what_costs_no_track_takes_effect_at_once() {
     TEST_ASSERT_FALSE(flight.status().settings_waiting);
 }
 
-static void the_sectors_reach_two_hundred_metres() {
+static void the_sectors_reach_two_hundred_meters() {
     obstacle_distance_s topic{};
     flight.fly(1.5);
     TEST_ASSERT_TRUE(standin::latest(ORB_ID(obstacle_distance), 0, &topic));
     TEST_ASSERT_EQUAL(20000, topic.max_distance);
 }
 
-static void a_loiter_radius_that_is_too_small_is_told() {
+static void a_loiter_radius_that_is_too_small_is_reported() {
     flight.follows = false;
     standin::set_other("NAV_LOITER_RAD", 60.f);
     standin::set_other("FW_AIRSPD_TRIM", 22.f);
@@ -411,8 +411,8 @@ static void wings_that_come_later_are_noticed() {
     TEST_ASSERT_TRUE(says(standin::mavlink_texts(), "NAV_LOITER_RAD 60 too small"));
 }
 
-/* As the ground station shows it. */
-static void a_bad_parameter_is_told_by_its_name() {
+/* By the name that the ground station shows. */
+static void a_bad_parameter_is_reported_by_its_name() {
     flight.follows = false;
     for (const auto &parameter : px4::standin_parameter) {
         if (parameter.is_int || strcmp(parameter.name, "GOE_LT_DELAY") == 0) {
@@ -424,7 +424,7 @@ static void a_bad_parameter_is_told_by_its_name() {
         const bool is_place =
             strlen(parameter.name) == 9 && strncmp(parameter.name, "GOE_CAM_", 8) == 0 && parameter.name[8] >= 'X';
         standin::set(parameter.name,
-                     static_cast<float>((is_place ? 200.0 : 1.5) * parameter.most)); /* the layer takes 10 km */
+                     static_cast<float>((is_place ? 200.0 : 1.5) * parameter.most)); /* the layer accepts 10 km */
         flight.fly(1.2);
         TEST_ASSERT_TRUE_MESSAGE(
             says(standin::mavlink_texts(), (std::string("not set right: ") + parameter.name).c_str()), parameter.name);
@@ -432,7 +432,7 @@ static void a_bad_parameter_is_told_by_its_name() {
 }
 
 static void a_user_sets_fifteen() {
-    TEST_ASSERT_EQUAL(15 + 12, px4::standin_parameters); /* and the lens, the camera's place, LANDING_TARGET */
+    TEST_ASSERT_EQUAL(15 + 12, px4::standin_parameters); /* and the lens, the camera's mounting, LANDING_TARGET */
 }
 
 static void a_bad_parameter_leaves_the_old_ones() {
@@ -468,7 +468,7 @@ static void all_parameters_are_marked_as_used() {
 
 /* -------------------------------------------------------------------------------------------------------------- commands -- */
 
-static void the_status_is_told_in_words() {
+static void the_status_is_printed_in_words() {
     flight.fly(4.0);
     const std::string text = status_text();
     TEST_ASSERT_TRUE(says(text, "arithmetic right, the bits of any host (self check 0x00)"));
@@ -497,11 +497,11 @@ static void the_words_are_those_of_the_numbers() {
     obstacle.east = 40.f;
     obstacle.nearest[1] = 50.f;
     obstacle.width = obstacle.height = NAN;
-    obstacle.miss = 3.f;
+    obstacle.dcpa = 3.f;
     obstacle.clearance = -5.f;
     overview.status.action = goe_status_s::ACTION_LEFT;
     overview.status.late = true;
-    TEST_ASSERT_EQUAL_STRING("order      left, told only, LATE, needs 0.0 s", line_of(overview, 5).c_str());
+    TEST_ASSERT_EQUAL_STRING("order      left, reported only, LATE, needs 0.0 s", line_of(overview, 5).c_str());
     TEST_ASSERT_TRUE(says(line_of(overview, 7), "50 m at 270 deg"));
     TEST_ASSERT_TRUE(says(line_of(overview, 8), "5 m below its top"));
     TEST_ASSERT_EQUAL_STRING("none", line_of(overview, 9).c_str());
@@ -535,10 +535,10 @@ int main() {
     RUN_TEST(a_reset_of_the_heading_ends_the_track);
     RUN_TEST(an_invalid_position_is_no_sample);
     RUN_TEST(a_position_by_dead_reckoning_is_reported);
-    RUN_TEST(a_full_table_is_told);
+    RUN_TEST(a_full_table_is_reported);
     RUN_TEST(two_obstacles_of_one_image_are_one_image);
-    RUN_TEST(a_distance_sensor_tells_the_ground);
-    RUN_TEST(a_distance_sensor_that_has_fallen_silent_tells_nothing);
+    RUN_TEST(a_distance_sensor_gives_the_ground);
+    RUN_TEST(a_distance_sensor_that_has_fallen_silent_is_ignored);
     RUN_TEST(a_dead_detector_is_not_clear);
     RUN_TEST(without_an_attitude_the_status_still_comes);
     RUN_TEST(a_clock_that_jumps_ends_nothing_for_long);
@@ -547,15 +547,15 @@ int main() {
     RUN_TEST(a_change_in_flight_waits_for_the_end_of_the_tracks);
     RUN_TEST(one_that_is_taken_back_waits_for_nothing);
     RUN_TEST(what_costs_no_track_takes_effect_at_once);
-    RUN_TEST(the_sectors_reach_two_hundred_metres);
-    RUN_TEST(a_loiter_radius_that_is_too_small_is_told);
+    RUN_TEST(the_sectors_reach_two_hundred_meters);
+    RUN_TEST(a_loiter_radius_that_is_too_small_is_reported);
     RUN_TEST(wings_that_come_later_are_noticed);
-    RUN_TEST(a_bad_parameter_is_told_by_its_name);
+    RUN_TEST(a_bad_parameter_is_reported_by_its_name);
     RUN_TEST(a_user_sets_fifteen);
     RUN_TEST(a_bad_parameter_leaves_the_old_ones);
     RUN_TEST(without_a_camera_nothing_is_done_and_said_so);
     RUN_TEST(all_parameters_are_marked_as_used);
-    RUN_TEST(the_status_is_told_in_words);
+    RUN_TEST(the_status_is_printed_in_words);
     RUN_TEST(the_words_are_those_of_the_numbers);
     RUN_TEST(it_starts_once_and_explains_itself);
     return UNITY_END();

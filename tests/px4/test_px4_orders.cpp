@@ -1,4 +1,4 @@
-/* Orders of the module of port/px4: which commands PX4 is given, and when none. SPDX-License-Identifier: MIT */
+/* Orders of the module of port/px4: when it sends commands to PX4, and which. SPDX-License-Identifier: MIT */
 #include "px4_flight.hpp"
 
 #include <uORB/topics/position_controller_landing_status.h>
@@ -39,7 +39,7 @@ extern "C" void setUp(void) {
 }
 extern "C" void tearDown(void) {}
 
-/* 100 ms on. */
+/* Advances by 100 ms. */
 static bool follow(int32_t react = ALL, bool resume = false) {
     vehicle.now_us += 100000u;
     return orders.follow(assessment, vehicle, react, resume, command);
@@ -113,7 +113,7 @@ static void a_refusal_is_counted_and_repeated() {
     TEST_ASSERT_TRUE(follow());
 }
 
-static void a_target_that_moves_is_sent_anew() {
+static void a_target_that_moves_is_sent_again() {
     TEST_ASSERT_TRUE(follow());
     accept(HOLD);
     assessment.target_ned_m[1] -= 4.f;
@@ -143,7 +143,7 @@ static void a_pilot_is_not_fought() {
     vehicle.nav_state = POSITION;
     TEST_ASSERT_FALSE(follow());
     TEST_ASSERT_TRUE(orders.overruled());
-    vehicle.nav_state = MISSION; /* also when he goes on with the mission */
+    vehicle.nav_state = MISSION; /* also if the pilot continues the mission */
     assessment.target_ned_m[0] += 100.f;
     TEST_ASSERT_FALSE(follow());
     assessment.action = GOE_FLIGHT_NONE;
@@ -163,8 +163,8 @@ static void a_pilot_who_goes_on_with_the_mission_is_not_fought() {
     TEST_ASSERT_TRUE(orders.overruled());
 }
 
-/* What the order before has led to is not what this one has. */
-static void the_next_order_begins_anew() {
+/* The result of the previous order does not count for this one. */
+static void the_next_order_begins_afresh() {
     TEST_ASSERT_TRUE(follow());
     accept(HOLD);
     TEST_ASSERT_FALSE(follow());
@@ -201,11 +201,11 @@ static void the_mission_is_resumed_if_that_is_wanted() {
     TEST_ASSERT_EQUAL(vehicle_command_s::VEHICLE_CMD_DO_SET_MODE, command.command);
     CHECK_CLOSE(0, 4, command.param2);
     CHECK_CLOSE(0, 4, command.param3);
-    int asked = 1;
+    int sent = 1;
     for (int i = 0; i < 100; i++) {
-        asked += follow(ALL, true) ? 1 : 0;
+        sent += follow(ALL, true) ? 1 : 0;
     }
-    TEST_ASSERT_EQUAL(5, asked); /* unanswered */
+    TEST_ASSERT_EQUAL(5, sent); /* unanswered */
 }
 
 static void a_resume_that_is_answered_is_not_repeated() {
@@ -220,7 +220,7 @@ static void a_resume_that_is_answered_is_not_repeated() {
     }
 }
 
-/* What is sent in Hold, as the target moves, does not make Hold the mode to go back to. */
+/* Commands in Hold, when the target moves, do not make Hold the mode to restore. */
 static void the_mission_is_resumed_after_a_target_that_moved() {
     TEST_ASSERT_TRUE(follow());
     accept(HOLD);
@@ -232,15 +232,15 @@ static void the_mission_is_resumed_after_a_target_that_moved() {
     TEST_ASSERT_TRUE(follow(ALL, true));
 }
 
-/* Given up, or only turned away from: it may lie ahead in the mission. */
+/* Given up, or only turned away from: it may be ahead in the mission. */
 static void the_mission_is_not_resumed_before_the_obstacle_is_passed() {
-    for (const bool holds : {false, true}) {
+    for (const bool is_hold : {false, true}) {
         setUp();
-        assessment.action = holds ? GOE_FLIGHT_HOLD : GOE_FLIGHT_RIGHT;
+        assessment.action = is_hold ? GOE_FLIGHT_HOLD : GOE_FLIGHT_RIGHT;
         TEST_ASSERT_TRUE(follow(ALL, true));
         accept(HOLD);
         TEST_ASSERT_FALSE(follow(ALL, true));
-        vehicle.obstacle_known = holds;
+        vehicle.obstacle_known = is_hold;
         assessment.action = GOE_FLIGHT_NONE;
         for (int i = 0; i < 20; i++) {
             TEST_ASSERT_FALSE(follow(ALL, true));
@@ -256,7 +256,7 @@ static void the_slot_is_that_of_the_latest_order() {
     assessment.avoided = -1;
     (void)follow();
     TEST_ASSERT_EQUAL(2, orders.slot());
-    assessment.action = GOE_FLIGHT_LEFT; /* that has given its obstacle up */
+    assessment.action = GOE_FLIGHT_LEFT; /* that has given up its obstacle */
     (void)follow();
     TEST_ASSERT_EQUAL(-1, orders.slot());
 }
@@ -282,14 +282,14 @@ static void a_go_around_is_given_in_landing() {
     for (int i = 0; i < 20; i++) {
         TEST_ASSERT_FALSE(follow());
     }
-    for (const uint8_t mode : {HOLD, LAND}) { /* where it leads to is PX4's affair */
+    for (const uint8_t mode : {HOLD, LAND}) { /* PX4 decides where it leads */
         vehicle.nav_state = mode;
         TEST_ASSERT_FALSE(follow());
         TEST_ASSERT_FALSE(orders.overruled());
     }
 }
 
-/* A go-around that PX4 has taken: it holds at `alt_m`, by its own parameter. */
+/* A go-around that PX4 has accepted: it is_hold at `alt_m`, by its own parameter. */
 static void go_around(uint8_t mode, float alt_m) {
     assessment.action = GOE_FLIGHT_GO_AROUND;
     vehicle.nav_state = mode;
@@ -302,7 +302,7 @@ static void go_around(uint8_t mode, float alt_m) {
     vehicle.setpoint_alt_m = alt_m;
 }
 
-static void a_go_around_climbs_to_what_the_top_requires() {
+static void a_go_around_climbs_as_high_as_the_top_requires() {
     for (const uint8_t mode : {MISSION, LAND}) {
         setUp();
         go_around(mode, 505.f);
@@ -310,18 +310,18 @@ static void a_go_around_climbs_to_what_the_top_requires() {
         TEST_ASSERT_EQUAL(vehicle_command_s::VEHICLE_CMD_DO_REPOSITION, command.command);
         CHECK_CLOSE(0, 1, command.param2);
         TEST_ASSERT_TRUE(__builtin_isnan(command.param4));
-        TEST_ASSERT_TRUE(__builtin_isnan(command.param5) && __builtin_isnan(command.param6)); /* where PX4 holds */
+        TEST_ASSERT_TRUE(__builtin_isnan(command.param5) && __builtin_isnan(command.param6)); /* where PX4 is_hold */
         CHECK_CLOSE(0, 519, command.param7);
         for (int i = 0; i < 4; i++) {
             TEST_ASSERT_FALSE(follow());
         }
-        TEST_ASSERT_TRUE(follow()); /* not taken yet */
+        TEST_ASSERT_TRUE(follow()); /* not accepted yet */
         accept(HOLD);
         vehicle.setpoint_alt_m = 519.f;
         for (int i = 0; i < 20; i++) {
             TEST_ASSERT_FALSE(follow());
         }
-        assessment.target_ned_m[2] = -34.f; /* it is higher than it seemed */
+        assessment.target_ned_m[2] = -34.f; /* it is higher than estimated */
         TEST_ASSERT_TRUE(follow());
         CHECK_CLOSE(0, 523, command.param7);
     }
@@ -356,7 +356,7 @@ static void without_an_altitude_a_go_around_is_all_that_px4_makes_of_it() {
     }
 }
 
-/* PX4 acknowledges DO_GO_AROUND, and only a fixed wing flies it. */
+/* PX4 acknowledges DO_GO_AROUND, but only a fixed wing flies it. */
 static void a_multicopter_goes_around_by_a_climb() {
     assessment.action = GOE_FLIGHT_GO_AROUND;
     vehicle.nav_state = LAND;
@@ -374,7 +374,7 @@ static void a_pilot_is_not_fought_after_a_go_around() {
     TEST_ASSERT_FALSE(orders.overruled());
     accept(HOLD);
     TEST_ASSERT_FALSE(follow());
-    vehicle.nav_state = MISSION; /* to land once more */
+    vehicle.nav_state = MISSION; /* to land again */
     for (int i = 0; i < 20; i++) {
         TEST_ASSERT_FALSE(follow());
     }
@@ -410,13 +410,13 @@ static void an_order_after_a_go_around_is_another_one() {
     TEST_ASSERT_FALSE(follow(ALL, true));
     go_around(MISSION, 505.f); /* the second landing */
     TEST_ASSERT_FALSE(orders.overruled());
-    vehicle.nav_state = LAND; /* where DO_GO_AROUND leads to is PX4's affair again */
+    vehicle.nav_state = LAND; /* again PX4 decides where DO_GO_AROUND leads */
     vehicle.setpoint_alt_m = 519.f;
     TEST_ASSERT_FALSE(follow(ALL, true));
     TEST_ASSERT_FALSE(orders.overruled());
     assessment.action = GOE_FLIGHT_NONE;
     TEST_ASSERT_FALSE(follow(ALL, true));
-    assessment.action = GOE_FLIGHT_RIGHT; /* in the mission to come */
+    assessment.action = GOE_FLIGHT_RIGHT; /* later in the mission */
     vehicle.nav_state = MISSION;
     TEST_ASSERT_TRUE(follow(ALL, true));
     accept(HOLD);
@@ -433,7 +433,7 @@ static vehicle_command_s last;
 
 static constexpr uint8_t SYSTEM = 1, GROUND_STATION = 255;
 
-/* Towards a mast, or in landing a truck. */
+/* Towards a mast or, when landing, a truck. */
 static void start_towards_one(uint8_t mode, bool lands, int32_t react) {
     flight.begin();
     standin::set("GOE_REACT", react);
@@ -458,7 +458,7 @@ static void start_towards_one(uint8_t mode, bool lands, int32_t react) {
     flight.set_mode(true, mode);
 }
 
-/* As PX4 does: it breaks the landing off, and holds `above_m` over it. */
+/* As PX4 does: it aborts the landing, and is_hold `above_m` above it. */
 static void hold_over_the_landing(float above_m) {
     position_setpoint_triplet_s setpoint{};
     setpoint.current.valid = true;
@@ -467,7 +467,7 @@ static void hold_over_the_landing(float above_m) {
     standin::publish(ORB_ID(position_setpoint_triplet), &setpoint);
 }
 
-/* PX4 accepts what it is given, and tells `asker` so. */
+/* PX4 accepts the command, and reports that to `asker`. */
 static void obey(const vehicle_command_s &one, uint8_t asker) {
     vehicle_command_ack_s ack{};
     ack.command = one.command;
@@ -480,7 +480,7 @@ static void obey(const vehicle_command_s &one, uint8_t asker) {
     }
 }
 
-/* Returns how many commands there were; the first and the last one are kept. */
+/* Returns the number of commands; the first and the last one are kept. */
 static unsigned fly_on(double seconds, uint8_t asker = SYSTEM) {
     unsigned commands = 0;
     for (int i = 0; i < static_cast<int>(seconds * FLOWN_POSE_HZ); i++) {
@@ -503,9 +503,9 @@ static unsigned fly_towards_one(uint8_t mode, bool lands, double seconds, int32_
 
 static void no_command_is_ever_given_by_default() {
     TEST_ASSERT_EQUAL(0, fly_towards_one(MISSION, false, 14.0, 0));
-    TEST_ASSERT_NOT_EQUAL(GOE_FLIGHT_NONE, flight.status().action); /* it is told */
+    TEST_ASSERT_NOT_EQUAL(GOE_FLIGHT_NONE, flight.status().action); /* it is reported */
     TEST_ASSERT_FALSE(flight.status().flown);
-    TEST_ASSERT_TRUE(standin::mavlink_texts().find("(told only)") != std::string::npos);
+    TEST_ASSERT_TRUE(standin::mavlink_texts().find("(reported only)") != std::string::npos);
     flight.end();
 }
 
@@ -544,13 +544,13 @@ static void the_answer_to_a_ground_station_is_none_to_the_module() {
     flight.end();
 }
 
-/* A reset of the heading ends the track; the obstacle is kept where it was, and the order stands until it is passed. So long settings
- * wait; then the mission goes on. */
+/* A reset of the heading ends the track. The obstacle keeps its position, and the order stays active until it is passed. For that long
+ * settings wait; then the mission continues. */
 static void an_order_outlives_its_track() {
     start_towards_one(MISSION, false, ALL);
     standin::set("GOE_RESUME", 1);
     TEST_ASSERT_GREATER_THAN(0, fly_on(10.0));
-    flight.flown.sees = false;
+    flight.flown.detects = false;
     flight.quat_reset_counter++;
     (void)fly_on(0.2);
     TEST_ASSERT_EQUAL(1, flight.status().obstacles);
@@ -563,11 +563,11 @@ static void an_order_outlives_its_track() {
     (void)fly_on(16.0);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, flight.status().action);
     TEST_ASSERT_FALSE(flight.status().settings_waiting);
-    TEST_ASSERT_EQUAL(vehicle_command_s::VEHICLE_CMD_DO_SET_MODE, last.command); /* past it, the mission goes on */
+    TEST_ASSERT_EQUAL(vehicle_command_s::VEHICLE_CMD_DO_SET_MODE, last.command); /* past it, the mission continues */
     flight.end();
 }
 
-static void the_status_tells_of_a_pilot_and_of_refusals() {
+static void the_status_reports_a_pilot_and_refusals() {
     start_towards_one(MISSION, false, ALL);
     TEST_ASSERT_GREATER_THAN(0, fly_on(10.0, GROUND_STATION));
     TEST_ASSERT_FALSE(flight.status().overruled);
@@ -598,7 +598,7 @@ static void an_order_that_nobody_flies_is_reported_as_such() {
     TEST_ASSERT_TRUE(flight.status().overruled);
     const uint8_t action = flight.status().action;
     standin::mavlink_texts().clear();
-    flight.flown.scene.x0_m = flight.flown.scene.x0_m > 0.0 ? -60.0 : 60.0; /* seen elsewhere: another side */
+    flight.flown.scene.x0_m = flight.flown.scene.x0_m > 0.0 ? -60.0 : 60.0; /* located elsewhere: another side */
     for (int i = 0; i < 60 && (flight.status().action == action || flight.status().action == GOE_FLIGHT_NONE); i++) {
         TEST_ASSERT_EQUAL(0, fly_on(0.1));
     }
@@ -645,7 +645,7 @@ static void publish_flare() {
     standin::publish(ORB_ID(position_controller_landing_status), &topic);
 }
 
-/* What stands behind the touchdown point. */
+/* An obstacle behind the touchdown point. */
 static void a_landing_is_not_broken_off_from_the_flare_on() {
     start_towards_one(LAND, true, ALL);
     bool reported = false;
@@ -655,7 +655,7 @@ static void a_landing_is_not_broken_off_from_the_flare_on() {
         TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, flight.status().action);
         reported = reported || flight.status().worst >= 0;
     }
-    TEST_ASSERT_TRUE(reported); /* the hazard is, all the same */
+    TEST_ASSERT_TRUE(reported); /* the hazard exists nevertheless */
     flight.end();
 }
 
@@ -678,11 +678,11 @@ int main() {
     RUN_TEST(nothing_is_given_unless_all_allows_it);
     RUN_TEST(it_is_repeated_until_it_is_answered);
     RUN_TEST(a_refusal_is_counted_and_repeated);
-    RUN_TEST(a_target_that_moves_is_sent_anew);
+    RUN_TEST(a_target_that_moves_is_sent_again);
     RUN_TEST(another_action_is_sent_at_once);
     RUN_TEST(a_pilot_is_not_fought);
     RUN_TEST(a_pilot_who_goes_on_with_the_mission_is_not_fought);
-    RUN_TEST(the_next_order_begins_anew);
+    RUN_TEST(the_next_order_begins_afresh);
     RUN_TEST(an_order_that_stood_while_a_pilot_flew_is_given_in_the_mission);
     RUN_TEST(the_mission_is_resumed_if_that_is_wanted);
     RUN_TEST(a_resume_that_is_answered_is_not_repeated);
@@ -691,7 +691,7 @@ int main() {
     RUN_TEST(the_slot_is_that_of_the_latest_order);
     RUN_TEST(an_order_in_hold_resumes_nothing);
     RUN_TEST(a_go_around_is_given_in_landing);
-    RUN_TEST(a_go_around_climbs_to_what_the_top_requires);
+    RUN_TEST(a_go_around_climbs_as_high_as_the_top_requires);
     RUN_TEST(a_go_around_that_is_high_enough_is_left_to_px4);
     RUN_TEST(a_go_around_climbs_no_higher_while_px4_still_lands);
     RUN_TEST(without_an_altitude_a_go_around_is_all_that_px4_makes_of_it);
@@ -704,7 +704,7 @@ int main() {
     RUN_TEST(it_flies_on_in_its_mission_past_the_mast);
     RUN_TEST(the_answer_to_a_ground_station_is_none_to_the_module);
     RUN_TEST(an_order_outlives_its_track);
-    RUN_TEST(the_status_tells_of_a_pilot_and_of_refusals);
+    RUN_TEST(the_status_reports_a_pilot_and_refusals);
     RUN_TEST(an_order_that_nobody_flies_is_reported_as_such);
     RUN_TEST(an_approach_is_broken_off);
     RUN_TEST(an_approach_that_is_broken_off_climbs_over_the_obstacle);

@@ -1,6 +1,6 @@
-"""A flight past masts as an autopilot would log it, and a detector's table of it: for the tests of what reads them.
+"""Flight logs past masts in the autopilots' formats, with a detector's table: input for the tests of the converter.
 
-The ULog and DataFlash files are written here, by their published layouts; the tlog by pymavlink."""
+This module writes the ULog and DataFlash files by their published layouts; pymavlink writes the tlog."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from goe_tools.flights.rotations import euler, matrices, mounting, multiply, qua
 from goe_tools.flights.scene import project
 from goe_tools.logs.obslog import Camera, write_camera
 
-START_S = 20.0  # of the autopilot's clock at the first sample
+START_S = 20.0  # autopilot's clock at the first sample
 SPEED_M_S = 17.0
 HEIGHT_M = 20.0
 ARM_M = (0.3, -0.1, 0.05)
 CAMERA = Camera(1280.0, 1280.0, 914.0, 914.0, 640.0, 640.0, mount_pitch_deg=-3.0, mount_yaw_deg=-4.0,
                 offset_x_m=ARM_M[0], offset_y_m=ARM_M[1], offset_z_m=ARM_M[2])  # fmt: skip
-MASTS = {4: (210.0, -14.0), 9: (260.0, 20.0)}  # id: north, east of the middle, m
+MASTS = {4: (210.0, -14.0), 9: (260.0, 20.0)}  # id: m north and east of the middle
 MAST_M = (3.0, 25.0)  # radius, height
 
 
 @dataclass
 class Fault:
-    """A reset of the autopilot's filter at a time: its position jumps, NED, m, or its yaw, deg."""
+    """A reset of the autopilot's filter at ``time_s``: a jump of its position (NED, m) or of its yaw (deg)."""
 
     time_s: float
     delta_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -37,7 +37,7 @@ class Fault:
 
 @dataclass
 class Flown:
-    """``roll_deg``: amplitude of a sway of 0.4 Hz. ``rate_hz``: of the logged pose."""
+    """``roll_deg`` is the amplitude of a roll oscillation at 0.4 Hz, ``rate_hz`` the rate of the logged pose."""
 
     seconds: float = 11.0
     roll_deg: float = 10.0
@@ -46,7 +46,7 @@ class Flown:
     faults: list[Fault] = field(default_factory=list)
 
     def angles(self, t: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Yaw, pitch, roll at times since the start, rad."""
+        """Yaw, pitch and roll in rad at the times ``t`` since the start."""
         yaw = np.radians(0.7) * np.sin(2 * math.pi * t / 2.3 + 0.4)
         pitch = np.radians(2.0) + np.radians(0.7) * np.sin(2 * math.pi * t / 3.1 + 1.1)
         return yaw, pitch, math.radians(self.roll_deg) * np.sin(2 * math.pi * 0.4 * t + 2.0)
@@ -58,18 +58,18 @@ class Flown:
         return np.stack([np.full(len(t), SPEED_M_S), 0.35 * np.cos(0.7 * t), 0.15 * np.sin(0.5 * t)], 1)
 
     def rates(self, t: np.ndarray) -> np.ndarray:
-        """(N, 3) body, rad/s."""
+        """Body rates, (N, 3), rad/s."""
         h = 1e-4
         before, after = quaternions(*self.angles(t - h)), quaternions(*self.angles(t + h))
         return multiply(before * [1.0, -1.0, -1.0, -1.0], after)[:, 1:] / h
 
-    def told_position(self, t: np.ndarray) -> np.ndarray:
+    def logged_position(self, t: np.ndarray) -> np.ndarray:
         result = self.position(t)
         for fault in self.faults:
             result[t >= fault.time_s - START_S - 1e-9] += fault.delta_m
         return result
 
-    def told_attitude(self, t: np.ndarray) -> np.ndarray:
+    def logged_attitude(self, t: np.ndarray) -> np.ndarray:
         result = quaternions(*self.angles(t))
         for fault in self.faults:
             turn = np.array(
@@ -80,7 +80,7 @@ class Flown:
         return result
 
     def count(self, t: np.ndarray, yaw: bool) -> np.ndarray:
-        """(N,) faults so far, of the yaw or of the position."""
+        """Number of position or yaw faults up to each time, (N,)."""
         kinds = [f for f in self.faults if (f.yaw_deg != 0.0) == yaw]
         return np.sum([t >= f.time_s - START_S - 1e-9 for f in kinds], 0) if kinds else np.zeros(len(t), int)
 
@@ -90,7 +90,8 @@ class Flown:
 
 def write_detections(folder: Path, flown: Flown, offset_s: float, seed: int = 1, images: Sequence[int] = (8, 80),
                      share: float = 0.04, ids: Sequence[int] = tuple(MASTS)) -> tuple[Path, Path]:  # fmt: skip
-    """detections.csv and camera.ini; its clock is so much behind the autopilot's. Eight images a second."""
+    """Writes detections.csv and camera.ini at eight images a second. ``behind_s``: how far its clock is behind the
+    autopilot's."""
     rng, t = np.random.default_rng(seed), np.arange(*images) / 8.0
     angle = np.arange(128) * (2 * math.pi / 128)
     lines = ["t_s,id,box_left_px,box_top_px,box_right_px,box_bottom_px,score"]
@@ -120,7 +121,8 @@ ULOG_TYPES = {"uint64_t": "Q", "float": "f", "uint8_t": "B", "bool": "?"}
 
 
 def write_ulog(path: Path, topics: dict[str, list[tuple[str, str, np.ndarray]]]) -> Path:
-    """Topics: name, then (type, name of the field, values (N,) or (N, n)); the first field is the time stamp in us."""
+    """Writes topics: name, then (type, field name, values of shape (N,) or (N, n)). The first field is the time stamp
+    in us."""
 
     def message(kind: str, body: bytes) -> bytes:
         return struct.pack("<HB", len(body), ord(kind)) + body
@@ -129,8 +131,10 @@ def write_ulog(path: Path, topics: dict[str, list[tuple[str, str, np.ndarray]]])
     data = []
     for number, (name, columns) in enumerate(topics.items()):
         wide = [values.shape[1] if values.ndim == 2 else 0 for _, _, values in columns]
-        told = [f"{kind}[{n}] {field}" if n else f"{kind} {field}" for (kind, field, _), n in zip(columns, wide)]
-        out += message("F", f"{name}:{';'.join(told)};".encode())
+        format_fields = [
+            f"{kind}[{n}] {field}" if n else f"{kind} {field}" for (kind, field, _), n in zip(columns, wide)
+        ]
+        out += message("F", f"{name}:{';'.join(format_fields)};".encode())
         layout = "<H" + "".join(ULOG_TYPES[kind] * max(n, 1) for (kind, _, _), n in zip(columns, wide))
         for k in range(len(columns[0][2])):
             row: list[object] = []
@@ -145,14 +149,14 @@ def write_ulog(path: Path, topics: dict[str, list[tuple[str, str, np.ndarray]]])
 
 
 def ulog_topics(flown: Flown) -> dict[str, list[tuple[str, str, np.ndarray]]]:
-    """As PX4 logs a flight. Stamps are 3 ms after the samples."""
+    """The topics that PX4 logs in a flight. Stamps are 3 ms after the samples."""
 
     def stamps(t: np.ndarray) -> list[tuple[str, str, np.ndarray]]:
         us = np.rint((t + START_S) * 1e6).astype(np.int64)
         return [("uint64_t", "timestamp", us + 3000), ("uint64_t", "timestamp_sample", us)]
 
     t, rates_t = flown.grid(flown.rate_hz), flown.grid(flown.gyro_hz)
-    place, speed = flown.told_position(t), flown.velocity(t)
+    place, speed = flown.logged_position(t), flown.velocity(t)
     count = flown.count(t, yaw=False)
     delta = np.zeros((len(t), 3))
     for fault in flown.faults:
@@ -172,7 +176,7 @@ def ulog_topics(flown: Flown) -> dict[str, list[tuple[str, str, np.ndarray]]]:
             ("bool", "xy_valid", yes), ("bool", "z_valid", yes), ("bool", "dist_bottom_valid", yes),
         ],
         "vehicle_attitude": [
-            *stamps(t), ("float", "q", flown.told_attitude(t)),
+            *stamps(t), ("float", "q", flown.logged_attitude(t)),
             ("uint8_t", "quat_reset_counter", flown.count(t, yaw=True)),
         ],
         "vehicle_angular_velocity": [*stamps(rates_t), ("float", "xyz", flown.rates(rates_t))],
@@ -185,7 +189,7 @@ DATAFLASH_TYPES = {"Q": "Q", "B": "B", "f": "f", "M": "B", "b": "b"}
 
 
 def write_dataflash(path: Path, messages: dict[str, tuple[str, str, list[tuple[object, ...]]]]) -> Path:
-    """Messages: name, then format characters, names of the columns, and rows; the first column is TimeUS."""
+    """Writes messages: name, then format characters, column names and rows. The first column is TimeUS."""
     out, data = b"", []
 
     def described(number: int, length: int, name: str, kinds: str, columns: str) -> bytes:
@@ -202,17 +206,18 @@ def write_dataflash(path: Path, messages: dict[str, tuple[str, str, list[tuple[o
 
 
 def dataflash_messages(flown: Flown) -> dict[str, tuple[str, str, list[tuple[object, ...]]]]:
-    """As ArduPilot logs a flight: two cores, of which the second is primary and the first 7 m off."""
+    """The messages that ArduPilot logs in a flight with two cores. The second core is primary; the first is off by 7
+    m."""
     t, rates_t, slow = flown.grid(flown.rate_hz), flown.grid(flown.gyro_hz), flown.grid(10.0)
-    place, speed, q = flown.told_position(t), flown.velocity(t), flown.told_attitude(t)
+    place, speed, q = flown.logged_position(t), flown.velocity(t), flown.logged_attitude(t)
 
     def us(time: np.ndarray) -> list[int]:
         return [int(x) for x in np.rint((time + START_S) * 1e6)]
 
-    told = np.zeros((len(slow), 2))
+    format_fields = np.zeros((len(slow), 2))
     for fault in flown.faults:
         if fault.yaw_deg == 0.0:
-            told[slow >= fault.time_s - START_S - 1e-9] = fault.delta_m[:2]
+            format_fields[slow >= fault.time_s - START_S - 1e-9] = fault.delta_m[:2]
     cores = [(0, 7.0), (1, 0.0)]
     return {
         "XKF1": ("QBffffff", "TimeUS,C,VN,VE,VD,PN,PE,PD", [
@@ -220,11 +225,11 @@ def dataflash_messages(flown: Flown) -> dict[str, tuple[str, str, list[tuple[obj
         "XKQ": ("QBffff", "TimeUS,C,Q1,Q2,Q3,Q4", [
             (us_k, core, *(q[k] if core else (1.0, 0.0, 0.0, 0.0)))
             for k, us_k in enumerate(us(t)) for core, _ in cores]),
-        "XKF4": ("QBffb", "TimeUS,C,OFN,OFE,PI", [(us_k, 0, *told[k], 1) for k, us_k in enumerate(us(slow))]),
+        "XKF4": ("QBffb", "TimeUS,C,OFN,OFE,PI", [(us_k, 0, *format_fields[k], 1) for k, us_k in enumerate(us(slow))]),
         "IMU": ("QBfff", "TimeUS,I,GyrX,GyrY,GyrZ", [
             (us_k, 0, *row) for us_k, row in zip(us(rates_t), flown.rates(rates_t))]),
         "RFND": ("QBfBB", "TimeUS,Instance,Dist,Stat,Orient", [
-            (us_k, 0, (-flown.position(slow)[k, 2] + 2.0) / matrices(flown.told_attitude(slow))[k, 2, 2], 4, 25)
+            (us_k, 0, (-flown.position(slow)[k, 2] + 2.0) / matrices(flown.logged_attitude(slow))[k, 2, 2], 4, 25)
             for k, us_k in enumerate(us(slow))]),
     }  # fmt: skip
 
@@ -233,7 +238,7 @@ def dataflash_messages(flown: Flown) -> dict[str, tuple[str, str, list[tuple[obj
 
 
 def write_tlog(path: Path, flown: Flown, odometry: bool = False) -> Path:
-    """As a ground station logs a flight, a camera's heartbeat and another system's position among its messages."""
+    """Writes the log of a ground station. It also contains a camera's heartbeat and another system's position."""
     from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
     def sender(system: int, component: int) -> mavlink.MAVLink:
@@ -241,7 +246,7 @@ def write_tlog(path: Path, flown: Flown, odometry: bool = False) -> Path:
 
     own, camera, other = sender(1, 1), sender(1, 100), sender(7, 1)
     t = flown.grid(flown.rate_hz)
-    place, speed, rates, q = flown.told_position(t), flown.velocity(t), flown.rates(t), flown.told_attitude(t)
+    place, speed, rates, q = flown.logged_position(t), flown.velocity(t), flown.rates(t), flown.logged_attitude(t)
     yaw, pitch, roll = flown.angles(t)
     with path.open("wb") as file:
 
@@ -266,6 +271,6 @@ def write_tlog(path: Path, flown: Flown, odometry: bool = False) -> Path:
 
 
 def noisy(quaternion: np.ndarray, sigma_deg: float, seed: int) -> np.ndarray:
-    """Attitudes with an error that is new in each."""
+    """Attitudes with an independent error in each."""
     turns = np.radians(sigma_deg) * np.random.default_rng(seed).standard_normal((len(quaternion), 3))
     return multiply(quaternion, small_rotations(turns))

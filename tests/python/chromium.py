@@ -1,4 +1,4 @@
-"""Headless Chromium for the tests of pages."""
+"""Headless Chromium for the tests of web pages."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shuti
 CHROMEDRIVER = shutil.which("chromedriver")
 MISSING = CHROMIUM is None or CHROMEDRIVER is None
 WHY_MISSING = "the browser test needs chromium and chromium-driver"
-HANG_S = 300  # only a guard against what hangs
-LEAST_INK = 0.005  # share of a screenshot's or print's bytes that a blank page has not
+HANG_S = 300  # guard against a hang
+LEAST_INK = 0.005  # a screenshot or print with a smaller share of the reference's bytes is blank
 
 
 def start(profile: Path) -> Any:
-    """A driver; who starts it ends it by ``quit()``."""
+    """Starts a driver. The caller ends it with ``quit()``."""
     from selenium import webdriver
     from selenium.webdriver.chrome.service import Service
 
@@ -35,7 +35,8 @@ def start(profile: Path) -> Any:
     return driver
 
 
-# What plays by performance.now() and by the times of frames plays by the test's time, which stands still by itself.
+# Everything that is animated by performance.now() or by frame times runs on the test's clock, which advances only by
+# step_time().
 HELD_TIME = """
   let now_ms = 1000;
   const frame = window.requestAnimationFrame.bind(window);
@@ -46,12 +47,12 @@ HELD_TIME = """
 
 
 def hold_time(browser: Any) -> None:
-    """In all pages that are opened from now on."""
+    """Applies to all pages that are opened from now on."""
     browser.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": f"{{ {HELD_TIME} }}"})
 
 
 def step_time(browser: Any, seconds: float) -> None:
-    """The page has drawn what is then when this returns."""
+    """Returns when the page has drawn the state at the new time."""
     browser.execute_async_script("stepTime(...arguments)", seconds)
 
 
@@ -64,7 +65,7 @@ def set_size(browser: Any, size: tuple[int, int]) -> None:
 
 
 def open_page(browser: Any, page: Path, size: tuple[int, int]) -> None:
-    browser.get_log("performance"), browser.get_log("browser")  # what came before is not this page's
+    browser.get_log("performance"), browser.get_log("browser")  # drops entries of the previous page
     set_size(browser, size)
     browser.get(page.as_uri())
     for _ in range(50):  # pictures are decoded in the background
@@ -76,7 +77,7 @@ def open_page(browser: Any, page: Path, size: tuple[int, int]) -> None:
 
 
 def requested(browser: Any) -> list[str]:
-    """What was fetched since the page was opened, data within the page left out."""
+    """URLs fetched since the page was opened, without data URLs."""
     found = []
     for entry in browser.get_log("performance"):
         message = json.loads(entry["message"])["message"]
@@ -86,7 +87,7 @@ def requested(browser: Any) -> list[str]:
 
 
 def screenshot(browser: Any, file: Path, whole: bool = True) -> None:
-    """The whole page, or what the window shows."""
+    """Saves the whole page, or only the visible part of the window."""
     if whole:
         size = browser.execute_cdp_cmd("Page.getLayoutMetrics", {})["cssContentSize"]
         clip = {"x": 0, "y": 0, "width": size["width"], "height": size["height"], "scale": 1}

@@ -1,4 +1,4 @@
-"""tests/targets/embedded_logs.c as Python reads it, and the hash of tests/targets/replay.c over all that comes out."""
+"""Reads tests/targets/embedded_logs.c, and computes the hash of tests/targets/replay.c over all outputs."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class LoggedImage:
     box: int  # bit i: side i
     reset_count: int
     reset_delta_known: bool
-    numbers: tuple[float, ...]  # 23, as embedded_logs.h has them
+    numbers: tuple[float, ...]  # the 23 numbers, in the order of embedded_logs.h
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class LoggedTrack:
     line_points: int
     orientation_memory: int
     heading_auto: bool
-    position_white_m: float
+    position_white_sd_m: float
     numbers: tuple[float, ...]  # 18
 
 
@@ -42,7 +42,7 @@ def floats(words: Iterable[int]) -> tuple[float, ...]:
 
 
 def rows(text: str, name: str) -> list[list[object]]:
-    """Of an array of structs, each with an array of its own at its end."""
+    """Rows of an array of structs. The last member of each struct is an array."""
 
     def value(word: str) -> object:
         return word[1:-1] if word[0] == '"' else TIME_UNKNOWN if word == "INT64_MIN" else int(word, 0)

@@ -1,4 +1,4 @@
-"""A folder as goe_campaign writes it, with invented errors: for tests of the report only. Deterministic."""
+"""Writes a folder like goe_campaign's with invented, deterministic errors, for the tests of the report only."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-OBSTACLES = {  # W, L, H, side distances, altitudes
+OBSTACLES = {  # W, L, H, lateral distances, altitudes
     "cylinder": (6.0, 6.0, 30.0, (0.0, 30.0, 60.0), (15.0,)),
     "building": (15.0, 40.0, 89.0, (0.0, 75.0, 150.0), (44.5,)),
     "truck": (2.5, 7.0, 2.5, (0.0, 12.5, 25.0), (2.5, 5.0)),
@@ -21,12 +21,12 @@ ANGLES = (-45.0, -20.0, 0.0, 20.0, 45.0)
 FRACTIONS = (0.2, 0.4, 0.6, 1.0)
 QUANTITIES = ("z0", "x0", "width", "length", "height", "orientation")
 BOX_ROLLS = (0.0, 5.0, 10.0, 25.0)
-REFINED_SHARE = 0.05  # of the window method's spread
-SPREAD = {  # of the error, in percent of the truth or (height, orientation) metres and degrees, by model
+REFINED_SHARE = 0.05  # relative to the scatter of the window method
+SPREAD = {  # error by model: percent of the truth; meters for the height, degrees for the orientation
     "disc": {"z0": 2.0, "x0": 12.0, "width": 30.0, "height": 0.8},
     "auto": {"z0": 3.0, "x0": 9.0, "width": 1.6, "length": 12.0, "height": 0.9, "orientation": 1.2},
 }
-STUDIES = {  # columns that differ from the paper's study, and how much larger errors are
+STUDIES = {  # columns that differ from the paper's study, and the factor on their errors
     "arc": ({"path": "arc:300"}, 0.8),
     "weave": ({"path": "weave:5,6"}, 0.6),
     "ramp": ({"speed_profile": "ramp:0.5"}, 1.0),
@@ -38,7 +38,7 @@ STUDIES = {  # columns that differ from the paper's study, and how much larger e
 
 
 def setups() -> list[dict[str, Any]]:
-    """Table 2: 156 cases."""
+    """The 156 cases of Table 2."""
     found = []
     for name, (_, _, _, sides, altitudes) in OBSTACLES.items():
         angles = (0.0,) if name == "cylinder" else ANGLES
@@ -124,27 +124,28 @@ def rows(seeds: int = 1, studies: bool = True) -> list[dict[str, Any]]:
 
 
 def refined_rows(seeds: int = 1, studies: bool = True) -> list[dict[str, Any]]:
-    """The refined method's: the paper's study, told nothing or that it is a box, and the field study."""
+    """Rows of the filter method: the paper's study without and with the box as configured shape, and the field
+    study."""
     rng = np.random.default_rng(20260102)
     found = []
     for seed, setup, fraction in product(range(1, seeds + 1), setups(), FRACTIONS):
         for model in ("auto",) if setup["obstacle"] == "cylinder" else ("auto", "box"):
-            found.append(_row(rng, setup, model, seed, fraction, REFINED_SHARE, method="refined"))
+            found.append(_row(rng, setup, model, seed, fraction, REFINED_SHARE, method="filter"))
     if studies:
         change, scale = STUDIES["field"]
         for setup, fraction in product(setups(), FRACTIONS):
             if abs(setup["alpha_deg"]) != 20.0 and setup["glide_deg"] == 0.0:
-                found.append(_row(rng, setup, "auto", 1, fraction, REFINED_SHARE * scale, method="refined",
+                found.append(_row(rng, setup, "auto", 1, fraction, REFINED_SHARE * scale, method="filter",
                                   study="field", **change))  # fmt: skip
     return found
 
 
 def box_rows() -> list[dict[str, Any]]:
-    """Both methods by upright boxes: refined gains by roll, its sigmas hold; window is far off."""
+    """Rows of both methods for upright boxes. Roll improves filter, and its sigmas are right; window is far off."""
     rng = np.random.default_rng(20260103)
     found = []
     for roll, setup, fraction in product(BOX_ROLLS, setups()[:20], FRACTIONS):
-        for method, scale, covered in (("refined", 1.0 / (1.0 + roll / 10.0), 0.94), ("window", 40.0, 0.55)):
+        for method, scale, covered in (("filter", 1.0 / (1.0 + roll / 10.0), 0.94), ("window", 40.0, 0.55)):
             shares = dict.fromkeys(("z0_covered", "x0_covered", "height_covered"), covered)
             found.append(_row(rng, setup, "auto", 1, fraction, scale, method=method, study="boxes", noise="field",
                               roll_deg=roll, **shares))  # fmt: skip
@@ -172,7 +173,7 @@ def _six(*values: float | None) -> dict[str, float | None]:
 
 
 def goals() -> list[dict[str, Any]]:
-    """As the goals command writes them; two are missed, W of the coverage and the moving cars."""
+    """Rows as the goals command writes them. Two goals are missed: W of the coverage, and the moving cars."""
     early = {"cylinder": 15.31, "building": 37.2, "truck": 14.4, "long-truck": 15.1}
     found = [
         _goal("gauss1", "RMSE / bound, median of 12 cases", _six(1.011, 1.022, 1.033, 0.997, 1.055, 1.066), (0, 1.25)),
@@ -185,14 +186,14 @@ def goals() -> list[dict[str, Any]]:
               (0.97, 1.03), ("mean",)),
         _goal("gauss1", "NIS over rows, boxes", {"mean": 0.987}),
         *(_goal("early: Z0 known to 10%", f"field, {way}", {o: share * v for o, v in early.items()}, unit="s")
-          for way, share in (("refined, own 2 sigma", 1.0), ("refined, true error", 1.1), ("window, true error", 0.3))),
+          for way, share in (("filter, own 2 sigma", 1.0), ("filter, true error", 1.1), ("window, true error", 0.3))),
         _goal("kitti", "68 moving cars caught, at a share of false flags", {"0 %": 20.0, "5 %": 34.7, "20 %": 50.0},
               (60, 100), ("5 %",), "%"),
-        _goal("kitti", "misfit as a flag", {"area under the curve": 0.661}),
+        _goal("kitti", "NIS ratio as a flag", {"area under the curve": 0.661}),
         _goal("kitti", "flagged as suspect with the default threshold", {"parked": 1.0, "moving": 14.0}, unit="%"),
     ]  # fmt: skip
     for name, errors in (
-        ("refined", _six(0.7, 0.6, 0.15, 0.021, 0.06, 0.02)), ("window", _six(2.1, 5.0, 1.4, 0.37, 1.6, 0.9)),
+        ("filter", _six(0.7, 0.6, 0.15, 0.021, 0.06, 0.02)), ("window", _six(2.1, 5.0, 1.4, 0.37, 1.6, 0.9)),
         ("triangulation", _six(0.53, 5.3, 2.0, 0.27, 0.9, 0.3)),
         ("bearing_angle", _six(1.8, 6.5, None, 0.12, None, None)),
     ):  # fmt: skip
@@ -211,11 +212,11 @@ def hostile_goals() -> list[dict[str, Any]]:
         _goal(slope, "slope 3 %: within 2 sigma, W", {"W": 54.4}, (50, 100), unit="%"),
         _goal(slope, "slope 3 %: wrong by 5 sigma", {"any": 65.0, "position": 35.8}, unit="%"),
         _goal(slope, "slope 3 %: suspect", {"tracks": 10.8, "images": 2.2, "or covered": 16.7}, unit="%"),
-        _goal(mover, "across 5 m/s: told as moving", {"4 s": 97.0, "8 s": 100.0, "ever": 100.0}, (90, 100), ("4 s",),
+        _goal(mover, "across 5 m/s: flagged as moving", {"4 s": 97.0, "8 s": 100.0, "ever": 100.0}, (90, 100), ("4 s",),
               "%"),
         _goal(mover, "across 5 m/s: suspect", {"tracks": 100.0, "images": 76.9}, unit="%"),
-        _goal("hazard", "corners, nominal: true share by told", {"0.05 to 0.2": 0.123, "0.2 to 0.5": 0.46}),
-        _goal("hazard", "corners, nominal: told less true", {"0.05 to 0.2": 0.02, "0.2 to 0.5": 0.11}, (0, 0.1)),
+        _goal("hazard", "corners, nominal: true share by predicted", {"0.05 to 0.2": 0.123, "0.2 to 0.5": 0.46}),
+        _goal("hazard", "corners, nominal: predicted less true", {"0.05 to 0.2": 0.02, "0.2 to 0.5": 0.11}, (0, 0.1)),
         _goal("hazard", "corners, nominal: within 2 sigma", {"time": 96.0, "miss": 94.0, "clearance": 91.0}, (90, 100),
               unit="%"),
         _goal("hazard", "corners, nominal: unwarned 5 s ahead", {"violators": 0.0}, (0, 0), unit="%"),
@@ -226,8 +227,8 @@ AVOID_KINDS = {"mast": (18.0, 7.7, "left"), "building": (19.0, 9.2, "right"), "t
 
 
 def avoid_rows(runs: int = 20) -> list[dict[str, Any]]:
-    """As goe_avoid writes them. The first collision course of a kind has no collision without orders, a truck's last
-    one has a collision with a late order; the second pass of a building gets a false order."""
+    """Rows as goe_avoid writes them. The first collision course of each kind has no collision without orders. The last
+    one of a truck has a collision with a late order. The second pass of a building gets a false order."""
     rng = np.random.default_rng(20260104)
     found = []
     for course, (kind, (away, ahead, action)), k in product(("collision", "pass"), AVOID_KINDS.items(), range(runs)):
@@ -249,14 +250,14 @@ def avoid_rows(runs: int = 20) -> list[dict[str, Any]]:
     return found
 
 
-def write_avoid(path: Path, rows_told: list[dict[str, Any]] | None = None) -> Path:
-    _write_csv(path, avoid_rows() if rows_told is None else rows_told)
+def write_avoid(path: Path, given_rows: list[dict[str, Any]] | None = None) -> Path:
+    _write_csv(path, avoid_rows() if given_rows is None else given_rows)
     return path
 
 
 def write_goals(path: Path, hostile: bool = False) -> Path:
-    told = {"quick": False, "date": "2026-11-01", "goals": goals() + (hostile_goals() if hostile else [])}
-    path.write_text(json.dumps(told), encoding="utf-8")
+    content = {"quick": False, "date": "2026-11-01", "goals": goals() + (hostile_goals() if hostile else [])}
+    path.write_text(json.dumps(content), encoding="utf-8")
     return path
 
 
@@ -279,10 +280,10 @@ def _series(setup: dict[str, Any]) -> list[dict[str, Any]]:
         if raw is not None:
             mean = raw if mean is None else mean + (raw - mean) / min(k - 20, 20)
         found.append({
-            "t_s": k / 8.0, "status": "ok" if k > 28 else "collecting", "model": "line" if k > 28 else "disc",
+            "t_s": k / 8.0, "status": "ok" if k > 28 else "converging", "model": "line" if k > 28 else "disc",
             "x0_m": -75.0 + rng.normal(0, 2), "z0_m": 660.0 + rng.normal(0, 5), "width_m": 15 + rng.normal(0, 0.4),
             "orientation_deg": mean, "orientation_raw_deg": raw,
-            "other_side_deg": None if raw is None else 90.0 + setup["alpha_deg"] + rng.normal(0.0, noise),
+            "front_orientation_deg": None if raw is None else 90.0 + setup["alpha_deg"] + rng.normal(0.0, noise),
             "orientation_true_deg": setup["alpha_deg"],
         })  # fmt: skip
     return found

@@ -1,4 +1,4 @@
-"""What a code host and package managers read: workflow, templates, citation, dates of releases, the home page."""
+"""Files that code hosts and package managers read: workflow, templates, citation, release dates, home page."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ HOST = ROOT / ".github"
 FACTS = Facts()
 URL = re.compile(r"https?://[^\s\"'<>)\]}`]+")
 OWN = re.compile(r"(?<![a-z0-9])goe(?![a-z0-9])")  # the project's name in a URL
-FOR_TESTS = ".invalid"  # a domain that can never be anybody's
+FOR_TESTS = ".invalid"  # a domain reserved by RFC 2606
 SOURCES = (".github", "lib", "port", "sim_host", "tests", "tools")
 
 
@@ -26,7 +26,7 @@ def loaded(path: Path) -> Any:
 
 
 def texts() -> dict[Path, str]:
-    """Of all files of the tree that are text, but for what was built or fetched."""
+    """All text files of the tree without build products and downloads."""
     found = {}
     for path in (p for folder in SOURCES for p in (ROOT / folder).rglob("*")):
         built = {"__pycache__", "target", "node_modules"} & set(path.parts) or ".egg-info" in str(path)
@@ -41,7 +41,7 @@ def texts() -> dict[Path, str]:
 
 
 def strays(found: dict[Path, str], url: str) -> list[str]:
-    """URLs of the project that are not the one of CMakeLists.txt, or below it."""
+    """URLs of the project that are neither the URL of CMakeLists.txt nor below it."""
     return [
         f"{path.name}: {other}"
         for path, text in found.items()
@@ -56,7 +56,7 @@ def test_no_other_home_page_is_named() -> None:
 
 
 def test_a_stray_home_page_is_found() -> None:
-    other = "https://host.example"  # apart from the project's name: this file is searched, too
+    other = "https://host.example"  # split, because the search includes this file
     moved = {Path("a.md"): f"{FACTS.url}.git", Path("b.md"): f"see {other}/me/goe/wiki", Path("c.md"): f"{other}/goer"}
     assert strays(moved, FACTS.url) == [f"b.md: {other}/me/goe/wiki"]
     assert strays({Path("a.md"): FACTS.url}, f"{other}/goe") == [f"a.md: {FACTS.url}"]
@@ -121,7 +121,7 @@ def test_files_that_the_pull_request_names() -> None:
 
 
 def releases() -> list[tuple[str, str]]:
-    """Version and date of each section of the changelog but "Next"."""
+    """Version and date of each section of the changelog except "Next"."""
     text = (ROOT / "lib" / "CHANGELOG.md").read_text(encoding="utf-8")
     sections = [line[3:] for line in re.findall(r"^## .*$", text, re.MULTILINE) if line != "## Next"]
     found = [re.fullmatch(r"(\d+\.\d+\.\d+) \((\d{4}-\d\d-\d\d)\)", section) for section in sections]
@@ -138,12 +138,12 @@ def test_releases_are_dated_newest_first() -> None:
 
 
 def test_citation() -> None:
-    """Of the newest release; with the paper that the method starts from."""
+    """The citation names the newest release and the paper that the method starts from."""
     cited = loaded(HOST / "CITATION.cff")
-    assert {"cff-version", "message", "title", "authors"} <= cited.keys()  # what the format requires
+    assert {"cff-version", "message", "title", "authors"} <= cited.keys()  # required by the format
     assert (cited["version"], cited["date-released"]) == releases()[0]
     assert cited["authors"] == [{"name": "goe maintainers"}]
-    assert (cited["license"], cited["url"]) == (FACTS.licence, FACTS.url)
+    assert (cited["license"], cited["url"]) == (FACTS.license, FACTS.url)
     (paper,) = cited["references"]
     assert paper["title"] in " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
     assert paper["authors"][0]["family-names"] == "Bauer" and paper["year"] == 2019

@@ -1,4 +1,4 @@
-"""Tests that a change affects (ci.affected)."""
+"""Selection of the tests that a change affects (ci.affected)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""tools/bench/ALTERNATIVES.md: its tables are those of the recorded figures, its claims hold in them."""
+"""tools/bench/ALTERNATIVES.md: its tables repeat the recorded figures, and its claims follow from them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "tools" / "bench" / "ALTERNATIVES.md"
 RECORD = ROOT / "tests" / "data" / "rivals.json"
 NAMES = {
-    "refined": "goe, `refined`",
+    "filter": "goe, `filter`",
     "window": "goe, `window` (the paper)",
     "triangulation": "GTSAM, triangulation of the corners",
     "inverse_depth": "inverse-depth Kalman filter",
@@ -25,7 +25,7 @@ NOISES = {"gauss1": "1 px, exact pose", "field": "errors of real sensors"}
 
 
 def recorded() -> dict[tuple[str, str, str], dict[str, float]]:
-    """By noise, figure and method: values by quantity."""
+    """Recorded values by quantity, for each noise, figure and method."""
     found = {}
     for row in json.loads(RECORD.read_text(encoding="utf-8"))["goals"]:
         noise, figure, method = re.fullmatch(
@@ -52,7 +52,7 @@ def table(noise: str) -> list[str]:
 
 
 def test_all_rivals_are_recorded() -> None:
-    assert {*RIVALS, "refined", "window"} == set(NAMES)
+    assert {*RIVALS, "filter", "window"} == set(NAMES)
     found = recorded()
     assert {(noise, method) for noise, _, method in found} == {(noise, m) for noise in NOISES for m in NAMES}
     flights = re.findall(r"median error, (\d+) flights", RECORD.read_text(encoding="utf-8"))
@@ -73,16 +73,17 @@ def test_the_date_is_that_of_the_record() -> None:
     assert f"recorded on {date}" in " ".join(PAGE.read_text(encoding="utf-8").split())
 
 
-def test_what_the_page_says_of_the_tables() -> None:
-    """With sensors' errors the filter is nearest in each quantity; others answer orientation and length more often."""
+def test_claims_of_the_page_follow_from_its_tables() -> None:
+    """With sensor errors the filter has the smallest error in each quantity; other methods answer orientation and
+    length more often."""
     found = recorded()
     for q in QUANTITIES:
         errors = {method: found["field", "median error", method][q] for method in NAMES}
         assert (
-            min(errors, key=lambda method: errors[method] if math.isfinite(errors[method]) else math.inf) == "refined"
+            min(errors, key=lambda method: errors[method] if math.isfinite(errors[method]) else math.inf) == "filter"
         )
     for q in ("orientation", "L"):
-        ours = found["field", "answers", "refined"][q]
+        ours = found["field", "answers", "filter"][q]
         assert any(found["field", "answers", method][q] > ours for method in RIVALS)
-    ratio = found["gauss1", "median error", "triangulation"]["X0"] / found["gauss1", "median error", "refined"]["X0"]
+    ratio = found["gauss1", "median error", "triangulation"]["X0"] / found["gauss1", "median error", "filter"]["X0"]
     assert 1.0 < ratio < 1.5

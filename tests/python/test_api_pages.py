@@ -1,4 +1,4 @@
-"""The pages of the C interface, built by Doxygen with warnings as errors: tools/api_pages.sh."""
+"""The pages of the C interface that tools/api_pages.sh builds by Doxygen, with warnings as errors."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 HEADERS = (ROOT / "lib" / "goe.h", ROOT / "port" / "flight" / "goe_flight.h")
-SECONDS = 600  # only a guard against what hangs
+SECONDS = 600  # guard against a hang
 
 
 def filter_module() -> ModuleType:
@@ -49,7 +49,7 @@ def test_every_function_has_its_words(tmp_path: Path, doxygen: None) -> None:
 
 
 def test_a_warning_is_an_error(tmp_path: Path, doxygen: None) -> None:
-    """In a copy whose header names a parameter that is not there."""
+    """In a copy whose header documents a parameter that does not exist."""
     for name in ("lib/goe.h", "port/flight/goe_flight.h", "tools/api_pages.sh"):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(ROOT / name, tmp_path / name)
@@ -67,7 +67,7 @@ def test_a_warning_is_an_error(tmp_path: Path, doxygen: None) -> None:
 
 def test_plain_comments_become_descriptions() -> None:
     source = """/*
- * name - what it is
+ * name - a purpose
  *    a drawing <o>
  */
 #define A 1 /* of all [A7] */
@@ -85,7 +85,7 @@ typedef struct {
 } t;
 """
     converted = filter_module().converted(source, "name.h")
-    assert converted.startswith("/** @file name.h\n@verbatim\n name - what it is\n    a drawing <o>\n")
+    assert converted.startswith("/** @file name.h\n@verbatim\n name - a purpose\n    a drawing <o>\n")
     assert "#define A 1 /**< of all */" in converted
     assert "/* ------------------------------ a ruler -- */" in converted
     assert "/** What it does, if x \\< 3 or\nmore. */\nvoid f(float x);" in converted

@@ -1,4 +1,5 @@
-"""The comments of port/ardupilot/AP_GOE that ArduPilot makes its documentation of, and what the README says of them."""
+"""The parameter comments of port/ardupilot/AP_GOE, from which ArduPilot makes its documentation, and the README's
+account of them."""
 
 from __future__ import annotations
 
@@ -14,13 +15,13 @@ SOURCE = (PORT / "AP_GOE" / "AP_GOE_Params.cpp").read_text(encoding="utf-8")
 LOGGING = (PORT / "AP_GOE" / "AP_GOE_Logging.cpp").read_text(encoding="utf-8")
 README = (PORT / "README.md").read_text(encoding="utf-8")
 
-# What is used of the closed lists in ArduPilot's Tools/autotest/param_metadata/param.py (4.7-dev, commit 90700977c5,
+# The used subset of the closed lists in ArduPilot's Tools/autotest/param_metadata/param.py (4.7-dev, commit 90700977c5,
 # read on 22 Nov 2026).
 UNITS = {"m", "m/s", "s", "deg", "Hz"}
 FIELDS = {"DisplayName", "Description", "User", "Range", "Units", "Values", "Bitmask", "RebootRequired"}
 NEEDED = {"DisplayName", "Description", "User"}
 
-# What a ground station may set is wider: 0 stands for something.
+# A ground station accepts a wider range: 0 has a special meaning.
 WIDER = {"FY": "0 100000", "WIDTH": "0 32767", "HEIGHT": "0 32767"}
 
 
@@ -42,7 +43,7 @@ def parameters() -> list[Parameter]:
 
 
 def ranges() -> dict[str, tuple[float, float]]:
-    """Of the settings, by the field that AP_GOE assigns."""
+    """Ranges of the settings, by the field that AP_GOE assigns."""
     found = {}
     text = (ROOT / "lib" / "goe_settings_list.h").read_text(encoding="utf-8")
     for name, low, high in re.findall(r"X\(([\w.\[\]]+), REAL, \"[^\"]*\", ([-\d.e]+)f, ([-\d.e]+)f,", text):
@@ -54,14 +55,14 @@ def ranges() -> dict[str, tuple[float, float]]:
 
 
 def assigned() -> dict[str, str]:
-    """Field of the settings by the member that it is read from."""
+    """The field of the settings for each member that it is read from."""
     code = SOURCE[SOURCE.index("void AP_GOE::read_params") :]
     pattern = r"(camera|estimator|layer)\.([\w.\[\]]+) = (?:or_else\()?(_\w+)"
     return {member: ("camera." if of == "camera" else "") + name for of, name, member in re.findall(pattern, code)}
 
 
 @pytest.mark.parametrize("parameter", parameters(), ids=lambda p: p.name)
-def test_a_parameter_says_what_it_is(parameter: Parameter) -> None:
+def test_each_parameter_is_documented(parameter: Parameter) -> None:
     assert set(parameter.fields) >= NEEDED
     assert set(parameter.fields) <= FIELDS
     assert parameter.fields.get("Units", "m") in UNITS
@@ -83,7 +84,7 @@ def test_its_range_is_that_of_the_setting(parameter: Parameter) -> None:
 def test_a_user_sets_fifteen() -> None:
     users = [parameter.fields["User"] for parameter in parameters()]
     assert users.count("Standard") == 15
-    assert users.count("Advanced") == len(users) - 15 == 11  # the lens and the camera's place
+    assert users.count("Advanced") == len(users) - 15 == 11  # lens and mounting of the camera
 
 
 def test_a_bad_setting_has_the_name_of_its_parameter() -> None:
@@ -101,7 +102,7 @@ def test_every_parameter_is_read() -> None:
         assert sum(parameter.member in path.read_text(encoding="utf-8") for path in (PORT / "AP_GOE").iterdir()) >= 2
 
 
-def test_the_log_says_what_its_labels_are() -> None:
+def test_log_labels_are_documented() -> None:
     messages = re.findall(r"((?:// @.*\n)+)[^\"]*\"(GOE\w)\", \"([\w,]+)\"", LOGGING)
     assert [name for _, name, _ in messages] == ["GOEO", "GOEH", "GOES"]
     for comment, name, labels in messages:
@@ -109,7 +110,7 @@ def test_the_log_says_what_its_labels_are() -> None:
         assert re.findall(r"// @Field: (\w+):", comment) == labels.split(",")
 
 
-def test_the_readme_names_what_is_there() -> None:
+def test_names_in_the_readme_exist() -> None:
     names = {parameter.name for parameter in parameters()}
     for name in re.findall(r"`GOE_([A-Z_]+)`", README):
         assert name in names or name in {"FEATURES", "OBSTACLE", "HAZARD", "STATUS"} or name.startswith("WITH_"), name
@@ -120,5 +121,5 @@ def test_the_readme_names_what_is_there() -> None:
     folders = re.search(r"\['AP_GOE'\] \+ \['AP_GOE/' \+ d for d in \(([^)]*)\)", README)
     assert folders
     sources = [*(ROOT / "lib").rglob("*.c"), *(ROOT / "port/flight").glob("*.c"), *(ROOT / "port/mavlink").glob("*.c")]
-    told = {name.strip(" '") for name in folders.group(1).split(",")}
-    assert told == {str(path.parent.relative_to(ROOT)).replace("port/", "") for path in sources}
+    listed = {name.strip(" '") for name in folders.group(1).split(",")}
+    assert listed == {str(path.parent.relative_to(ROOT)).replace("port/", "") for path in sources}

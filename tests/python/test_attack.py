@@ -1,4 +1,5 @@
-"""The hostile flights: what is drawn against another projection, what is measured against outcomes of known figures."""
+"""The attack flights: simulated images against another projection, measured figures against outcomes with known
+figures."""
 
 from __future__ import annotations
 
@@ -25,8 +26,9 @@ from goe_tools.report import attack_lines
 
 NAN = math.nan
 EXACT = {
-    "point_px": 0.0, "box_px": 0.0, "box_share": 0.0, "attitude_bias_deg": 0.0, "attitude_white_deg": 0.0,
-    "velocity_bias_m_s": 0.0, "position_walk_m": 0.0, "height_bias_m": 0.0,
+    "point_noise_px": 0.0, "box_noise_px": 0.0, "box_noise_rel": 0.0, "attitude_bias_sd_deg": 0.0,
+    "attitude_white_sd_deg": 0.0,
+    "velocity_bias_sd_m_s": 0.0, "position_walk_sd_m": 0.0, "height_bias_sd_m": 0.0,
 }  # fmt: skip
 BASE = Scenario(kind="box").by(**EXACT)
 AMOUNT = replace(QUICK, attack=3, hazard=3)
@@ -36,42 +38,42 @@ AMOUNT = replace(QUICK, attack=3, hazard=3)
 
 
 def turned(q: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """v by the Hamilton product q v q*."""
+    """v rotated by q: the Hamilton product q v q*."""
     w, u = q[0], q[1:]
     return v + 2.0 * np.cross(u, np.cross(u, v) + w * v)
 
 
-def pixel(told: Inputs, image: int, point_ned: np.ndarray) -> np.ndarray:
-    """Of a point, from what is told: a pose without error, a camera that looks ahead or aside by its yaw."""
-    back = told.attitude[image] * [1.0, -1.0, -1.0, -1.0]
-    forward, right, down = turned(back, point_ned - told.position_ned_m[image])
-    yaw = math.radians(told.settings["camera.mount_yaw_deg"])
+def pixel(inputs: Inputs, image: int, point_ned: np.ndarray) -> np.ndarray:
+    """The pixel of a point by the exact pose of the inputs. The camera looks along its yaw."""
+    back = inputs.attitude[image] * [1.0, -1.0, -1.0, -1.0]
+    forward, right, down = turned(back, point_ned - inputs.position_ned_m[image])
+    yaw = math.radians(inputs.settings["camera.mount_yaw_deg"])
     ahead, aside = (
         forward * math.cos(yaw) + right * math.sin(yaw),
         right * math.cos(yaw) - forward * math.sin(yaw),
     )
-    focal = told.settings["camera.fx_px"]
+    focal = inputs.settings["camera.fx_px"]
     return 640.0 + focal / ahead * np.array([aside, down])
 
 
-def bearing(told: Inputs, image: int, shown: np.ndarray) -> float:
-    """Of a pixel's ray from north, rad."""
-    x, y = (shown - 640.0) / told.settings["camera.fx_px"]
-    yaw = math.radians(told.settings["camera.mount_yaw_deg"])
+def bearing(inputs: Inputs, image: int, shown: np.ndarray) -> float:
+    """Bearing of a pixel's ray from north, rad."""
+    x, y = (shown - 640.0) / inputs.settings["camera.fx_px"]
+    yaw = math.radians(inputs.settings["camera.mount_yaw_deg"])
     ray = np.array([math.cos(yaw) - x * math.sin(yaw), math.sin(yaw) + x * math.cos(yaw), y])
-    north, east, _ = turned(told.attitude[image], ray)
+    north, east, _ = turned(inputs.attitude[image], ray)
     return math.atan2(east, north)
 
 
-def in_ned(told: Inputs, image: int, x: float, z: float, up: float) -> np.ndarray:
-    """A point of the obstacle, given about its middle in T's axes, where it is in an image."""
-    truth, t = told.truth, told.time_s[image]
-    heading = math.radians(told.settings["heading_deg"])
+def in_ned(inputs: Inputs, image: int, x: float, z: float, up: float) -> np.ndarray:
+    """Position in an image of an obstacle's point, given relative to its middle in T's axes."""
+    truth, t = inputs.truth, inputs.time_s[image]
+    heading = math.radians(inputs.settings["heading_deg"])
     z_all, x_all = truth.middle_m[1] + z, truth.middle_m[0] + x
     north = z_all * math.cos(heading) - x_all * math.sin(heading) + truth.velocity_ned_m_s[0] * t
     east = z_all * math.sin(heading) + x_all * math.cos(heading) + truth.velocity_ned_m_s[1] * t
-    ground = told.position_ned_m[0, 2] + told.height_m[0]
-    return np.array([told.position_ned_m[0, 0] + north, told.position_ned_m[0, 1] + east, ground - up])
+    ground = inputs.position_ned_m[0, 2] + inputs.height_m[0]
+    return np.array([inputs.position_ned_m[0, 0] + north, inputs.position_ned_m[0, 1] + east, ground - up])
 
 
 def box_corners(solid: Solid) -> list[tuple[float, float]]:
@@ -83,7 +85,7 @@ def box_corners(solid: Solid) -> list[tuple[float, float]]:
     return result
 
 
-SEEN_OF = {
+SCENE_OF = {
     "static": BASE,
     "mover": BASE.by(moves="diagonal", moves_m_s=5.0),
     "orbit": BASE.by(path="orbit"),
@@ -91,58 +93,60 @@ SEEN_OF = {
 }
 
 
-@pytest.mark.parametrize("name", SEEN_OF)
+@pytest.mark.parametrize("name", SCENE_OF)
 def test_points_and_boxes_are_those_of_the_projected_corners(name: str) -> None:
     for number in (1, 3):
-        by_points = scenario.fly(SEEN_OF[name], number)
-        by_boxes = scenario.fly(SEEN_OF[name].by(features="boxes"), number)
-        for told in (by_points, by_boxes):
+        by_points = scenario.fly(SCENE_OF[name], number)
+        by_boxes = scenario.fly(SCENE_OF[name].by(features="boxes"), number)
+        for inputs in (by_points, by_boxes):
             checked = 0
-            for k in np.flatnonzero(told.shown)[::9]:
-                corners = box_corners(told.truth.solid)
-                foot = np.array([pixel(told, k, in_ned(told, k, x, z, 0.0)) for x, z in corners])
-                roof = np.array([pixel(told, k, in_ned(told, k, x, z, told.truth.solid.height_m)) for x, z in corners])
+            for k in np.flatnonzero(inputs.shown)[::9]:
+                corners = box_corners(inputs.truth.solid)
+                foot = np.array([pixel(inputs, k, in_ned(inputs, k, x, z, 0.0)) for x, z in corners])
+                roof = np.array(
+                    [pixel(inputs, k, in_ned(inputs, k, x, z, inputs.truth.solid.height_m)) for x, z in corners]
+                )
                 both = np.concatenate([foot, roof])
-                if told.box_px is not None:
+                if inputs.box_px is not None:
                     sides = np.array([*both.min(0), *both.max(0)])
-                    assert told.box_px[k] == pytest.approx(np.clip(sides, 0.0, 1279.0), abs=1e-6)
+                    assert inputs.box_px[k] == pytest.approx(np.clip(sides, 0.0, 1279.0), abs=1e-6)
                     checked += 1
                     continue
                 for feature, wanted in ((view.LEFT, np.argmin(both[:, 0])), (view.RIGHT, np.argmax(both[:, 0]))):
-                    if told.seen[k, feature]:
-                        assert told.pixel_px[k, feature] == pytest.approx(both[wanted], abs=1e-6)
+                    if inputs.seen[k, feature]:
+                        assert inputs.pixel_px[k, feature] == pytest.approx(both[wanted], abs=1e-6)
                         checked += 1
-                base = told.pixel_px[k, [view.BASE_LEFT, view.BASE_NEAR, view.BASE_RIGHT]]
-                base = base[told.seen[k, [view.BASE_LEFT, view.BASE_NEAR, view.BASE_RIGHT]]]
+                base = inputs.pixel_px[k, [view.BASE_LEFT, view.BASE_NEAR, view.BASE_RIGHT]]
+                base = base[inputs.seen[k, [view.BASE_LEFT, view.BASE_NEAR, view.BASE_RIGHT]]]
                 assert all(np.abs(foot - point).max(1).min() < 1e-6 for point in base)
-                bearings = [bearing(told, k, point) for point in base]
+                bearings = [bearing(inputs, k, point) for point in base]
                 assert (np.diff(np.unwrap(bearings)) > 0.0).all()
             assert checked >= 2
 
 
 def test_three_base_corners_show_two_faces() -> None:
-    """The near corner is the nearest one, left and right are its neighbours, and the fourth is hidden."""
-    told = scenario.fly(BASE, 3)
-    k = int(np.flatnonzero(told.seen[:, view.BASE_LEFT :].all(1))[0])
-    corners = box_corners(told.truth.solid)
-    ground = [in_ned(told, k, x, z, 0.0) for x, z in corners]
-    near = int(np.argmin([np.hypot(*(g - told.position_ned_m[k])[:2]) for g in ground]))
-    around = [pixel(told, k, ground[(near + step) % 4]) for step in (-1, 0, 1)]
-    shown = told.pixel_px[k, view.BASE_LEFT :]
+    """The near corner is the nearest one, left and right are its neighbors, and the fourth is hidden."""
+    inputs = scenario.fly(BASE, 3)
+    k = int(np.flatnonzero(inputs.seen[:, view.BASE_LEFT :].all(1))[0])
+    corners = box_corners(inputs.truth.solid)
+    ground = [in_ned(inputs, k, x, z, 0.0) for x, z in corners]
+    near = int(np.argmin([np.hypot(*(g - inputs.position_ned_m[k])[:2]) for g in ground]))
+    around = [pixel(inputs, k, ground[(near + step) % 4]) for step in (-1, 0, 1)]
+    shown = inputs.pixel_px[k, view.BASE_LEFT :]
     assert shown[1] == pytest.approx(around[1], abs=1e-6)
     assert sorted(shown[[0, 2], 0]) == pytest.approx(sorted(a[0] for a in (around[0], around[2])), abs=1e-6)
 
 
-def test_a_cylinder_is_seen_by_its_tangents_and_by_its_rims() -> None:
+def test_a_cylinder_is_projected_by_its_tangents_and_by_its_rims() -> None:
     scene = Scenario(kind="cylinder").by(**EXACT)
-    told, boxed = scenario.fly(scene, 5), scenario.fly(scene.by(features="boxes"), 5)
-    radius = 0.5 * told.truth.solid.width_m
-    for k in np.flatnonzero(told.seen[:, [view.LEFT, view.RIGHT]].all(1))[::7]:
-        to_middle = (in_ned(told, k, 0.0, 0.0, 0.0) - told.position_ned_m[k])[:2]
+    inputs, boxed = scenario.fly(scene, 5), scenario.fly(scene.by(features="boxes"), 5)
+    radius = 0.5 * inputs.truth.solid.width_m
+    for k in np.flatnonzero(inputs.seen[:, [view.LEFT, view.RIGHT]].all(1))[::7]:
+        to_middle = (in_ned(inputs, k, 0.0, 0.0, 0.0) - inputs.position_ned_m[k])[:2]
         away = float(np.hypot(*to_middle))
         middle = math.atan2(to_middle[1], to_middle[0])
         for feature, side in ((view.LEFT, -1.0), (view.RIGHT, 1.0)):
-            off = (bearing(told, k, told.pixel_px[k, feature]) - middle + math.pi) % (2 * math.pi) - math.pi
+            off = (bearing(inputs, k, inputs.pixel_px[k, feature]) - middle + math.pi) % (2 * math.pi) - math.pi
             assert off == pytest.approx(side * math.asin(radius / away), abs=1e-9)
     for k in np.flatnonzero(boxed.shown)[::7]:
         angle = np.linspace(0.0, 2 * math.pi, 721)
@@ -205,36 +209,39 @@ def test_the_same_number_gives_the_same_flight_whatever_the_errors_are() -> None
 
 
 def test_conventions_say_the_same_pose_in_other_axes() -> None:
-    told = scenario.fly(BASE, 1)
+    inputs = scenario.fly(BASE, 1)
     enu, xyzw = (scenario.fly(BASE.by(convention=name), 1) for name in ("ENU", "xyzw"))
-    n, e, d = told.position_ned_m.T
+    n, e, d = inputs.position_ned_m.T
     assert enu.position_ned_m == pytest.approx(np.stack([e, n, -d], 1))
-    nose_ned, nose_enu = (turned(t.attitude[4], np.array([1.0, 0.0, 0.0])) for t in (told, enu))
+    nose_ned, nose_enu = (turned(t.attitude[4], np.array([1.0, 0.0, 0.0])) for t in (inputs, enu))
     assert nose_enu == pytest.approx(nose_ned[[1, 0, 2]] * [1, 1, -1])
-    left_ned, left_enu = (turned(t.attitude[4], v) for t, v in ((told, -np.eye(3)[1]), (enu, np.eye(3)[1])))
+    left_ned, left_enu = (turned(t.attitude[4], v) for t, v in ((inputs, -np.eye(3)[1]), (enu, np.eye(3)[1])))
     assert left_enu == pytest.approx(left_ned[[1, 0, 2]] * [1, 1, -1])
-    assert xyzw.attitude[:, [3, 0, 1, 2]] == pytest.approx(told.attitude)
+    assert xyzw.attitude[:, [3, 0, 1, 2]] == pytest.approx(inputs.attitude)
     feet = scenario.fly(BASE.by(convention="height in feet"), 1)
-    assert feet.height_m == pytest.approx(told.height_m / 0.3048) and (feet.position_ned_m == told.position_ned_m).all()
+    assert (
+        feet.height_m == pytest.approx(inputs.height_m / 0.3048)
+        and (feet.position_ned_m == inputs.position_ned_m).all()
+    )
 
 
-def test_a_reset_is_told_once_and_moves_height_and_position() -> None:
-    told, jumped = scenario.fly(BASE, 1), scenario.fly(BASE.by(reset_m=2.0), 1)
+def test_a_reset_is_reported_once_and_moves_height_and_position() -> None:
+    inputs, jumped = scenario.fly(BASE, 1), scenario.fly(BASE.by(reset_m=2.0), 1)
     (k,) = np.flatnonzero(np.diff(jumped.reset_count, prepend=0))
     assert abs(jumped.reset_m[k, 2]) == 2.0 and np.count_nonzero(jumped.reset_m) == 1
-    moved = jumped.position_ned_m - told.position_ned_m
+    moved = jumped.position_ned_m - inputs.position_ned_m
     assert moved[:k] == pytest.approx(0.0) and moved[k:, 2] == pytest.approx(jumped.reset_m[k, 2])
-    assert (jumped.height_m - told.height_m)[k:] == pytest.approx(-jumped.reset_m[k, 2])
+    assert (jumped.height_m - inputs.height_m)[k:] == pytest.approx(-jumped.reset_m[k, 2])
 
 
 def test_boxes_are_cut_at_the_border() -> None:
-    told = scenario.fly(rows.CLIPPED, 1)
-    assert told.box_px is not None
-    box = told.box_px[np.isfinite(told.box_px).all(1)]
+    inputs = scenario.fly(rows.CLIPPED, 1)
+    assert inputs.box_px is not None
+    box = inputs.box_px[np.isfinite(inputs.box_px).all(1)]
     assert box.min() >= 0.0 and box.max() <= 1279.0 and ((box == 0.0) | (box == 1279.0)).any()
 
 
-def test_told_errors_have_the_told_size() -> None:
+def test_configured_errors_have_the_configured_size() -> None:
     rng = np.random.default_rng(1)
     process = errors.correlated(np.arange(4000) * 0.125, 1.0, 4, rng)
     assert process.std() == pytest.approx(1.0, abs=0.06)
@@ -250,7 +257,7 @@ def test_told_errors_have_the_told_size() -> None:
 def outcome(
     error: list[float] | np.ndarray, suspect: list[bool] | None = None, reason: list[str] | None = None
 ) -> Outcome:
-    """Of sigma 1, telling Z0 alone, an image a second."""
+    """An outcome with sigma 1 that reports Z0 alone, one image a second."""
     count = len(error)
     values = np.full((count, 6), NAN)
     values[:, Z0] = error
@@ -299,7 +306,7 @@ def test_flags_and_reasons() -> None:
     assert judging.suspect_or_covered([quiet, outcome([3.0] * 9), early, outcome([NAN])]) == 50.0
 
 
-def test_what_is_odd_within_three_seconds() -> None:
+def test_odd_answers_within_three_seconds() -> None:
     def odd(**changes: object) -> bool:
         return judging.is_odd_within(replace(outcome([0.0] * 10).answers, **changes), 3.0)  # type: ignore[arg-type]
 
@@ -315,16 +322,16 @@ def truth_of(solid: Solid, x_m: float = 10.0, z_m: float = 100.0) -> Truth:
 
 
 def answers_of(model: int, values: list[float]) -> Answers:
-    told = np.array([values])
-    return replace(outcome([0.0]).answers, values=told, sigma=np.ones((1, 6)), model=np.array([model]))
+    inputs = np.array([values])
+    return replace(outcome([0.0]).answers, values=inputs, sigma=np.ones((1, 6)), model=np.array([model]))
 
 
 def test_a_box_may_be_named_either_way_and_a_disc_is_its_middle() -> None:
     truth = truth_of(Solid("box", math.radians(30.0), 8.0, 20.0, 5.0))
     s, c = math.sin(math.radians(30.0)), math.cos(math.radians(30.0))
     front = [10.0 - 10.0 * s, 100.0 - 10.0 * c, math.radians(30.0), 8.0, 20.0, 5.0]
-    side = [10.0 - 4.0 * c, 100.0 + 4.0 * s, math.radians(-60.0), 20.0, 8.0, 5.0]  # the left face is hidden, ...
-    right = [10.0 + 4.0 * c, 100.0 - 4.0 * s, math.radians(-60.0), 20.0, 8.0, 5.0]  # ... the right one is seen
+    side = [10.0 - 4.0 * c, 100.0 + 4.0 * s, math.radians(-60.0), 20.0, 8.0, 5.0]  # the left face is hidden
+    right = [10.0 + 4.0 * c, 100.0 - 4.0 * s, math.radians(-60.0), 20.0, 8.0, 5.0]  # the right face is visible
     for values, good in ((front, True), (right, True), (side, False)):
         error = judging.judge(answers_of(BOX, values), truth).error[0]
         assert (np.abs(error).max() < 1e-9) == good
@@ -344,41 +351,41 @@ def test_closest_approach_to_a_disc_and_to_a_box() -> None:
         return approach.closest(replace(truth_of(solid), eye_ned_m=eye, path_velocity_ned_m_s=velocity))
 
     disc, box = Solid("cylinder", 0.0, 10.0, 10.0, 12.0), Solid("box", 0.0, 10.0, 40.0, 12.0)
-    beside = flown(disc, 30.0)
-    assert [beside.time_s, beside.miss_m, beside.clearance_m] == pytest.approx([10.0, 25.0, 8.0], abs=0.01)
+    passed = flown(disc, 30.0)
+    assert [passed.time_s, passed.dcpa_m, passed.clearance_m] == pytest.approx([10.0, 25.0, 8.0], abs=0.01)
     head_on = flown(disc, 0.0)
-    assert [head_on.time_s, head_on.miss_m] == pytest.approx([9.5, 0.0], abs=0.011) and head_on.violates
+    assert [head_on.time_s, head_on.dcpa_m] == pytest.approx([9.5, 0.0], abs=0.011) and head_on.violates
     assert flown(disc, 3.0).time_s == pytest.approx(10.0 - 0.4, abs=0.011)  # enters 4 m before the middle
     along = flown(box, 30.0)
-    assert [along.time_s, along.miss_m] == pytest.approx([8.0, 25.0], abs=0.011) and not along.violates
-    assert flown(box, 0.0, 0.5).clearance_m == pytest.approx(8.0 - 0.5 * 12.0, abs=0.02)  # where it leaves the outline
+    assert [along.time_s, along.dcpa_m] == pytest.approx([8.0, 25.0], abs=0.011) and not along.violates
+    assert flown(box, 0.0, 0.5).clearance_m == pytest.approx(8.0 - 0.5 * 12.0, abs=0.02)  # leaves the outline here
 
 
-def run_of(told: float, violates: bool, soonest_s: float = 30.0, miss_m: float = 40.0) -> approach.Run:
+def run_of(inputs: float, violates: bool, earliest_tcpa_s: float = 30.0, dcpa_m: float = 40.0) -> approach.Run:
     time = np.arange(20.0)
-    level, to_go = np.full(20, told), 25.0 - time
+    level, to_go = np.full(20, inputs), 25.0 - time
     there = np.ones(20)
     warnings = approach.Warnings(
         time, there > 0, to_go, there, np.full(20, 3.0), there, np.full(20, 1.0), there, level,
-        (level >= 0.1) & (soonest_s - time < 12.0),
+        (level >= 0.1) & (earliest_tcpa_s - time < 12.0),
     )  # fmt: skip
-    happened = approach.Approach(25.0, 0.0 if violates else miss_m, 0.0)
+    happened = approach.Approach(25.0, 0.0 if violates else dcpa_m, 0.0)
     return approach.Run(warnings, happened)
 
 
 def test_probabilities_warnings_and_coverage_of_known_figures() -> None:
     runs = [run_of(0.3, violates=k < 4) for k in range(10)] + [run_of(0.9, violates=True)]
-    told = approach.probabilities(runs)
-    assert told["0.2 to 0.5"] == (pytest.approx(0.3), pytest.approx(0.4), 200)
-    assert told["0.8 to 0.95"] == (pytest.approx(0.9), 1.0, 20)
-    covered = approach.coverage([run_of(0.3, violates=False, miss_m=2.0), run_of(0.3, violates=False)])
+    inputs = approach.probabilities(runs)
+    assert inputs["0.2 to 0.5"] == (pytest.approx(0.3), pytest.approx(0.4), 200)
+    assert inputs["0.8 to 0.95"] == (pytest.approx(0.9), 1.0, 20)
+    covered = approach.coverage([run_of(0.3, violates=False, dcpa_m=2.0), run_of(0.3, violates=False)])
     assert covered == {"time": 100.0, "miss": 50.0, "clearance": 100.0}
     in_time, too_late, never = run_of(0.3, True, 25.0), run_of(0.3, True, 35.0), run_of(0.05, True)
     assert [approach.first_warning_s(r.warnings) for r in (in_time, never)] == [14.0, math.inf]
-    assert approach.first_warning_s(too_late.warnings) == math.inf  # it lasts 20 s
+    assert approach.first_warning_s(too_late.warnings) == math.inf  # the violation lasts 20 s
     assert approach.unwarned([in_time, too_late, never]) == pytest.approx(200 / 3)
     assert (
-        approach.false_warnings([run_of(0.3, False), run_of(0.05, False), run_of(0.9, False, miss_m=20.0)]) == 100 / 2
+        approach.false_warnings([run_of(0.3, False), run_of(0.05, False), run_of(0.9, False, dcpa_m=20.0)]) == 100 / 2
     )
 
 
@@ -387,24 +394,29 @@ def test_the_margins_are_the_readmes() -> None:
     assert f"{approach.MARGIN_M}f, {approach.CLEARANCE_M}f, 0.0f, 0.0f}}; /* margin, clearance, m */" in readme
 
 
-def test_who_is_warned_is_decided_by_the_library(built: None) -> None:
-    """By the decision rule, with margins that grow; the hazard is that of plain margins."""
+def test_warnings_follow_the_library_s_decision_rule(built: None) -> None:
+    """Warnings use the decision rule with growing margins; the reported hazard uses constant margins."""
     row = approach.ROWS[0]
-    told = scenario.fly(row.scenario, 3)
-    track = run(attack.images_of(told, attack.PLANS), told.settings)
+    inputs = scenario.fly(row.scenario, 3)
+    track = run(attack.images_of(inputs, attack.PLANS), inputs.settings)
     flown = hazard.perform(row, 3)
     goe = package()
-    by_rule = goe.run(named_settings(tuple(told.settings.items())), to_package(attack.images_of(told, attack.PLANS)),
-                      rules=[goe.Rule(approach.MARGIN_M, approach.CLEARANCE_M)])  # fmt: skip
+    images = to_package(attack.images_of(inputs, attack.PLANS))
+    by_rule = goe.run(
+        named_settings(tuple(inputs.settings.items())),
+        images,
+        rules=[goe.Rule(approach.MARGIN_M, approach.CLEARANCE_M)],
+    )
     assert np.array_equal(flown.warnings.acts, by_rule.decision[:, 0] == goe.Decision.ACT)
     there = track.hazard["status"][:, 0] == 0
-    assert np.array_equal(flown.warnings.violation[there], track.hazard["violation"][there, 0]) and there.any()
+    assert np.array_equal(flown.warnings.violation[there], track.hazard["conflict_probability"][there, 0])
+    assert there.any()
 
 
 # ------------------------------------------------------------------------------------------------------------ the goals
 
 
-def test_rows_are_named_once_and_a_wrong_name_is_told() -> None:
+def test_rows_are_named_once_and_a_wrong_name_is_reported() -> None:
     titles = [(row.section, row.title) for row in rows.ROWS]
     assert len(set(titles)) == len(titles)
     assert rows.row_named("hover").scenario.flown.path == "hover"
@@ -423,21 +435,21 @@ def test_halves_share_no_track_and_two_of_three_are_boxes() -> None:
     assert kinds.count("box") == 80 and kinds.count("cylinder") == 40
 
 
-def good_track(told: Inputs, more: dict[str, np.ndarray] | None = None) -> Track:
-    """Right answers of sigma 1 m, as a disc or a box from the first image on."""
-    count, solid = len(told.time_s), told.truth.solid
-    values = np.tile(judging.namings(told.truth)[0], (count, 1))
+def good_track(inputs: Inputs, more: dict[str, np.ndarray] | None = None) -> Track:
+    """Correct answers of sigma 1 m, as a disc or a box from the first image on."""
+    count, solid = len(inputs.time_s), inputs.truth.solid
+    values = np.tile(judging.namings(inputs.truth)[0], (count, 1))
     if solid.kind == "cylinder":
-        values[:, :2] = told.truth.middle_m
+        values[:, :2] = inputs.truth.middle_m
     zeros, flags = np.zeros(count), np.zeros(count, bool)
     model = np.full(count, DISC if solid.kind == "cylinder" else BOX)
     return Track(
-        zeros, np.full(count, METHODS["refined"]), model, ~flags, flags, values, np.ones((count, 6)),
+        zeros, np.full(count, METHODS["filter"]), model, ~flags, flags, values, np.ones((count, 6)),
         np.zeros((count, 6, 6)), zeros, zeros, zeros, np.arange(count), {}, more or {},
     )  # fmt: skip
 
 
-def test_good_answers_meet_what_is_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_good_answers_meet_the_goals(monkeypatch: pytest.MonkeyPatch) -> None:
     truths: list[Inputs] = []
     fly = scenario.fly
     monkeypatch.setattr(scenario, "fly", lambda *given: truths.append(fly(*given)) or truths[-1])
@@ -455,29 +467,30 @@ def test_good_answers_meet_what_is_asked(monkeypatch: pytest.MonkeyPatch) -> Non
         )
     mover = rows.row_named("across 5 m/s")
     goals = attack.goals_of("attack", mover, [attack.perform(mover, 1)])
-    told = {goal.name.split(": ")[1]: goal for goal in goals}
-    assert told[attack_lines.REASON].values[attack_lines.IN_4_S] == 0.0 and told[attack_lines.REASON].met is False
+    inputs = {goal.name.split(": ")[1]: goal for goal in goals}
+    assert inputs[attack_lines.REASON].values[attack_lines.IN_4_S] == 0.0 and inputs[attack_lines.REASON].met is False
     assert (
-        math.isnan(told[attack_lines.VELOCITY].values[attack_lines.IMAGES]) and told[attack_lines.VELOCITY].met is False
+        math.isnan(inputs[attack_lines.VELOCITY].values[attack_lines.IMAGES])
+        and inputs[attack_lines.VELOCITY].met is False
     )
 
 
 def test_reasons_and_velocities_of_a_later_library_are_read(monkeypatch: pytest.MonkeyPatch) -> None:
-    told = scenario.fly(BASE.by(moves="across", moves_m_s=5.0), 1)
-    count, velocity = len(told.time_s), told.truth.velocity_ned_m_s
+    inputs = scenario.fly(BASE.by(moves="across", moves_m_s=5.0), 1)
+    count, velocity = len(inputs.time_s), inputs.truth.velocity_ned_m_s
     more = dict(
         zip(attack.VELOCITY, ([velocity[0] + 1.0] * count, [velocity[1]] * count, [1.0] * count, [1.0] * count))
     )
     more = {name: np.array(values) for name, values in more.items()}
     more["reason"] = np.arange(count) // 4 % 2
     monkeypatch.setattr(attack, "reason_names", lambda: ("none", "moves"))
-    answers = attack.answers_of(good_track(told, more), told.time_s)
+    answers = attack.answers_of(good_track(inputs, more), inputs.time_s)
     assert judging.first_flag_s(answers, judging.flagged(answers, rows.MOVES)) == pytest.approx(0.5)
-    outcome_told = Outcome(answers, answers.values, answers.sigma)
-    assert judging.velocity_covered([outcome_told], [velocity]) == 100.0
-    assert judging.velocity_covered([outcome_told], [velocity - [2.0, 0.0]]) == 50.0
+    of_track = Outcome(answers, answers.values, answers.sigma)
+    assert judging.velocity_covered([of_track], [velocity]) == 100.0
+    assert judging.velocity_covered([of_track], [velocity - [2.0, 0.0]]) == 50.0
     monkeypatch.setattr(attack, "reason_names", tuple)
-    assert attack.reasons_of(good_track(told, more)) is None
+    assert attack.reasons_of(good_track(inputs, more)) is None
 
 
 def lines_of(goals: list[Goal], title: str) -> dict[str, Goal]:
@@ -487,7 +500,7 @@ def lines_of(goals: list[Goal], title: str) -> dict[str, Goal]:
 def test_the_library_over_some_rows(
     built: None, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The whole way: a good row is good, late poses are worse, and a setting of no library is left out."""
+    """End to end: a good row is good, late poses are worse, and an unknown setting is skipped."""
     slope = replace(rows.row_named("slope 3 %"), if_known={"navigation.no_such_setting": 1.0})
     names = ("baseline", "baseline, by boxes", "poses 100 ms late", "ENU")
     chosen = (*(replace(rows.row_named(name), tracks_share=4.0) for name in names), slope)
@@ -530,7 +543,7 @@ def _goal(
     return {"group": group, "name": name, "unit": "%", "wanted": wanted, "asked": asked, "values": values, "met": met}
 
 
-def test_tables_of_the_page_tell_what_the_goals_found(
+def test_tables_of_the_page_show_the_results_of_the_goals(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     found = [
@@ -554,18 +567,18 @@ def test_tables_of_the_page_tell_what_the_goals_found(
     page.write_text("before\n<!-- attack: begin -->\nold\n<!-- attack: end -->\nafter\n", encoding="utf-8")
     monkeypatch.setattr(attack_command, "PAGE", page)
     assert main(["attack_tables", str(file)]) == 0
-    told = capsys.readouterr().out
+    inputs = capsys.readouterr().out
     assert main(["attack_tables", str(file), "--write"]) == 0
     text = page.read_text(encoding="utf-8")
-    assert text == f"before\n<!-- attack: begin -->\n{told.rstrip()}\n<!-- attack: end -->\nafter\n"
-    assert "| calm | 97/89/-/-/-/- | 2/1 | missed |" in told
-    assert "| away | 24/56/78 |  |" in told
-    assert "| corners | 97/98/95 | 0.3 | 5 | met |" in told
-    assert "1 of 2 goals are met." in told
+    assert text == f"before\n<!-- attack: begin -->\n{inputs.rstrip()}\n<!-- attack: end -->\nafter\n"
+    assert "| calm | 97/89/-/-/-/- | 2/1 | missed |" in inputs
+    assert "| away | 24/56/78 |  |" in inputs
+    assert "| corners | 97/98/95 | 0.3 | 5 | met |" in inputs
+    assert "1 of 2 goals are met." in inputs
 
 
 def test_tables_of_the_page_are_whole() -> None:
-    """Each row of an attack that is asked something stands there."""
+    """The page's tables contain each row of an attack that has a goal."""
     text = attack_command.PAGE.read_text(encoding="utf-8")
     for row in rows.ROWS:
         assert f"| {row.name}" in text, row.name

@@ -1,4 +1,4 @@
-"""Upright boxes, simulated and recorded: held against geometry done here, and against logs written here."""
+"""Upright boxes, simulated and recorded, against geometry computed here and logs written here."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ ROLLING = replace(EXACT, roll_deg=25.0)
 
 
 def in_camera(flight: Flight, points_ned: np.ndarray) -> np.ndarray:
-    """(K, N, 3) of points (N, 3): ahead, right, down of an unmounted camera; quaternions by vector algebra."""
+    """Points (N, 3) as ahead, right and down of an unmounted camera, (K, N, 3), with quaternions by vector algebra."""
     w, axis = flight.attitude[:, None, :1], -flight.attitude[:, None, 1:]  # conjugate: NED to body
     way = points_ned - flight.position_ned_m[:, None]
     twice = 2.0 * np.cross(axis, way)
@@ -33,7 +33,7 @@ def in_camera(flight: Flight, points_ned: np.ndarray) -> np.ndarray:
 
 
 def corners_ned(flight: Flight) -> np.ndarray:
-    """(8, 3): corners of the box, from its middle at the first image; T looks north."""
+    """Corners of the box, (8, 3), from its middle at the first image; T looks north."""
     truth = flight.truth
     middle = flight.position_ned_m[0, :2] + [truth.z0_m, truth.x0_m]
     c, s = math.cos(truth.orientation_rad), math.sin(truth.orientation_rad)
@@ -62,7 +62,8 @@ def test_an_exact_box_frames_the_projected_corners(solid: object) -> None:
 
 
 def test_the_sides_of_a_masts_box_touch_its_rims() -> None:
-    """Each side is a plane through the camera; of a circle the farthest point along its normal is known exactly."""
+    """Each side is a plane through the camera. The farthest point of a circle along the plane's normal is known in
+    closed form."""
     flight = box_flight(MAST, ROLLING, 3)
     truth = flight.truth
     middle = np.array([flight.position_ned_m[0, 0] + truth.z0_m, flight.position_ned_m[0, 1] + truth.x0_m, 0.0])
@@ -74,14 +75,14 @@ def test_the_sides_of_a_masts_box_touch_its_rims() -> None:
         for side, edge in enumerate(box):
             if not 1.0 < edge < 1278.0:
                 continue
-            normal = np.zeros(3)  # outward, in (ahead, right, down): zero on the plane of the side
+            normal = np.zeros(3)  # outward normal in (ahead, right, down): zero on the plane of the side
             normal[0], normal[1 + side % 2] = 640.0 - edge, 914.0
             normal *= 1.0 if side > 1 else -1.0
             ned = axes[k] @ normal
             middle_out = ned @ (middle - flight.position_ned_m[k])
             out = middle_out + truth.width_m / 2 * math.hypot(ned[0], ned[1]) + max(0.0, -truth.height_m * ned[2])
             depth = truth.z0_m - (flight.position_ned_m[k, 0] - flight.position_ned_m[0, 0])
-            assert abs(out) / depth < 0.05, (k, side)  # px: out is pixels times depth
+            assert abs(out) / depth < 0.05, (k, side)  # px: ``out`` is pixels times depth
             touched += 1
     assert touched > 200
 
@@ -107,7 +108,7 @@ def test_a_flight_starts_and_ends_with_a_box() -> None:
 
 
 def test_the_detectors_error_has_its_size_and_its_memory() -> None:
-    noisy = replace(EXACT, box_share=0.04, correlation_s=1.0)
+    noisy = replace(EXACT, box_noise_rel=0.04, box_correlation_time_s=1.0)
     errors, after, white = [], [], []
     for seed in range(60):
         exact, flight = (box_flight(MAST, options, seed).box_px[:80] for options in (EXACT, noisy))
@@ -117,7 +118,7 @@ def test_the_detectors_error_has_its_size_and_its_memory() -> None:
         share = ((flight - exact) / size)[:count]
         errors.append(share)
         after.append(share[8:] * share[:-8])  # one second later
-        white.append((box_flight(MAST, replace(EXACT, box_px=0.5), seed).box_px[:80] - exact)[:count])
+        white.append((box_flight(MAST, replace(EXACT, box_noise_px=0.5), seed).box_px[:80] - exact)[:count])
     variance = float(np.mean(np.concatenate(errors) ** 2))
     assert math.sqrt(variance) == pytest.approx(0.04, rel=0.05)
     assert np.mean(np.concatenate(after)) / variance == pytest.approx(math.exp(-1.0), abs=0.07)
@@ -133,25 +134,25 @@ def test_a_process_that_forgets_at_uneven_times() -> None:
     assert np.mean(first * third) == pytest.approx(math.exp(-2.0), abs=0.03)
 
 
-def test_heights_that_are_told() -> None:
-    def told(**change: object) -> np.ndarray:
+def test_reported_heights() -> None:
+    def reported(**change: object) -> np.ndarray:
         return np.array([box_flight(MAST, replace(EXACT, **change), seed).height_m[:60] for seed in range(30)])
 
-    assert np.all(told() == 20.0)
-    assert set(np.unique(told(ground_off_m=3.0))) == {17.0, 23.0}
-    assert np.std(told(height_white_m=3.0) - 20.0) == pytest.approx(3.0, rel=0.1)
-    anything = told(altimeter=False)
+    assert np.all(reported() == 20.0)
+    assert set(np.unique(reported(ground_off_m=3.0))) == {17.0, 23.0}
+    assert np.std(reported(height_white_sd_m=3.0) - 20.0) == pytest.approx(3.0, rel=0.1)
+    anything = reported(altimeter=False)
     assert np.ptp(anything, 1).max() == 0.0 and np.std(anything[:, 0]) > 20.0
 
 
-def test_poses_are_wrong_as_asked() -> None:
+def test_pose_errors_are_as_configured() -> None:
     exact = [box_flight(MAST, EXACT, seed) for seed in range(40)]
-    biased = [box_flight(MAST, replace(EXACT, attitude_bias_deg=0.5), seed) for seed in range(40)]
+    biased = [box_flight(MAST, replace(EXACT, attitude_bias_sd_deg=0.5), seed) for seed in range(40)]
     cosines = [np.abs((a.attitude * b.attitude).sum(1)) for a, b in zip(exact, biased)]
     turned = np.array([np.degrees(2 * np.arccos(np.minimum(c, 1.0))) for c in (cosine[[0, -1]] for cosine in cosines)])
     assert np.allclose(turned[:, 0], turned[:, 1], atol=1e-4)  # the same in every image
     assert math.sqrt(np.mean(turned**2)) == pytest.approx(0.5 * math.sqrt(3.0), rel=0.2)
-    drifting = [box_flight(MAST, replace(EXACT, velocity_bias_m_s=0.05), seed) for seed in range(40)]
+    drifting = [box_flight(MAST, replace(EXACT, velocity_bias_sd_m_s=0.05), seed) for seed in range(40)]
     speeds = [(b.position_ned_m - a.position_ned_m)[-1] / a.time_s[-1] for a, b in zip(exact, drifting)]
     assert np.std(np.array(speeds)[:, :2]) == pytest.approx(0.05, rel=0.25)
     assert np.all(np.array(speeds)[:, 2] == 0.0)
@@ -175,7 +176,7 @@ def write_set(folder: Path, heading: str, frames: str, truth: str) -> None:
 
 @pytest.fixture
 def data(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Two cars, one of them without truth, in one sequence of one feed; one track of ODMD."""
+    """Two cars, one of them without truth, in one sequence of one feed, and one track of ODMD."""
     monkeypatch.setenv(FOLDER_VARIABLE, str(tmp_path))
     cars = (
         f"0.0,3,1,2,0,1.65,{EAST},500,150,560,200,1\n0.0,4,1,2,0,1.65,{EAST},1,2,3,4,1\n"
@@ -201,7 +202,7 @@ def test_kittis_boxes_are_read(data: Path) -> None:
     assert flight.box_px[2].tolist() == [490.0, 152.0, 580.0, 210.0] and flight.image_size_px == (1242.0, 375.0)
     assert flight.camera.heading_deg == pytest.approx(90.0)
     truth = flight.truth
-    assert (truth.x0_m, truth.z0_m, truth.height_m) == pytest.approx((5.0, 30.0, 1.5))  # south of one flying east
+    assert (truth.x0_m, truth.z0_m, truth.height_m) == pytest.approx((5.0, 30.0, 1.5))  # the camera flies east
     assert truth.static and flight.path_m() == pytest.approx(6.0)
 
 
@@ -209,7 +210,7 @@ def test_odmds_depth_is_that_of_the_last_image(data: Path) -> None:
     folder = odmd_folder("val_robot")
     assert folder is not None
     (flight,) = odmd_flights(folder)
-    assert flight.truth.z0_m == pytest.approx(80.0)  # it flew backwards by 10 m
+    assert flight.truth.z0_m == pytest.approx(80.0)  # the camera flew backwards by 10 m
     assert final_depth(flight) == pytest.approx(90.0) and math.isnan(flight.truth.height_m)
     assert flight.box_px[:, 2].tolist() == [310.0, 309.0, 308.0]
 
@@ -226,7 +227,7 @@ def test_absent_boxes_are_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     assert kitti_feeds() == [] and odmd_folder("val_robot") is None
 
 
-def test_a_bad_log_is_told_by_line_and_column(data: Path) -> None:
+def test_a_bad_log_is_reported_by_line_and_column(data: Path) -> None:
     frames = data / "odmd/val_robot/frames.csv"
     frames.write_text(frames.read_text().replace(",309,", ",wide,"))
     with pytest.raises(LogError, match=r"frames\.csv:3: box_right_px: 'wide'"):

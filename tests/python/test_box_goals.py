@@ -1,4 +1,4 @@
-"""What the goals of upright boxes make of answers, with answers that are made up here."""
+"""Evaluation of the goals of upright boxes, on invented answers."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ NAN = math.nan
 AMOUNT = replace(QUICK, boxes=1)
 
 
-def made_up(flight: Flight, error: float = 0.5, from_image: int = 2, method: str = "refined") -> Track:
-    """Answers of sigma 1 m that are off by ``error`` m, from an image on."""
+def made_up(flight: Flight, error: float = 0.5, from_image: int = 2, method: str = "filter") -> Track:
+    """Answers with sigma 1 m and an error of ``error`` m, from an image on."""
     images = len(flight.time_s)
     values = np.full((images, 6), flight.truth.values + error)
     values[:from_image] = NAN
@@ -35,12 +35,12 @@ def made_up(flight: Flight, error: float = 0.5, from_image: int = 2, method: str
 
 
 def fitted(flight: Flight, error: float) -> PrismFit:
-    """An offline fit that is off by ``error`` m."""
+    """An offline fit with an error of ``error`` m."""
     return PrismFit(flight.truth.values + error, np.ones(6), np.zeros(12), 1.0, 1, 1)
 
 
 def outcome(z0_errors: list[float]) -> boxes.BoxOutcome:
-    """Of sigma 1 m, telling Z0 alone."""
+    """An outcome with sigma 1 that reports Z0 alone."""
     error = np.full((len(z0_errors), 6), NAN)
     error[:, Z0] = z0_errors
     sigma, suspect = np.where(np.isfinite(error), 1.0, NAN), np.zeros(len(z0_errors), bool)
@@ -82,18 +82,18 @@ def test_answers_are_held_against_the_fit(monkeypatch: pytest.MonkeyPatch, solid
 
 
 @pytest.fixture
-def told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[dict[str, float]]:
-    """Settings of the flights that are flown; without recorded boxes, and with an offline fit that is off by 0.4 m."""
+def configured(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[dict[str, float]]:
+    """Settings of all flights in the run, without recorded boxes and with an offline fit whose error is 0.4 m."""
     monkeypatch.setenv(FOLDER_VARIABLE, str(tmp_path))
     monkeypatch.setattr(boxes, "fit", lambda flight, noise: fitted(flight, -0.4))
     return []
 
 
 def test_good_answers_meet_every_goal(
-    monkeypatch: pytest.MonkeyPatch, told: list[dict[str, float]], capsys: pytest.CaptureFixture[str]
+    monkeypatch: pytest.MonkeyPatch, configured: list[dict[str, float]], capsys: pytest.CaptureFixture[str]
 ) -> None:
     def estimate(flight: Flight, settings: dict[str, float]) -> Track:
-        told.append(settings)
+        configured.append(settings)
         return made_up(flight)
 
     monkeypatch.setattr(boxes, "estimate", estimate)
@@ -102,28 +102,35 @@ def test_good_answers_meet_every_goal(
     assert all(goal.met for goal in goals if goal.asked)
     assert sum(bool(goal.asked) for goal in goals) == 22 + 8 + 5 + 8 + 8  # rolling, Gaussian, bound, fit, height
     assert all(goal.values["Z0"] == pytest.approx(0.5 / 0.4) for goal in goals if goal.name.endswith("RMSE / bound"))
-    beside = [goal for goal in goals if goal.name.endswith("refined / offline fit")]
-    assert len(beside) == 8
-    assert all(list(goal.values.values()) == pytest.approx([0.5 / 0.4] * 3) for goal in beside)
+    ratios = [goal for goal in goals if goal.name.endswith("filter / offline fit")]
+    assert len(ratios) == 8
+    assert all(list(goal.values.values()) == pytest.approx([0.5 / 0.4] * 3) for goal in ratios)
     (first,) = by_name(goals, "mast: first answer")
     assert set(first.values.values()) == {3.0}
     assert "left out: KITTI's boxes, ODMD's val_robot" in capsys.readouterr().out
-    others = {name for settings in told for name in settings if not name.startswith("camera.")}
-    of_bound = {"model": 2.0, "detector.box_px": 0.5, "detector.box_share": 0.0, "navigation.ground_m": 0.0}
-    assert others == {"heading_auto", "heading_deg", "navigation.height_bias_m", *of_bound}
-    alike = [settings for settings in told if "model" in settings]
-    assert len(alike) == 5 + 4 and all(of_bound.items() <= settings.items() for settings in alike)
-    assert sum("navigation.height_bias_m" in settings for settings in told) == 2  # without an altimeter
-    assert {settings["camera.width_px"] for settings in told} == {1280.0}
+    others = {name for settings in configured for name in settings if not name.startswith("camera.")}
+    of_bound = {
+        "model": 2.0,
+        "detector.box_noise_px": 0.5,
+        "detector.box_noise_rel": 0.0,
+        "navigation.terrain_height_sd_m": 0.0,
+    }
+    assert others == {"heading_auto", "heading_deg", "navigation.height_bias_sd_m", *of_bound}
+    of_both = [settings for settings in configured if "model" in settings]
+    assert len(of_both) == 5 + 4 and all(of_bound.items() <= settings.items() for settings in of_both)
+    assert sum("navigation.height_bias_sd_m" in settings for settings in configured) == 2  # without an altimeter
+    assert {settings["camera.width_px"] for settings in configured} == {1280.0}
 
 
-def test_silence_meets_no_goal(monkeypatch: pytest.MonkeyPatch, told: list[dict[str, float]]) -> None:
+def test_silence_meets_no_goal(monkeypatch: pytest.MonkeyPatch, configured: list[dict[str, float]]) -> None:
     monkeypatch.setattr(boxes, "estimate", lambda flight, settings: made_up(flight, from_image=10**6))
     goals = boxes.boxes_group("boxes", AMOUNT)
     assert not any(goal.met for goal in goals if goal.asked)
 
 
-def test_errors_beyond_the_sigma_are_told(monkeypatch: pytest.MonkeyPatch, told: list[dict[str, float]]) -> None:
+def test_errors_beyond_the_sigma_are_reported(
+    monkeypatch: pytest.MonkeyPatch, configured: list[dict[str, float]]
+) -> None:
     monkeypatch.setattr(boxes, "estimate", lambda flight, settings: made_up(flight, error=6.0))
     goals = boxes.boxes_group("boxes", AMOUNT)
     (wrong,) = by_name(goals, "building: wrong by 5 sigma")
@@ -142,7 +149,7 @@ def write_log(folder: Path, frames: str, truth: str) -> None:
 
 
 def test_recorded_boxes(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """Two parked cars, one that moves, one passed too shortly; two of ODMD's tracks, one without an answer."""
+    """Two parked cars, one moving car, one car with a short pass; two tracks of ODMD, one of them without an answer."""
     monkeypatch.setenv(FOLDER_VARIABLE, str(tmp_path))
     row = "{t},{key},{n},0,0,1.65,1,0,0,0,300,200,340,260\n"
     steps = {1: 1.0, 2: 1.0, 3: 1.0, 4: 0.1}
@@ -151,11 +158,11 @@ def test_recorded_boxes(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None
     truth += "1,1,50,2,1.6,4,1.5\n2,1,25,2,1.6,4,1.5\n3,0,50,2,1.6,4,1.5\n4,1,50,2,1.6,4,1.5\n"
     write_log(tmp_path / "kitti_boxes/FEED/seq", frames, truth)
     write_log(tmp_path / "odmd/val_robot", frames, "id,depth_m\n1,100\n4,50\n")
-    settings_told: dict[str, dict[str, float]] = {}
+    settings_of: dict[str, dict[str, float]] = {}
 
     def estimate(flight: Flight, settings: dict[str, float]) -> Track:
-        every_track = "refined.range_share" in settings
-        settings_told[f"{flight.name} every" if every_track else flight.name] = settings
+        every_track = "filter.range_sd_rel_max" in settings
+        settings_of[f"{flight.name} every" if every_track else flight.name] = settings
         return made_up(flight, from_image=9 if flight.name == "val_robot/4" and not every_track else 0)
 
     monkeypatch.setattr(boxes, "estimate", estimate)
@@ -172,13 +179,13 @@ def test_recorded_boxes(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None
     default = odmd["depth error with default settings"]
     assert default.values["mean"] == pytest.approx(0.5) and default.values["answered"] == 50.0
     assert default.met is None
-    assert len(settings_told) == 6
-    assert settings_told["val_robot/1"]["navigation.position_white_m"] == 2.0
-    assert not [name for name in settings_told["FEED/seq/1"] if name.startswith(("navigation.", "detector."))]
+    assert len(settings_of) == 6
+    assert settings_of["val_robot/1"]["navigation.position_white_sd_m"] == 2.0
+    assert not [name for name in settings_of["FEED/seq/1"] if name.startswith(("navigation.", "detector."))]
 
 
-def test_the_library_tells_prisms() -> None:
-    """Boxes and default settings go through to the library, and its answers come back about the middle."""
+def test_the_library_estimates_prisms() -> None:
+    """Boxes and default settings reach the library, and its answers are relative to the middle."""
     try:
         ready()
     except FileNotFoundError as reason:
@@ -187,7 +194,7 @@ def test_the_library_tells_prisms() -> None:
     track = estimate(flight, camera_settings(flight))
     assert set(track.model[track.valid[:, Z0]]) == {MODEL_PRISM}
     judged = boxes.perform(boxes.Simulated(MAST, BoxOptions(roll_deg=10.0), 2))
-    told = judged.error[-1, list(boxes.JUDGED)]
-    assert (np.abs(told) < 4 * judged.sigma[-1, list(boxes.JUDGED)]).all()
+    error = judged.error[-1, list(boxes.JUDGED)]
+    assert (np.abs(error) < 4 * judged.sigma[-1, list(boxes.JUDGED)]).all()
     assert abs(judged.error[-1, Z0]) < 0.03 * flight.truth.z0_m
     assert boxes.images_until_answer(judged) <= 6

@@ -1,4 +1,4 @@
-"""What the three packages of tools say of a mistyped command line."""
+"""Error messages of the three tool packages for a mistyped command line."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ def test_a_mistyped_word(package: str, words: list[str], guess: str, capsys) -> 
     with pytest.raises(SystemExit) as end:
         MAIN[package](words)
     assert end.value.code == 2
-    told = capsys.readouterr().err.strip()
-    assert told.endswith(guess) and ("did you mean" in told) == bool(guess)
+    text = capsys.readouterr().err.strip()
+    assert text.endswith(guess) and ("did you mean" in text) == bool(guess)
 
 
 def test_a_package_that_is_not_installed_has_no_commands() -> None:

@@ -1,4 +1,4 @@
-"""The command line: every command is there, and starting one does not import the others."""
+"""The command line: every command exists, and starting one does not import the others."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ HEAVY = ("matplotlib", "numpy", "rich", "scipy", "jinja2")
 
 
 @pytest.mark.parametrize(("package", "name"), [(p, name) for p, module in MODULES.items() for name in module.COMMANDS])
-def test_every_command_tells_its_arguments(package: str, name: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_every_command_shows_its_arguments(package: str, name: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as stop:
         MODULES[package].main([name, "--help"])
     assert stop.value.code == 0
-    told = capsys.readouterr().out
-    assert told.startswith(f"usage: {package} {name} ")
-    assert MODULES[package].COMMANDS[name][1][1:] in " ".join(told.split())
+    output = capsys.readouterr().out
+    assert output.startswith(f"usage: {package} {name} ")
+    assert MODULES[package].COMMANDS[name][1][1:] in " ".join(output.split())
 
 
 def test_a_command_is_in_one_package() -> None:
@@ -43,5 +43,5 @@ def test_without_a_command_nothing_heavy_is_imported(package: str, words: list[s
     code, imported = done.stdout.splitlines()[-2:]
     assert code == ("0" if words == ["--help"] else "2")
     assert imported == "[]"
-    told = done.stdout + done.stderr  # the help, or the error, names them
-    assert all(name in told for name in MODULES[package].COMMANDS)
+    output = done.stdout + done.stderr  # the help or the error lists all commands
+    assert all(name in output for name in MODULES[package].COMMANDS)

@@ -1,4 +1,4 @@
-"""The comparison: passes what agrees, and finds what does not."""
+"""The comparison passes where the answers agree, and finds differences."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ def run(replay: Path, *arguments: object) -> int:
 
 def test_agreement(corner_folder: Path, fake_replay, capsys) -> None:
     assert run(fake_replay(), corner_folder) == 0
-    told = capsys.readouterr()
-    assert "100.000%" in told.out
-    assert "length_sd_m" in told.out
-    assert "float32 0/0/0, float64 0/0/0" in told.out
-    assert told.err == ""
+    printed = capsys.readouterr()
+    assert "100.000%" in printed.out
+    assert "length_sd_m" in printed.out
+    assert "float32 0/0/0, float64 0/0/0" in printed.out
+    assert printed.err == ""
 
 
 @pytest.mark.parametrize("options", [("--model", "disc"), ("--model", "line", "--window", "5"), ("--window", "12")])
@@ -44,7 +44,7 @@ def test_options_reach_all_three(options: tuple[str, ...], corner_folder: Path, 
         ({"columns": ["x0_sd_m"], "ulp": 3000000}, "float64: x0_sd_m: 99th percentile"),
         ({"columns": ["orientation_deg"], "ulp": 20000}, "float64: orientation_deg: 99th percentile"),
         ({"columns": ["height_m"], "drop": True, "rows": [30]}, "1 empty fields differ"),
-        ({"status": "held", "rows": [30]}, "float64: 1 statuses, models or numbers of points differ"),
+        ({"status": "stale", "rows": [30]}, "float64: 1 statuses, models or numbers of points differ"),
     ],
 )
 def test_differences_are_found(change: dict, message: str, corner_folder: Path, fake_replay, capsys) -> None:
@@ -63,7 +63,9 @@ def test_a_log_without_any_estimate(tmp_path: Path, fake_replay) -> None:
     assert run(fake_replay(exit_status=1), tmp_path / "short") == 0
 
 
-def test_what_the_references_do_not_know(corner_log: ObservationLog, tmp_path: Path, fake_replay, capsys) -> None:
+def test_logs_that_the_references_do_not_support(
+    corner_log: ObservationLog, tmp_path: Path, fake_replay, capsys
+) -> None:
     boxed = [replace(frame, box_px=(1.0, None, None, None)) for frame in corner_log.frames[-1:]]
     write_log(tmp_path / "boxes", replace(corner_log, frames=corner_log.frames[:-1] + boxed))
     assert run(fake_replay(), tmp_path / "boxes") == 2
@@ -75,7 +77,7 @@ def test_what_the_references_do_not_know(corner_log: ObservationLog, tmp_path: P
     write_log(tmp_path / "two", replace(corner_log, camera2=corner_log.camera))
     assert run(fake_replay(), tmp_path / "two") == 2
     assert "camera.ini: camera2: a second camera" in capsys.readouterr().err
-    write_log(tmp_path / "counted", replace(corner_log, frames=counted))  # a count alone is no reset
+    write_log(tmp_path / "counted", replace(corner_log, frames=counted))  # a counter alone is no reset
     assert run(fake_replay(), tmp_path / "counted") == 0
 
 
@@ -109,8 +111,8 @@ def test_too_many_followed_decisions_and_any_disputed_one() -> None:
     assert result.failures() == []
     result.followed.append("rises")
     assert any("11 of 1000 decisions followed" in failure for failure in result.failures())
-    result = compare.Result(decisions=1000, disputed=["passed"])
-    assert any("disputed decisions: passed" in failure for failure in result.failures())
+    result = compare.Result(decisions=1000, disputed=["abeam"])
+    assert any("disputed decisions: abeam" in failure for failure in result.failures())
 
 
 def test_the_built_program_on_the_committed_logs(replay: Path) -> None:
@@ -121,14 +123,14 @@ def test_the_built_program_on_the_committed_logs(replay: Path) -> None:
         assert run(replay, "--model", model, *folders) == 0
 
 
-def turning_log(blind: int, seen: int, turn_deg: float, camera) -> ObservationLog:
-    """A box, whose first images, some of them without a feature, were taken with the nose turned aside."""
+def turning_log(blind: int, visible: int, turn_deg: float, camera) -> ObservationLog:
+    """Views of a box. The camera looks aside in the first images, some of which contain no feature."""
     scene = Scene(
         width_m=12.0, length_m=20.0, height_m=25.0, x0_m=-30.0, z0_m=180.0, alpha_deg=20.0, course_deg=40.0,
         altitude_m=20.0, wobble_deg=2.0, run_s=5.0, rounding="pixel", clip=True, camera=camera,
     )  # fmt: skip
     log = make_log(scene)
-    for k, frame in enumerate(log.frames[: blind + seen]):
+    for k, frame in enumerate(log.frames[: blind + visible]):
         turn = yaw_pitch_roll(scene.course_deg - turn_deg - k, 0.0, 0.0)
         frame.attitude = tuple(float(number) for number in quaternion_of(turn))
         if k < blind:
@@ -138,17 +140,17 @@ def turning_log(blind: int, seen: int, turn_deg: float, camera) -> ObservationLo
 
 
 @pytest.mark.parametrize("turn_deg", [0.0, 50.0, 65.0, 85.0, 130.0, 179.0])
-@pytest.mark.parametrize(("blind", "seen"), [(5, 0), (1, 1), (0, 4), (4, 9)])
+@pytest.mark.parametrize(("blind", "visible"), [(5, 0), (1, 1), (0, 4), (4, 9)])
 def test_the_built_program_on_tracks_that_begin_with_a_turn(
-    blind: int, seen: int, turn_deg: float, replay: Path, tmp_path: Path, real_camera
+    blind: int, visible: int, turn_deg: float, replay: Path, tmp_path: Path, real_camera
 ) -> None:
-    """The first image that shows a feature fixes T; while nothing is known the track begins again after a turn."""
-    write_log(tmp_path, turning_log(blind, seen, turn_deg, real_camera))
+    """The first image with a feature defines T. Until then a turn restarts the track."""
+    write_log(tmp_path, turning_log(blind, visible, turn_deg, real_camera))
     log, settings = read_log(tmp_path), Settings()
     result = compare.compare_rows(log, compare.run_replay(replay, tmp_path, settings), settings)
     assert result.failures() == [] and result.single.total == 0
     assert all(max(column.ulp_single, default=0) == 0 for column in result.columns.values())
-    if seen == 0 or (seen < 8 and turn_deg >= 65.0):  # T is that of the flight
+    if visible == 0 or (visible < 8 and turn_deg >= 65.0):  # T is that of the flight
         assert result.conditioned > 10
 
 

@@ -1,11 +1,12 @@
-"""The theory of refined: its table has every constant of the sources, and the equations that the sources name exist."""
+"""The theory of the filter: its table lists every constant of the sources, and the equations that the sources name
+exist."""
 
 from __future__ import annotations
 
 import re
 from pathlib import Path
 
-ROOM = Path(__file__).resolve().parents[2] / "lib" / "refined"
+FOLDER = Path(__file__).resolve().parents[2] / "lib" / "refined"
 KINDS = set("dlsgbc")
 
 DEFINITION = re.compile(r"^#define (\w+) +\(?(-?[0-9][0-9.]*(?:e-?[0-9]+)?)[fu]*\)?(?:\s|$)", re.MULTILINE)
@@ -14,24 +15,24 @@ LABEL = re.compile(r"\(R(\d+)\)$", re.MULTILINE)
 
 
 def numbers_in(sources: dict[str, str]) -> dict[tuple[str, str], float]:
-    """Every macro that is a number, by file and name."""
+    """Every macro with a number, by file and name."""
     joined = {file: text.replace("\\\n", " ") for file, text in sources.items()}
     return {(file, name): float(value) for file, text in joined.items() for name, value in DEFINITION.findall(text)}
 
 
-def room_sources() -> dict[str, str]:
-    return {path.name: path.read_text() for path in sorted(ROOM.glob("*.[ch]"))}
+def folder_sources() -> dict[str, str]:
+    return {path.name: path.read_text() for path in sorted(FOLDER.glob("*.[ch]"))}
 
 
 def theory() -> str:
-    return (ROOM / "README.md").read_text()
+    return (FOLDER / "README.md").read_text()
 
 
 def test_the_table_has_every_constant_of_the_sources_with_its_value() -> None:
     rows = TABLE_ROW.findall(theory())
-    told = {(file, name): float(value) for file, name, value, _, _ in rows}
-    assert len(told) == len(rows), "a constant stands in the table twice"
-    assert told == numbers_in(room_sources())
+    listed = {(file, name): float(value) for file, name, value, _, _ in rows}
+    assert len(listed) == len(rows), "a constant is in the table twice"
+    assert listed == numbers_in(folder_sources())
     assert {kind for _, _, _, kind, _ in rows} <= KINDS
 
 
@@ -48,5 +49,5 @@ def test_equations_are_numbered_in_order() -> None:
 
 def test_equations_that_the_sources_name_exist() -> None:
     known = {int(label) for label in LABEL.findall(theory())}
-    named = {int(number) for text in room_sources().values() for number in re.findall(r"\(R(\d+)\)", text)}
+    named = {int(number) for text in folder_sources().values() for number in re.findall(r"\(R(\d+)\)", text)}
     assert named and named <= known

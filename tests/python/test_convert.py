@@ -1,5 +1,5 @@
-"""Autopilots' logs and a detector's table become an observation log: poses, resets, the camera's clock, and errors that
-name topic and time. The logs are made here, in the autopilots' own formats."""
+"""Conversion of autopilot logs and a detector's table into an observation log: poses, resets, the camera's clock, and
+errors that name topic and time. The tests write the logs in the autopilots' own formats."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def words(kind: str, log: Path, *more: str) -> list[str]:
 
 @pytest.fixture
 def convert(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Callable[..., tuple[ObservationLog, str]]:
-    """Writes a flight and its detections, converts them, and gives the log and what was printed."""
+    """Writes a flight and its detections, converts them, and returns the log and the output."""
 
     def run(kind: str, flown: Flown, offset_s: float, *more: str, **detections: object) -> tuple[ObservationLog, str]:
         log = autopilot_log(tmp_path, kind, flown)
@@ -64,7 +64,7 @@ def convert(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Callable[...,
     return run
 
 
-def told_offset(text: str) -> tuple[float, float]:
+def printed_offset(text: str) -> tuple[float, float]:
     value, sigma = re.search(r"time offset, .*: (\S+) \+- (\S+) s", text).groups()  # type: ignore[union-attr]
     return float(value), float(sigma)
 
@@ -81,7 +81,7 @@ def test_the_offset_of_the_cameras_clock_is_found(
     convert: Callable[..., tuple[ObservationLog, str]], kind: str, offset_s: float, seed: int
 ) -> None:
     log, text = convert(kind, FLOWN, offset_s, seed=seed)
-    found, sigma = told_offset(text)
+    found, sigma = printed_offset(text)
     assert abs(found - offset_s) < OFFSET_TOLERANCE_S
     assert abs(found - offset_s) < 3.5 * sigma
     assert sigma < OFFSET_TOLERANCE_S / 2
@@ -89,26 +89,26 @@ def test_the_offset_of_the_cameras_clock_is_found(
 
 
 def test_a_slow_attitude_is_carried_on_by_the_gyro(convert: Callable[..., tuple[ObservationLog, str]]) -> None:
-    """At 2 Hz a straight line misses the roll by degrees."""
+    """At 2 Hz, linear interpolation has a roll error of degrees."""
     _, text = convert("ulog", Flown(rate_hz=2.0), 0.12, "--gap", "1", seed=3)
-    found, sigma = told_offset(text)
+    found, sigma = printed_offset(text)
     assert abs(found - 0.12) < OFFSET_TOLERANCE_S and sigma < OFFSET_TOLERANCE_S
 
 
 def test_an_offset_is_looked_for_where_the_user_says(convert: Callable[..., tuple[ObservationLog, str]]) -> None:
     log, text = convert("ulog", FLOWN, 1000.05, "--about", "1000", "--within", "0.3")
-    assert told_offset(text)[0] == pytest.approx(1000.05, abs=OFFSET_TOLERANCE_S)
+    assert printed_offset(text)[0] == pytest.approx(1000.05, abs=OFFSET_TOLERANCE_S)
     assert log.frames[0].t_s == pytest.approx(START_S + 1.0, abs=OFFSET_TOLERANCE_S)
 
 
-def test_an_offset_that_nothing_tells_is_asked_for(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_unobservable_offset_has_to_be_given(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     log = autopilot_log(tmp_path, "ulog", FLOWN)
     reasons = {(0.9, (8, 80)): "turns and boxes determine no offset", (0.0, (8, 14)): "no track has known poses"}
     for (offset_s, images), reason in reasons.items():
         write_detections(tmp_path, FLOWN, offset_s, images=images)
         assert main(words("ulog", log)) == 2
-        told = capsys.readouterr().err
-        assert reason in told and "--offset" in told and "detections.csv: t_s: " in told
+        message = capsys.readouterr().err
+        assert reason in message and "--offset" in message and "detections.csv: t_s: " in message
         assert main(words("ulog", log, "--offset", str(offset_s))) == 0
 
 
@@ -119,13 +119,13 @@ def test_an_offset_that_nothing_tells_is_asked_for(tmp_path: Path, capsys: pytes
 def test_poses_are_those_at_the_time_of_exposure(
     convert: Callable[..., tuple[ObservationLog, str]], kind: str, tmp_path: Path
 ) -> None:
-    """The pose is logged at 50 Hz (tlog: times in whole ms), the images lie anywhere between."""
+    """The pose is logged at 50 Hz (tlog: times in whole ms); the images lie at any time in between."""
     log, _ = convert(kind, replace(FLOWN, rate_hz=47.0), 0.0333, "--offset", "0.0333")
     t = np.array([frame.t_s for frame in log.frames]) - START_S
     place = FLOWN.position(t)
     assert np.abs(np.array([f.position_m for f in log.frames]) - place).max() < 0.02
-    told, true = matrices(np.array([f.attitude for f in log.frames])), matrices(quaternions(*FLOWN.angles(t)))
-    angle = np.arccos(np.clip((np.einsum("kij,kij->k", told, true) - 1) / 2, -1, 1))
+    message, true = matrices(np.array([f.attitude for f in log.frames])), matrices(quaternions(*FLOWN.angles(t)))
+    angle = np.arccos(np.clip((np.einsum("kij,kij->k", message, true) - 1) / 2, -1, 1))
     assert np.degrees(angle.max()) < 0.06
     arm = np.einsum("kij,j->ki", true, np.array(ARM_M))
     height = -(place + arm)[:, 2]
@@ -136,10 +136,10 @@ def test_poses_are_those_at_the_time_of_exposure(
     assert all(boxes[round(float(t_s), 6), int(key)][0] == float(left) for t_s, key, left, *_ in lines)  # type: ignore[index]
 
 
-def test_the_height_is_that_over_the_ground_asked_for_or_measured(
+def test_the_height_is_above_the_configured_or_measured_ground(
     convert: Callable[..., tuple[ObservationLog, str]],
 ) -> None:
-    """The ground below is 2 m deeper than the origin."""
+    """The ground below is 2 m lower than the origin."""
     for kind in ("ulog", "dataflash"):
         heights = {}
         for name, more in {"origin": (), "ground": ("--ground", "1.5"), "sensor": ("--height", "sensor")}.items():
@@ -208,7 +208,7 @@ def test_a_jump_of_the_heading_cuts_the_track(convert: Callable[..., tuple[Obser
 
 def test_a_cut_does_not_spoil_the_offset(convert: Callable[..., tuple[ObservationLog, str]]) -> None:
     flown = replace(FLOWN, faults=[Fault(START_S + 4.0, (5.0, -9.0, 2.0)), Fault(START_S + 6.5, yaw_deg=4.0)])
-    found, _ = told_offset(convert("ulog", flown, 0.05, "--within", "0.3", seed=4)[1])
+    found, _ = printed_offset(convert("ulog", flown, 0.05, "--within", "0.3", seed=4)[1])
     assert found == pytest.approx(0.05, abs=0.03)
 
 
@@ -231,7 +231,7 @@ def test_noise_of_the_attitude_is_no_jump(convert: Callable[..., tuple[Observati
 
 
 def test_odometry_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Its counter tells of a reset and not of its size."""
+    """Its counter reports that there was a reset, but not its size."""
     flown = replace(FLOWN, faults=[Fault(START_S + 5.34, JUMP)])
     log = write_tlog(tmp_path / "a.tlog", flown, odometry=True)
     write_detections(tmp_path, flown, 0.0)
@@ -246,9 +246,9 @@ def test_odometry_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> N
 
 def refused(capsys: pytest.CaptureFixture[str], arguments: list[str]) -> str:
     assert main(arguments) == 2
-    told = capsys.readouterr()
+    message = capsys.readouterr()
     assert not (Path(arguments[-1]) / "frames.csv").exists()
-    return told.err
+    return message.err
 
 
 def test_topics_and_fields_that_are_not_there(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -266,11 +266,11 @@ def test_topics_and_fields_that_are_not_there(tmp_path: Path, capsys: pytest.Cap
         messages = dataflash_messages(FLOWN)
         del messages[name]
         write_dataflash(path, messages)
-        told = refused(capsys, words("dataflash", path))
-        assert f"{path}: {name}: the log has no such message" in told and reason in told
+        message = refused(capsys, words("dataflash", path))
+        assert f"{path}: {name}: the log has no such message" in message and reason in message
 
 
-def test_samples_that_are_wrong_are_told_with_their_time(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_wrong_samples_are_reported_with_their_time(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     write_detections(tmp_path, FLOWN, 0.0)
     path = tmp_path / "a.ulg"
 
@@ -286,8 +286,8 @@ def test_samples_that_are_wrong_are_told_with_their_time(tmp_path: Path, capsys:
     assert where + "not finite at 22.000000 s" in spoilt("vehicle_local_position", "y", 100, math.nan)
     back = spoilt("vehicle_local_position", "timestamp_sample", 100, 1e6)
     assert where + "time runs back from 21.980000 s to 1.000000 s" in back
-    told = spoilt("vehicle_attitude", "q", 50, 0.0)
-    assert f"{path}: vehicle_attitude.q: is not a unit quaternion at 21.000000 s" in told
+    message = spoilt("vehicle_attitude", "q", 50, 0.0)
+    assert f"{path}: vehicle_attitude.q: is not a unit quaternion at 21.000000 s" in message
 
 
 @pytest.mark.parametrize("kind", FORMATS)
@@ -311,7 +311,7 @@ def test_files_that_are_none(tmp_path: Path, capsys: pytest.CaptureFixture[str],
 
 
 def test_an_input_is_not_replaced(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """camera.ini of the folder that is to be written."""
+    """Here the input is camera.ini of the output folder."""
     path = autopilot_log(tmp_path, "ulog", FLOWN)
     write_detections(tmp_path, FLOWN, 0.0)
     (tmp_path / "log").mkdir()
@@ -326,7 +326,7 @@ def test_an_input_is_not_replaced(tmp_path: Path, capsys: pytest.CaptureFixture[
 def test_a_log_that_ends_in_the_middle_of_a_message(
     convert: Callable[..., tuple[ObservationLog, str]], tmp_path: Path, kind: str
 ) -> None:
-    """As after a loss of power: what is there is read."""
+    """As after a loss of power: the complete messages are read."""
     path = autopilot_log(tmp_path, kind, FLOWN)
     write_detections(tmp_path, FLOWN, 0.0)
     whole = path.read_bytes()
@@ -364,7 +364,7 @@ def test_flags_that_are_wrong(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     assert stop.value.code == 2 and flag[0] in capsys.readouterr().err
 
 
-def test_one_source_is_asked_for(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_exactly_one_source_is_required(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     log = tmp_path / "a.ulg"
     for arguments in (
         words("ulog", log, "--tlog", str(log)),

@@ -19,7 +19,7 @@ from ci.cost.longest.trip_counts import Trips
 from ci.cost.modules import bytes_of_object
 
 ROOT = Path(__file__).resolve().parents[2]
-ROWS_MOST = 440  # of the ledger: some 11 for a public function, of which there are three more
+ROWS_MOST = 440  # of the ledger: some 11 rows for each public function
 
 # -------------------------------------------------------------------------------------------------------------- stack
 
@@ -93,12 +93,12 @@ def test_an_unknown_callee_is_refused(callee: int | str) -> None:
 
 
 def host_build(tree: Path, library: Path) -> Build:
-    """What the tools know of a build, with this machine's compiler."""
+    """A build of this machine's compiler, as the tools describe it."""
     words = ["gcc", "-std=c99", "-O2", "-DGOE_WINDOW_MAX=8", "-fstack-usage", f"-I{library}"]
     return Build("host", tree, "none", "", "gcc", words, [])
 
 
-def test_modules_are_named_by_room_and_file(tmp_path: Path) -> None:
+def test_modules_are_named_by_folder_and_file(tmp_path: Path) -> None:
     built = host_build(tmp_path, tmp_path)
     objects = tmp_path / "lib" / "CMakeFiles" / "goe.dir"
     (objects / "image").mkdir(parents=True)
@@ -135,7 +135,7 @@ def test_bytes_of_an_object_by_kind() -> None:
     assert bytes_of_object(sizes) == {"code": 108, "constants": 20, "data": 4}
 
 
-def test_the_command_of_the_library_is_found_in_rooms_too() -> None:
+def test_the_command_of_the_library_is_found_in_folders_too() -> None:
     other = {"command": "gcc -O0 -o tests/CMakeFiles/x.dir/x.c.obj -c x.c"}
     own = {"command": "gcc -Os -std=c99 -fstack-usage -o lib/CMakeFiles/goe.dir/image/goe_camera.c.obj -c y.c"}
     words = library_command([other, own])
@@ -148,17 +148,17 @@ def test_the_command_of_the_library_is_found_in_rooms_too() -> None:
 # -------------------------------------------------------------------------------------------------------------- parts
 
 PARTS_HEADER = """
-#if GOE_WITH_HAZARD && !GOE_WITH_REFINED
-#error "the hazard needs the refined method"
+#if GOE_WITH_HAZARD && !GOE_WITH_FILTER
+#error "the hazard needs the filter method"
 #endif
 typedef struct {
-    char always[100], window[10 * GOE_WITH_WINDOW + 1], refined[1000 * GOE_WITH_REFINED + 1];
+    char always[100], window[10 * GOE_WITH_WINDOW + 1], filter[1000 * GOE_WITH_FILTER + 1];
 } goe_estimator_t;
 """
 
 
 def library_with_parts(folder: Path, header: str) -> Path:
-    """A library in rooms of which each part is one function."""
+    """A library in folders in which each part is one function."""
     for part in parts.PARTS:
         lines = ['#include "goe.h"', f"#if GOE_WITH_{part.upper()}", f"int {part}(int a) {{ return 3 * a; }}", "#endif"]
         (folder / part).mkdir(parents=True)
@@ -171,13 +171,13 @@ def test_parts_are_measured_once_the_header_knows_them(tmp_path: Path) -> None:
     library = library_with_parts(tmp_path / "lib", PARTS_HEADER)
     found = parts.measured_parts(host_build(tmp_path, library), tmp_path, library)
     assert [part.name for part in found] == [
-        "window", "refined", "window and refined", "refined and hazard", "everything",
+        "window", "filter", "window and filter", "filter and hazard", "everything",
     ]  # fmt: skip
     sizes = {part.name: part.state for part in found}
-    assert sizes == {"window": 112, "refined": 1102, "window and refined": 1112, "refined and hazard": 1102,
+    assert sizes == {"window": 112, "filter": 1102, "window and filter": 1112, "filter and hazard": 1102,
                      "everything": 1112}  # fmt: skip
     code = {part.name: part.code for part in found}
-    assert 0 < code["window"] < code["window and refined"] < code["everything"]
+    assert 0 < code["window"] < code["window and filter"] < code["everything"]
 
 
 def test_no_parts_without_the_macros(tmp_path: Path) -> None:
@@ -202,7 +202,7 @@ def test_a_ledger_reads_as_it_was_written() -> None:
     }
     text = book.text_of(ledger)
     assert book.ledger_of(text) == ledger
-    assert text.splitlines()[2:4] == ["code bytes: total,3,4", "code bytes: x,,5"]  # rows of a kind stay together
+    assert text.splitlines()[2:4] == ["code bytes: total,3,4", "code bytes: x,,5"]  # rows of one kind stay together
 
 
 @pytest.mark.parametrize("text", ["", "target,a\n", "figure,a\ncode,1,2\n"])
@@ -211,14 +211,14 @@ def test_no_ledger_is_refused(text: str) -> None:
         book.ledger_of(text)
 
 
-def test_what_one_measures_leaves_the_other_targets() -> None:
+def test_measuring_one_target_keeps_the_others() -> None:
     before: book.Ledger = {"m4f-gcc-os": {"x": 1}, "m4f-gcc-o2": {"x": 2}}
     assert command.merged(before, {"m4f-gcc-o2": {"x": 3}, "m0plus-gcc-os": {"x": 4}}) == {
         "m0plus-gcc-os": {"x": 4}, "m4f-gcc-os": {"x": 1}, "m4f-gcc-o2": {"x": 3},
     }  # fmt: skip
 
 
-def test_growth_beyond_two_percent_is_told() -> None:
+def test_growth_beyond_two_percent_is_reported() -> None:
     before: book.Figures = {"code": 1000, "data bytes: total": 0, "compiler": "x"}
     same: book.Figures = {"data bytes: total": 0}
     assert growth.grown(before, {**same, "code": 1020, "compiler": "y"}) == []
@@ -258,7 +258,7 @@ def copy_of_pages(folder: Path) -> Path:
     return folder
 
 
-def test_a_figure_that_only_the_ledger_has_is_told(tmp_path: Path) -> None:
+def test_a_figure_that_only_the_ledger_has_is_reported(tmp_path: Path) -> None:
     root, ledger = copy_of_pages(tmp_path), committed()
     ledger["m4f-gcc-os"]["code bytes: total"] = 1
     assert [text.split(":")[0] for text in pages.wrong_pages(root, ledger)] == ["README.md", "tests/targets/LEDGER.md"]
@@ -266,7 +266,7 @@ def test_a_figure_that_only_the_ledger_has_is_told(tmp_path: Path) -> None:
     assert pages.wrong_pages(root, ledger) == []
 
 
-def test_what_is_measured_is_written_to_the_ledger_and_its_pages(
+def test_measurements_are_written_to_the_ledger_and_its_pages(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     root, file = copy_of_pages(tmp_path), tmp_path / "ledger.csv"
@@ -284,7 +284,7 @@ def test_what_is_measured_is_written_to_the_ledger_and_its_pages(
     assert main(["ledger", "--check-pages", "--ledger", str(file)]) == 0
 
 
-def test_a_guarantee_that_the_readme_does_not_state_is_told(tmp_path: Path) -> None:
+def test_a_guarantee_that_the_readme_does_not_state_is_reported(tmp_path: Path) -> None:
     """[A23]"""
     root = copy_of_pages(tmp_path)
     readme = root / "README.md"
@@ -294,7 +294,7 @@ def test_a_guarantee_that_the_readme_does_not_state_is_told(tmp_path: Path) -> N
     assert ["48,000 instructions" in wrong for wrong in pages.wrong_pages(root, committed())] == [True]
 
 
-def test_a_cost_that_the_header_understates_is_told(tmp_path: Path) -> None:
+def test_a_cost_that_the_header_understates_is_reported(tmp_path: Path) -> None:
     """[A23]"""
     root = copy_of_pages(tmp_path)
     ledger = committed()
@@ -316,11 +316,11 @@ def test_a_cost_that_the_header_understates_is_told(tmp_path: Path) -> None:
         pages.wrong_pages(root, ledger)
 
 
-def test_a_promise_that_is_broken_is_told() -> None:
+def test_a_broken_promise_is_reported() -> None:
     ledger = committed()
     assert guarantees.broken_promises(ledger) == []
     ledger["m4f-gcc-o2"]["instructions proved: goe_update"] = 48001
-    ledger["m4f-clang-os"]["instructions: goe_update: max"] = 99999  # nobody promised
+    ledger["m4f-clang-os"]["instructions: goe_update: max"] = 99999  # a target without a promise
     ledger["rv32imac-gcc-o2"]["data bytes: total"] = 4
     ledger["m4f-gcc-o2"]["calls to other libraries"] = "memcpy malloc"
     assert guarantees.broken_promises(ledger) == [
@@ -330,7 +330,7 @@ def test_a_promise_that_is_broken_is_told() -> None:
     ]
 
 
-def test_the_table_of_guarantees_tells_where_they_do_not_hold() -> None:
+def test_the_table_of_guarantees_shows_where_they_do_not_apply() -> None:
     ledger = committed()
     for preset, value in zip(guarantees.M4F, (1408, 1000, 1409, 1)):
         ledger[preset]["stack bytes computed: goe_update"] = value
@@ -341,7 +341,7 @@ def test_the_table_of_guarantees_tells_where_they_do_not_hold() -> None:
     ]  # fmt: skip
 
 
-def test_what_is_measured_is_at_most_what_is_proved_and_that_what_is_stated() -> None:
+def test_measured_is_at_most_proved_is_at_most_stated() -> None:
     """[A23]"""
     figures = committed()[stated.TARGET]
     limits = stated.stated((ROOT / pages.HEADER).read_text(encoding="utf-8"))
@@ -353,7 +353,7 @@ def test_what_is_measured_is_at_most_what_is_proved_and_that_what_is_stated() ->
         assert most <= limits.get(book.key(book.PROVED, name), most)
 
 
-def test_what_contradicts_the_proof_stops_the_ledger(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_a_contradiction_of_the_proof_stops_the_ledger(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     measured: book.Figures = {"instructions: goe_update: max": 11}
     built = Build("m4f-gcc-o2", tmp_path, "none", "", "gcc", [], [])
     row = Row(7, "loop", "f", "#1", "", "3", "entry", "for a test")

@@ -1,4 +1,4 @@
-"""The evidence: its command, its table, its record."""
+"""The evidence: its command, table and record."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ BAD = Result([Row("lines", "9 of 10", "all", False)])
 
 @pytest.fixture
 def made_up(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
-    """Two parts and one that cannot run; the record's path."""
+    """Two parts that run, one that cannot, and the path of the record."""
 
     def absent(amount: Amount) -> Result:
         raise NotHereError("no such compiler")
 
     runs = {"good": lambda amount: GOOD, "bad": lambda amount: BAD, "absent": absent}
-    monkeypatch.setattr(command, "MODULES", dict.fromkeys(runs, "asks something"))
+    monkeypatch.setattr(command, "MODULES", dict.fromkeys(runs, "a description"))
     monkeypatch.setattr(command, "REPORTS", tmp_path / "reports")
     monkeypatch.setattr(command, "runner", runs.__getitem__)
     return tmp_path / "record.json"
@@ -51,7 +51,7 @@ def test_a_goal_that_is_missed_fails(made_up: Path, capsys: pytest.CaptureFixtur
     assert "absent: left out: no such compiler" in said.err
 
 
-def test_long_keeps_its_rows_beside_those_of_others(made_up: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_long_keeps_its_rows_and_those_of_others(made_up: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["evidence", "--long", "--only", "bad", "--record", str(made_up)]) == 1
     assert main(["evidence", "--long", "--only", "good", "--record", str(made_up)]) == 0
     kept = read(made_up)
@@ -83,7 +83,7 @@ def test_a_release_is_one_file_of_one_commit(
     written = json.loads((tmp_path / "releases" / "0.10.0.json").read_text())
     assert (written["version"], written["commit"], written["cores"]) == ("0.10.0", 40 * "a", 2)
     assert [part["part"] for part in written["parts"]] == ["good", "bad", "absent"] and written["parts"][0]["seconds"]
-    (tmp_path / "releases" / "0.9.0.json").write_text("{")  # older, though it comes later in the alphabet
+    (tmp_path / "releases" / "0.9.0.json").write_text("{")  # older, though later in the alphabet
     capsys.readouterr()
     monkeypatch.setattr(command, "RECORD", tmp_path / "none.json")
     assert main(["evidence", "--show"]) == 0
@@ -127,7 +127,8 @@ def test_the_releases_that_are_here_can_be_read() -> None:
 
 
 def test_the_script_is_the_command(tmp_path: Path) -> None:
-    """In a copy whose set-up does nothing but say so: it comes first, and only the table goes to the output."""
+    """In a copy whose set-up only prints a line: the set-up runs first, and only the table is written to standard
+    output."""
     tools, python = tmp_path / "tools", tmp_path / ".venv" / "bin" / "python"
     tools.mkdir()
     python.parent.mkdir(parents=True)

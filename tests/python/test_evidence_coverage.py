@@ -1,4 +1,4 @@
-"""Coverage: what is counted of llvm-cov's answer, and how reasons fit what is not reached."""
+"""Coverage: counting llvm-cov's export, and matching reasons with uncovered items."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ CONDITION, DECISION = 6, 5
 
 
 def exported(root: Path, a: tuple[int, int], b: tuple[int, int], alone: list[bool], inner: int = 0) -> dict[str, Any]:
-    """As llvm-cov tells it of the source: how often each condition held and did not, and line 4 was reached."""
+    """llvm-cov's export for the source: how often each condition was true and false; line 4 was reached."""
     path = root / FILE
     path.parent.mkdir(exist_ok=True)
     path.write_text(SOURCE)
@@ -68,19 +68,19 @@ def test_lines_outcomes_and_conditions_are_counted_with_their_text(tmp_path: Pat
 
 
 def test_copies_of_a_function_in_a_header_count_as_one(tmp_path: Path) -> None:
-    told = exported(tmp_path, (5, 0), (5, 0), [False, True], inner=5)
+    export = exported(tmp_path, (5, 0), (5, 0), [False, True], inner=5)
     other = exported(tmp_path, (0, 2), (0, 0), [True, False])["files"][0]
-    told["files"][0]["branches"] += other["branches"]
-    told["files"][0]["mcdc_records"] += other["mcdc_records"]
-    found = items(told, tmp_path)
+    export["files"][0]["branches"] += other["branches"]
+    export["files"][0]["mcdc_records"] += other["mcdc_records"]
+    found = items(export, tmp_path)
     assert unreached(found) == {("a > 0 && [b > 0]", "false")}
     assert sum(item.outcome == "independent" for item in found) == 2
 
 
 def test_an_answer_of_another_shape_is_refused(tmp_path: Path) -> None:
-    told = exported(tmp_path, (5, 5), (5, 5), [True, True, True])
+    export = exported(tmp_path, (5, 5), (5, 5), [True, True, True])
     with pytest.raises(CountError, match="3 conditions, but 2 found"):
-        items(told, tmp_path)
+        items(export, tmp_path)
 
 
 def test_a_reason_covers_its_outcome_and_the_independence_that_needs_it(tmp_path: Path) -> None:
@@ -93,7 +93,7 @@ def test_a_reason_covers_its_outcome_and_the_independence_that_needs_it(tmp_path
     assert (branches.of, branches.covered, branches.reasoned, branches.missing) == (4, 3, 1, 0)
     assert branches.figure() == "75.00 % (3 of 4, 1 reasoned)"
     last = " ".join(per_file(found, verdict).splitlines()[-1].split())
-    assert last == "all 4 4 0 0 3 4 1 0 1 2 1 0"  # of each kind: reached, of, reasoned, missing
+    assert last == "all 4 4 0 0 3 4 1 0 1 2 1 0"  # of each kind: reached, total, with a reason, missing
 
 
 @pytest.mark.parametrize(
@@ -107,26 +107,26 @@ def test_a_reason_covers_its_outcome_and_the_independence_that_needs_it(tmp_path
 def test_a_reason_that_is_none_is_a_fault(tmp_path: Path, given: Reason, fault: str) -> None:
     found = items(exported(tmp_path, (5, 5), (5, 5), [True, True], inner=5), tmp_path)
     verdict = settle(found, [given])
-    assert [told for _, told in verdict.stale] == [fault]
+    assert [text for _, text in verdict.stale] == [fault]
     assert len(faults(verdict)) == 1 and fault in faults(verdict)[0]
 
 
 @pytest.mark.parametrize(
-    ("row", "told"),
+    ("row", "fault"),
     [
         ("lib/a.c,f,x > 0,maybe,because", "outcome"),
         ("lib/a.c,f,x > 0,true,", "all with text"),
         ("lib/a.c,f,x > 0,true", "5 cells"),
     ],
 )
-def test_a_bad_row_of_reasons_is_refused(tmp_path: Path, row: str, told: str) -> None:
+def test_a_bad_row_of_reasons_is_refused(tmp_path: Path, row: str, fault: str) -> None:
     path = tmp_path / "reasons.csv"
     path.write_text(",".join(COLUMNS) + "\n" + row + "\n")
-    with pytest.raises(LogError, match=told):
+    with pytest.raises(LogError, match=fault):
         read(path)
 
 
-def test_the_reasons_of_the_library_are_read_and_told_once() -> None:
+def test_the_reasons_of_the_library_are_unique() -> None:
     reasons = read(REASONS)
     places = [(r.file, r.function, r.text, r.outcome) for r in reasons]
     assert len(set(places)) == len(places)

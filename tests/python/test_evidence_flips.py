@@ -1,4 +1,4 @@
-"""The part ``flips`` of the evidence: what the program's lines become."""
+"""The part ``flips`` of the evidence: evaluation of the program's lines."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def lines(*rows: str) -> str:
 GOOD = lines(
     'flips,"window, disc",3,settings,8,0,0,0,0,8,0,0,0,0,0',
     'flips,"window, disc",3,motion.dx_m,10,0,0,0,0,2,1,1,3,1,2',
-    'flips,"refined, disc",12,motion.dx_m,10,0,0,0,0,0,0,0,0,0,10',
+    'flips,"filter, disc",12,motion.dx_m,10,0,0,0,0,0,0,0,0,0,10',
 )
 
 
@@ -25,9 +25,9 @@ def met(text: str) -> list[bool | None]:
     return [row.met for row in flips.rows(flips.counts(text))]
 
 
-def test_lines_are_counted_by_what_they_say() -> None:
+def test_lines_are_counted_by_their_outcome() -> None:
     found = flips.counts(GOOD)
-    assert [count.flight for count in found] == ["window, disc", "window, disc", "refined, disc"]
+    assert [count.flight for count in found] == ["window, disc", "window, disc", "filter, disc"]
     assert found[1].of(["corrupted", "suspect", "reported"]) == 4
     by_field = flips.summed(found, "field")
     assert by_field["motion.dx_m"]["bits"] == 20 and by_field["motion.dx_m"]["wrong"] == 3
@@ -59,7 +59,7 @@ def test_a_line_of_other_columns_is_refused() -> None:
         flips.counts(lines('flips,"a",3,motion.dx_m,2,1'))
 
 
-def test_the_report_names_what_is_wrong_most_often() -> None:
+def test_the_report_names_the_most_frequent_faults() -> None:
     text = flips.report(flips.counts(GOOD))
     assert "| motion.dx_m | 20 |" in text and "silently wrong" in text
     assert "| window, disc | 18 |" in text

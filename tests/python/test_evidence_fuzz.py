@@ -1,4 +1,5 @@
-"""Evidence by fuzzing: slices are added up and kept, the goals decide what runs next, and what breaks is told."""
+"""Evidence by fuzzing: slices are added up and kept, the goals decide which target runs next, and failures are
+reported."""
 
 from __future__ import annotations
 
@@ -17,7 +18,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 @pytest.fixture
 def stand_in(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A target that prints its arguments' number as its count, and breaks on a seed of 13."""
+    """A target that prints the number of its arguments as its count, and fails on seed 13."""
     place = tmp_path / "target"
     place.write_text(
         '#!/bin/sh\n[ "$4" = 13 ] && { echo "fuzz: it broke" >&2; exit 134; }\necho "{\\"updates\\": $#}"\n'
@@ -28,7 +29,7 @@ def stand_in(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def finished(but: str = "", updates: int = 0) -> State:
-    """All that the long run asks beside so many updates, but for one job."""
+    """Counts that meet all goals of the long run, with so many updates, except for one target."""
     state = State("hash")
     state.add("default/estimator", {"updates": updates})
     state.add("fuzz/estimator", {"updates": updates})
@@ -65,7 +66,7 @@ def test_a_stopped_run_goes_on_with_other_seeds_unless_the_library_is_another(tm
     assert read_state(place, "hash").counts == {}
 
 
-def test_what_is_farthest_from_its_goal_runs_next() -> None:
+def test_the_target_farthest_from_its_goal_runs_next() -> None:
     state = finished()
     assert fuzz.next_job(state, 1000, []) == Job(PLAIN, "estimator", fuzz.SLICE_S)
     state.add("default/estimator", {"updates": 890})
@@ -84,9 +85,9 @@ def test_every_other_target_has_its_time(name: str) -> None:
     assert fuzz.next_job(state, 1000, [job]) is None  # one at a time
 
 
-def test_the_rows_tell_what_is_missing() -> None:
+def test_the_rows_list_the_missing_counts() -> None:
     state = State("hash")
-    state.add("default/estimator", {"runs": 3, "updates": 900, "status_ok": 1, "status_held": 0, "movers_followed": 2})
+    state.add("default/estimator", {"runs": 3, "updates": 900, "status_ok": 1, "status_stale": 0, "movers_followed": 2})
     state.add("fuzz/estimator", {"runs": 1, "updates": 99, "latency_reported": 1})
     rows = {row.what: row for row in fuzz.rows_of(state, 1000)}
     assert rows["updates through goe_update, every answer checked"].met is False
@@ -101,12 +102,12 @@ def test_the_rows_tell_what_is_missing() -> None:
     assert "log: it broke" in fuzz.report_of(state)
 
 
-def test_a_target_that_breaks_is_told_and_ends_the_run(stand_in: Path, tmp_path: Path) -> None:
+def test_a_target_that_breaks_is_reported_and_ends_the_run(stand_in: Path, tmp_path: Path) -> None:
     assert fuzz.drive(PLAIN, "text", [], tmp_path) == {"updates": 2}
     with pytest.raises(BrokenError, match="it broke"):
         fuzz.drive(PLAIN, "text", ["--random", "13"], tmp_path)
     state = finished()
-    state.seed = 10  # the third slice has 13
+    state.seed = 10  # the third slice includes seed 13
     place = tmp_path / "state.json"
     fuzz.run_slices(state, 10**9, 1, tmp_path, place)
     assert len(state.broken) == 1 and "it broke" in state.broken[0]

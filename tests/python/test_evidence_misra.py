@@ -1,4 +1,4 @@
-"""MISRA's baseline: what the check makes of more and of less, and whether lib/MISRA.md answers for every rule."""
+"""MISRA's baseline: how the check reacts to more and fewer findings, and whether lib/MISRA.md covers every rule."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from goe_tools.places import ROOT
 
 
 def test_findings_are_read_with_their_rule_from_the_project_s_root() -> None:
-    told = f"{ROOT}/lib/goe_status.c|20|15|misra-c2012-12.1|use --rule-texts\nChecking a.c ...\nnofile|0|0|info|x\n"
-    assert cppcheck.findings_of(told) == {
+    output = f"{ROOT}/lib/goe_status.c|20|15|misra-c2012-12.1|use --rule-texts\nChecking a.c ...\nnofile|0|0|info|x\n"
+    assert cppcheck.findings_of(output) == {
         cppcheck.Finding("12.1", "lib/goe_status.c", 20, 15, "use --rule-texts"),
     }
 
 
-def test_one_more_is_new_and_one_less_asks_for_a_renewal_of_what_was_checked() -> None:
+def test_one_more_is_new_and_one_less_requires_a_renewal_of_the_baseline() -> None:
     kept = {("default", "12.1", "a.c"): 2, ("default", "15.5", "a.c"): 1, ("without HAZARD", "15.5", "a.c"): 1}
     found = {("default", "12.1", "a.c"): 3}
     more, less = misra.differences(found, kept, {"default"})
@@ -33,8 +33,8 @@ def test_the_baseline_is_written_as_it_is_read(tmp_path: Path) -> None:
 
 def test_the_page_answers_for_every_rule_of_the_baseline_with_its_count() -> None:
     total = misra.by_rule(misra.read_baseline(misra.BASELINE))
-    told = misra.page_counts(misra.PAGE.read_text(encoding="utf-8"))
-    assert told == dict(total)
+    output = misra.page_counts(misra.PAGE.read_text(encoding="utf-8"))
+    assert output == dict(total)
     assert not misra.MANDATORY & set(total)
 
 
@@ -55,7 +55,7 @@ def test_a_false_alarm_is_left_out_and_missed_when_it_no_longer_comes() -> None:
     assert analyzers.split_false(name, []) == ([], [f"{file}: {text}"])
 
 
-def test_clang_tidy_leaves_out_only_what_its_file_gives_a_reason_for() -> None:
+def test_every_check_that_clang_tidy_leaves_out_has_a_reason() -> None:
     file = (ROOT / ".clang-tidy").read_text()
     left_out = re.findall(r"^\s+-((?:bugprone|cert|clang-analyzer)-[\w.-]+)", file, re.MULTILINE)
     assert left_out

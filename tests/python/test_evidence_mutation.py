@@ -1,4 +1,4 @@
-"""Small changes of C, which of them are chosen, how they are counted; and the lists of those that survive."""
+"""Mutation of C sources: the changes, their selection and counting, and the lists of survivors."""
 
 from __future__ import annotations
 
@@ -115,14 +115,14 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> list[Mutant]:
     ],
 )
 def test_a_token_is_changed(found: list[Mutant], function: str, source: str, mutation: str) -> None:
-    """Each kind of change is made, in its place, and in the text of its line."""
+    """Each kind of change is made, at its place, and is visible in the text of its line."""
     there = [m for m in found if m.function == function and source in m.source]
     assert any(m.source.replace(source, mutation, 1) == m.mutation for m in there)
 
 
 @needs_clang
 def test_no_function_loses_its_value(found: list[Mutant]) -> None:
-    """The last return stays; and a call without a value is removed, not replaced."""
+    """The last return stays. A call without a value is removed, not replaced."""
     assert not any(m.source == "return RIGHT;" and m.mutation == ";" for m in found)
     assert {m.mutation for m in found if m.source == "empty(x);"} == {";"}
     assert "0" not in {m.text for m in found if m.kind == "dropped call" and "larger" in m.source}
@@ -139,8 +139,8 @@ def test_each_change_has_its_family(found: list[Mutant]) -> None:
 
 
 @needs_clang
-def test_what_is_no_code_is_left_alone(found: list[Mutant]) -> None:
-    """Comments, macros, types: nothing of them is changed, and every change leaves all other lines as they are."""
+def test_comments_macros_and_types_are_left_alone(found: list[Mutant]) -> None:
+    """Comments, macros and types are not mutated, and every change leaves all other lines as they are."""
     for mutant in found:
         changed = made.apply(mutant, SOURCE).splitlines()
         assert changed[:3] == SOURCE.splitlines()[:3]
@@ -148,7 +148,7 @@ def test_what_is_no_code_is_left_alone(found: list[Mutant]) -> None:
 
 
 @needs_clang
-def test_a_change_that_a_macro_made_stands_in_no_line(tmp_path: Path) -> None:
+def test_a_change_made_by_a_macro_is_in_no_line(tmp_path: Path) -> None:
     text = "#define TWICE(x) ((x) + (x))\nint f(int a) { return TWICE(a) * 2; }\n"
     assert {m.mutation for m in mutations(tmp_path, text) if m.kind.startswith("operator")} == {
         "int f(int a) { return TWICE(a) / 2; }"
@@ -167,7 +167,8 @@ def some_mutant(number: int, change: int = 0) -> Mutant:
 
 
 def test_the_chosen_are_spread_and_always_the_same() -> None:
-    """Over the places, not over their changes; of these now one, now another; the others if it does not compile."""
+    """The selection is spread over places, not over changes. Different places get different changes; if one does not
+    compile, another replaces it."""
     every = [some_mutant(i, change) for i in range(100) for change in range(1 + i % 2)]
     groups = mutation.strided(every, 4)
     assert [(group[0].begin, group[0].text) for group in groups] == [(12, "-"), (37, "--"), (62, "-"), (87, "--")]
@@ -176,7 +177,7 @@ def test_the_chosen_are_spread_and_always_the_same() -> None:
 
 
 def test_every_family_gets_as_many_as_it_has() -> None:
-    """Up to its share; the same ones for the same seed."""
+    """Each family gets up to its share; the same mutants for the same seed."""
     kinds = ["removed statement"] * 50 + ["operator <"] * 3 + ["operator +"] * 50
     every = [Mutant("box.c", "f", i, i + 1, "-", kind, f"a{i};", f"b{i};") for i, kind in enumerate(kinds)]
     chosen = mutation_trees.sampled(every, 23, seed=1)
@@ -191,26 +192,26 @@ def outcomes() -> list[Outcome]:
     return [Outcome(some_mutant(i), end, "box" if end == KILLED else "") for i, end in enumerate(ends)]
 
 
-def test_what_changes_nothing_counts_as_nothing() -> None:
-    """19 of 20 that change something are killed, 17 without the hash; equivalent ones and those that do not compile are
-    in neither."""
-    told = {row.what: row for row in mutation_counts.rows(outcomes(), {})}
-    assert told["mutants of lib/ that compile"].figure == "23"
-    assert told["... of these, killed by the unit tests"].figure == "95.0 % (19 of 20)"
-    assert told["... of these, killed by the unit tests"].met is True
-    assert told["... ... without the hash over the refined method's bits"].figure == "85.0 % (17 of 20)"
-    assert told["mutants that survive: with a written reason, and without"].figure == "0 and 1"
-    assert told["mutants that survive: with a written reason, and without"].met is False
+def test_equivalent_mutants_are_not_counted() -> None:
+    """19 of 20 mutants with an effect are killed, 17 without the hash. Equivalent mutants and those that do not compile
+    are in neither count."""
+    by_name = {row.what: row for row in mutation_counts.rows(outcomes(), {})}
+    assert by_name["mutants of lib/ that compile"].figure == "23"
+    assert by_name["... of these, killed by the unit tests"].figure == "95.0 % (19 of 20)"
+    assert by_name["... of these, killed by the unit tests"].met is True
+    assert by_name["... ... without the hash over the filter method's bits"].figure == "85.0 % (17 of 20)"
+    assert by_name["mutants that survive: with a written reason, and without"].figure == "0 and 1"
+    assert by_name["mutants that survive: with a written reason, and without"].met is False
 
 
-def test_what_the_probe_does_not_see_is_counted() -> None:
-    told = {row.what: row for row in mutation_counts.rows(outcomes(), {})}
-    assert told["mutants that neither a unit test nor the probe detects"].figure == "3"
-    assert told["killed, if those count as alive"].figure == "82.6 % (19 of 23)"
+def test_mutants_that_the_probe_misses_are_counted() -> None:
+    by_name = {row.what: row for row in mutation_counts.rows(outcomes(), {})}
+    assert by_name["mutants that neither a unit test nor the probe detects"].figure == "3"
+    assert by_name["killed, if those count as alive"].figure == "82.6 % (19 of 23)"
 
 
-def test_in_a_layer_all_that_changes_the_object_code_counts() -> None:
-    """18 of 20 killed: one survivor of three has its reason."""
+def test_in_a_layer_every_change_of_the_object_code_counts() -> None:
+    """18 of 20 are killed; one survivor of three has a reason."""
     ends = [KILLED] * 10 + [KILLED_BY_PROGRAM] * 8 + [SURVIVED] * 3 + [SAME_CODE] * 2 + [NO_CODE]
     found = [Outcome(some_mutant(i), end) for i, end in enumerate(ends)]
     reasons = {found[18].mutant.key: "twice the same"}
@@ -225,14 +226,14 @@ def test_in_a_layer_all_that_changes_the_object_code_counts() -> None:
 
 def test_a_survivor_with_a_reason_is_explained_but_not_killed() -> None:
     reasons = {outcomes()[19].mutant.key: "twice the same"}
-    told = {row.what: row for row in mutation_counts.rows(outcomes(), reasons)}
-    assert told["mutants that survive: with a written reason, and without"].figure == "1 and 0"
-    assert told["... of these, killed by the unit tests"].figure == "95.0 % (19 of 20)"
+    by_name = {row.what: row for row in mutation_counts.rows(outcomes(), reasons)}
+    assert by_name["mutants that survive: with a written reason, and without"].figure == "1 and 0"
+    assert by_name["... of these, killed by the unit tests"].figure == "95.0 % (19 of 20)"
     assert "reason: twice the same" in mutation_counts.report(outcomes(), reasons, 1.0)
 
 
-def test_what_was_found_holds_as_long_as_its_test(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A killed mutant by the test that killed it, a surviving one by all tests."""
+def test_a_result_is_valid_as_long_as_its_test(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """For a killed mutant that is the test that killed it, for a surviving one all tests."""
     hashes = {"box": "1", "disc": "1"}
     monkeypatch.setattr(mutation, "unit_tests", lambda: sorted(hashes))
     monkeypatch.setattr(mutation, "test_hash", lambda name: hashes[name])
@@ -254,19 +255,19 @@ def test_what_was_found_holds_as_long_as_its_test(tmp_path: Path, monkeypatch: p
 
 @needs_clang
 def test_every_listed_survivor_is_a_mutant_of_the_present_sources() -> None:
-    """A line that is not there any more, or is another, is no reason."""
+    """A reason does not apply to a line that has changed or is gone."""
     assert survivors.strangers(survivors.read()) == []
 
 
 @needs_clang
 def test_every_listed_survivor_of_the_flight_layer_is_a_mutant() -> None:
-    """Those of the companion need its build: the evidence asks for them."""
+    """Mutants of the companion need its build: the evidence checks them."""
     layer = mutation_trees.FLIGHT
     assert survivors.strangers(survivors.read(layer.reasons), layer.folder, layer.flags) == []
 
 
 @needs_clang
-def test_an_entry_that_fits_nothing_is_told(tmp_path: Path) -> None:
+def test_an_entry_that_fits_nothing_is_reported(tmp_path: Path) -> None:
     (tmp_path / "sum.c").write_text(SOURCE)
     listed = tmp_path / "survivors.csv"
     listed.write_text(

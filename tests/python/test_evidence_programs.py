@@ -1,4 +1,4 @@
-"""The parts programs, reproducible and sbom of the evidence: what they count, on small inputs."""
+"""The parts programs, reproducible and sbom of the evidence: their counts on small inputs."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ci.evidence.parts import Amount
 
 TESTS = Path(__file__).resolve().parents[1]
 
-TOLD = """<testsuites><testsuite>
+RESULTS = """<testsuites><testsuite>
 <testcase classname="host.test_a" name="test_one[x]" time="0.1"/>
 <testcase classname="host.test_a" name="test_one[y]"><failure message="no">no</failure></testcase>
 <testcase classname="python.test_b" name="test_two"><skipped message="no compiler"/></testcase>
@@ -20,7 +20,7 @@ TOLD = """<testsuites><testsuite>
 
 
 def test_cases_are_counted() -> None:
-    found = programs.read_outcomes(TOLD)
+    found = programs.read_outcomes(RESULTS)
     assert found == {
         "host/test_a.py::test_one": [True, False],
         "python/test_b.py::test_two": [False],
@@ -49,7 +49,7 @@ def test_bits_that_differ_are_a_miss() -> None:
 
 
 def test_the_two_trees_lie_apart(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Everything that is built from is there, links are files, and nothing that was built is."""
+    """Both trees contain every source, links are files, and neither contains a build product."""
     monkeypatch.setattr(reproducible, "NEEDED", ("lib", "LICENSE"))
     trees = [reproducible.copied(around, tmp_path) for around in (reproducible.FIRST, reproducible.SECOND)]
     assert len({len(tree.parts) for tree in trees}) == 2

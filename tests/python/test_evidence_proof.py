@@ -1,4 +1,4 @@
-"""What the proof's part of the evidence makes of Frama-C's answers; the table of explained alarms."""
+"""Evaluation of Frama-C's output in the proof's part of the evidence, and the table of explained alarms."""
 
 from __future__ import annotations
 
@@ -30,17 +30,17 @@ def test_properties_are_those_of_the_library_and_the_drivers(tmp_path: Path) -> 
 
 
 def test_functions_are_read_from_the_logs() -> None:
-    told = (
+    output = (
         "[eva] computing for function goe_reset <- proof_reset.\n  Called from tests/proof/calls.c:60.\n"
         "[eva] computing for function average_0 <- goe_health_take <- \n              proof_x.\n"
         "  Called from lib/refined/goe_health.c:55.\n[eva] Done for function average_0\n"
     )
-    reached = frama_c.reached_functions(told)
+    reached = frama_c.reached_functions(output)
     assert {"goe_reset", "lib/refined/goe_health.c:average"} <= reached
     assert not any(name.endswith("_0") for name in reached)
 
 
-def test_functions_of_the_library_are_told_by_their_file_or_by_their_name(tmp_path: Path) -> None:
+def test_functions_of_the_library_are_recognized_by_file_or_name(tmp_path: Path) -> None:
     (tmp_path / "a.h").write_text("/* int no(void); */\nint one(int x);\nstatic inline int two(void) { return 1; }\n")
     (tmp_path / "a.c").write_text("int one(int x) { return x; }\n")
     assert frama_c.library_functions(tmp_path) == {"one", "two"}
@@ -81,19 +81,20 @@ def test_a_public_function_takes_null() -> None:
         ("void goe_one(goe_t *a) {\n}\n", "goe_x.c"),  # the header has its contract
     ],
 )
-def test_a_contract_that_stands_is_left(text: str, name: str) -> None:
+def test_an_existing_contract_is_kept(text: str, name: str) -> None:
     assert contracts.with_contracts(text, name) == text
 
 
-def test_no_contract_of_the_library_says_only_what_is_made() -> None:
-    """Those would be twice as long for nothing; and each of the others stays as it is."""
+def test_no_contract_of_the_library_only_repeats_the_generated_one() -> None:
+    """A contract equal to the generated one would only double the work; and generation leaves each other contract as it
+    is."""
     for path in sorted(frama_c.LIBRARY.rglob("*.[ch]")):
         text = path.read_text(encoding="utf-8")
         for match in contracts.functions(text, path.suffix == ".c"):
             before = text[: match.start()]
-            told = before[before.rfind("/*@") :] if contracts.has_contract(before) else ""
+            output = before[before.rfind("/*@") :] if contracts.has_contract(before) else ""
             made_of = contracts.contract(match["parameters"], path.name == contracts.PUBLIC)
-            assert not told or sorted(re.split(r" && |; requires ", " ".join(told.split())[12:-4])) != sorted(
+            assert not output or sorted(re.split(r" && |; requires ", " ".join(output.split())[12:-4])) != sorted(
                 re.split(r" && |; requires ", made_of.strip()[12:-4])
             ), f"{path.name}: {match['name']}: remove its contract"
 
@@ -106,7 +107,7 @@ def alarm(text: str, status: str = "Unknown") -> Property:
     return Property("lib/goe_x.c", "goe_x", "index_bound", status, text)
 
 
-def test_new_alarms_gone_ones_and_those_without_a_reason_are_told_apart() -> None:
+def test_new_alarms_gone_ones_and_those_without_a_reason_are_distinguished() -> None:
     found = proof.alarms_of([made("proof_a", alarm("old"), alarm("new"), alarm("proved", "Valid"), alarm("silent"))])
     explained = {
         ("proof_a", *alarm("old").key): "a reason",

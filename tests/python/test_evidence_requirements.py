@@ -1,4 +1,4 @@
-"""Requirements: marks and names of the tree, and that what is missing in a small one is reported."""
+"""Requirements: marks and names of the tree; missing ones are reported in a small tree."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def test_the_part_reports_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
 def test_the_command(
     how: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Without breaking anything: that takes minutes."""
+    """Without breaking lines of code, which takes minutes."""
     monkeypatch.setattr(part, "rows_of_breaks", lambda _: ([Row("lines broken", "1 of 1", "all", True)], ["one"]))
     record = tmp_path / "new" / "record.json"
     assert main(["evidence", how, "--only", "requirements", "--record", str(record)]) == 0
@@ -47,11 +47,11 @@ def test_the_command(
     assert ("| requirements |" in capsys.readouterr().out) == (how != "--show")
 
 
-def test_a_break_of_each_room_is_tried() -> None:
+def test_a_break_of_each_folder_is_tried() -> None:
     files = {broken.file for broken in breaks.read()}
     assert len(breaks.read()) >= 60
-    for room in ("image", "window", "refined", "hazard", "maths"):
-        assert any(file.startswith(f"lib/{room}/") for file in files), room
+    for folder in ("image", "window", "refined", "hazard", "maths"):
+        assert any(file.startswith(f"lib/{folder}/") for file in files), folder
 
 
 # -------------------------------------------------------------------------------------------------------- a small tree
@@ -209,7 +209,7 @@ int main(void) { RUN_TEST(two_and_two); return 0; }
 
 
 @pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler cc")
-def test_a_broken_line_is_noticed_or_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_broken_line_is_noticed_or_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name, text in {"lib/add.c": BROKEN_CODE, "tests/c/test_add.c": BROKEN_TEST, "unity/unity.c": "int bad;\n",
                        "unity/unity.h": UNITY_H}.items():  # fmt: skip
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)

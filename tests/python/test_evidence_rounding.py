@@ -1,4 +1,4 @@
-"""Rounding at the ends of the ranges: what is compared, the search, and the bound near the autopilot's origin."""
+"""Rounding at the ends of the ranges: the comparison, the search, and the bound near the autopilot's origin."""
 
 from __future__ import annotations
 
@@ -28,21 +28,21 @@ def built() -> None:
 
 
 @dataclass
-class Told:
+class Run:
     status: np.ndarray
     estimates: Any
 
 
-def told(images: int = 6) -> Told:
-    """Answers with every quantity but a velocity, of which each is 10 and its sigma 2."""
+def run_of(images: int = 6) -> Run:
+    """Answers with every quantity except a velocity. Each value is 10 and its sigma 2."""
     estimates = np.zeros(images, package().ESTIMATE)
     estimates["valid"], estimates["fresh"], estimates["nis"] = 0x3F, True, 1.0
     for name in QUANTITIES:
         estimates[name], estimates["sigma"][name] = 10.0, 2.0
-    return Told(np.zeros(images, int), estimates)
+    return Run(np.zeros(images, int), estimates)
 
 
-def differ(monkeypatch: pytest.MonkeyPatch, single: Told, double: Told) -> compared.Difference:
+def differ(monkeypatch: pytest.MonkeyPatch, single: Run, double: Run) -> compared.Difference:
     monkeypatch.setattr(compared, "package", lambda: type("P", (), {"run": staticmethod(lambda *_: single)}))
     monkeypatch.setattr(compared.double_precision, "run", lambda *_: double)
     monkeypatch.setattr(compared, "to_package", lambda images: None)
@@ -51,11 +51,11 @@ def differ(monkeypatch: pytest.MonkeyPatch, single: Told, double: Told) -> compa
     return difference(Images(nothing, nothing, nothing, nothing, nothing, nothing), {})
 
 
-def test_differences_are_told_in_sigmas_of_the_double_precision(monkeypatch: pytest.MonkeyPatch) -> None:
-    single, double = told(), told()
+def test_differences_are_in_sigmas_of_the_double_precision(monkeypatch: pytest.MonkeyPatch) -> None:
+    single, double = run_of(), run_of()
     single.estimates["x0_m"][3] += 0.5
     single.estimates["orientation_deg"][2] = -169.0
-    double.estimates["orientation_deg"][2] = 10.0  # one degree off, as undirected lines
+    double.estimates["orientation_deg"][2] = 10.0  # one degree apart, as undirected lines
     single.estimates["sigma"]["width_m"][1] = 2.2
     found = differ(monkeypatch, single, double)
     assert [most(found.sigmas[name]) for name in ("x0_m", "orientation_deg", "z0_m")] == [0.25, 0.5, 0.0]
@@ -66,8 +66,8 @@ def test_differences_are_told_in_sigmas_of_the_double_precision(monkeypatch: pyt
 
 
 @pytest.mark.parametrize("name", ["nis", "suspect", *DECISIONS])
-def test_what_follows_another_decision_is_told_apart(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    single, double = told(), told()
+def test_images_after_another_decision_are_counted_separately(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    single, double = run_of(), run_of()
     single.estimates["x0_m"][4] += 1.0
     if name == "suspect":
         double.estimates[name][2:] = True
@@ -91,14 +91,15 @@ def test_scenes_lie_within_the_ranges_of_the_header() -> None:
                 assert np.isfinite(images.position_ned_m).all()
                 assert np.abs(images.position_ned_m).max() <= 1e6
                 assert np.abs(images.pixel_px).max() <= 1e5
-                assert package().Settings.from_names(settings) is not None  # nothing out of its range
+                assert package().Settings.from_names(settings) is not None  # all values are in range
     named = {r.name: r for r in WHOLE.ranges}
     assert named["north_m"].at(1.0) == pytest.approx(1e6)
     assert named["aside"].at(0.25) == pytest.approx(-0.25)
 
 
 def test_the_search_climbs() -> None:
-    """It ends with worse scenes than as many at random, and the worse a domain the farther it leads."""
+    """The search ends with worse scenes than as many random ones. The worse a domain is, the farther the search
+    moves."""
     case = CASES[0]
     random = Found(case, NEAR)
     rng = np.random.default_rng(7)
@@ -113,16 +114,16 @@ def test_the_search_climbs() -> None:
 
 def test_near_the_origin_rounding_is_far_below_a_sigma() -> None:
     """[A15]"""
-    found = [search(case, NEAR, TRIES) for case in CASES if case.method == "refined"]
+    found = [search(case, NEAR, TRIES) for case in CASES if case.method == "filter"]
     assert sum(one.tracks for one in found) > 0.8 * TRIES * len(found)
     for name in QUANTITIES:
-        assert 0.0 < max(one.worst[name].sigmas for one in found) <= GOALS[(NEAR.name, "refined")]
+        assert 0.0 < max(one.worst[name].sigmas for one in found) <= GOALS[(NEAR.name, "filter")]
     table = list(rows([*found, search(CASES[-1], NEAR, 3)]))
     assert all(row.met is not False for row in table)
-    assert "x0_m, refined, near domain" in rounding.report(found) + table[0].what
+    assert "x0_m, filter, near domain" in rounding.report(found) + table[0].what
 
 
-def test_a_bound_that_does_not_hold_is_missed() -> None:
+def test_an_exceeded_bound_is_missed() -> None:
     """[A15]"""
     found = [Found(case, domain) for case in CASES for domain in DOMAINS]
     for one in found:
@@ -132,9 +133,9 @@ def test_a_bound_that_does_not_hold_is_missed() -> None:
     assert any("at most" in row.goal for row in table)
 
 
-def test_a_run_of_the_part_tells_every_domain(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_run_of_the_part_reports_every_domain(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(rounding.TRIED, False, 2)
-    for jobs in (1, 2):  # what comes back from another process is a copy
+    for jobs in (1, 2):  # another process returns a copy
         result = rounding.run(Amount(False, jobs))
         assert all(domain.words in result.report for domain in DOMAINS)
         assert all(any(f"{domain.name} domain" in row.what for row in result.rows) for domain in DOMAINS)

@@ -1,4 +1,4 @@
-"""The evidence of the worst case: its rows, and that lines do not change the code."""
+"""The evidence of the worst case: its rows, and that line markers do not change the code."""
 
 from __future__ import annotations
 
@@ -21,9 +21,7 @@ from ci.evidence.worst_case import call_rows, report, table_rows
     ("measured", "proved", "stated", "met"),
     [(8, 9, 10, True), (10, 10, 10, True), (9, 8, 10, False), (8, 11, 10, False)],
 )
-def test_a_call_is_measured_below_what_is_proved_and_that_below_what_is_stated(
-    measured: int, proved: int, stated: int, met: bool
-) -> None:
+def test_measured_is_below_proved_is_below_stated(measured: int, proved: int, stated: int, met: bool) -> None:
     figures = {"instructions: goe_update: max": measured}
     limits = {"instructions proved: goe_update": stated, **{f"stack bytes computed: {name}": 64 for name in PUBLIC}}
     figures |= {f"stack bytes computed: {name}": 64 for name in PUBLIC}
@@ -35,7 +33,7 @@ def test_a_call_is_measured_below_what_is_proved_and_that_below_what_is_stated(
     assert [row.met for row in call_rows(figures, {}, limits)].count(False) == 1
 
 
-def test_what_contradicts_the_table_is_missed() -> None:
+def test_a_contradiction_of_the_table_is_missed() -> None:
     row = Row(3, "loop", "f", "for (;;) {", "", "2", "entry", "for a test")
     trips = [Trips("f", 0x100, row, turns, 2) for turns in (0, 2, 3)]
     assert [r.met for r in table_rows(trips[:2], [], [])] == [True] * 4

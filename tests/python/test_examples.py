@@ -1,4 +1,4 @@
-"""The examples compile by the lines of their page, and print what it says."""
+"""The examples compile with the commands of their page, and print the output that it shows."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The cost of the flight layer's calls: what is made of the tools' output."""
+"""The cost of the flight layer's calls: evaluation of the tools' output."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def test_a_row_for_each_call() -> None:
     assert len(text.splitlines()) == 2 + len(PUBLIC)
 
 
-def test_more_than_the_manual_states_is_told() -> None:
+def test_more_than_the_manual_states_is_reported() -> None:
     limits = stated(HEADER.read_text(encoding="utf-8"))
     assert list(limits) == list(PUBLIC)
     within = {name: Spread(1, 2.0, limit) for name, limit in limits.items()}

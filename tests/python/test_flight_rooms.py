@@ -1,4 +1,5 @@
-"""The files of port/flight: includes go one way, as its README draws them; of lib/ they know the public header."""
+"""The files of port/flight: includes go one way, as its README draws them; of lib/ they include only the public
+header."""
 
 from __future__ import annotations
 
@@ -8,7 +9,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 LAYER = ROOT / "port" / "flight"
 
-# From the ground up; a file includes its own header and what lies on a lower floor.
+# From the ground up. A file includes its own header and headers of lower floors.
 FLOORS = [
     {"goe_flight.h", "goe_flight_settings_list"},
     {"goe_flight_maths"},
@@ -23,7 +24,7 @@ FLOORS = [
 
 
 def floor(file: str) -> int:
-    """Of a file; the public header lies at the bottom, the chain of the same name on top."""
+    """The floor of a file. The public header is at the bottom, the chain of the same name at the top."""
     names = {file, file.rsplit(".", 1)[0]}
     return next(number for number, files in enumerate(FLOORS) if names & files)
 
@@ -60,7 +61,7 @@ def test_an_arrow_upwards_is_noticed() -> None:
 def test_the_settings_list_has_every_setting_with_the_manual_s_range_and_default() -> None:
     manual = (LAYER / "goe_flight.h").read_text(encoding="utf-8")
     block = manual[: manual.index("} goe_flight_settings_t;")].rsplit("typedef struct {", 1)[1]
-    told = {
+    drawn = {
         name: tuple(float(number) for number in numbers)
         for name, *numbers in re.findall(
             r"float (\w+);\s*/\*(?:(?!\*/).)*?([\d.e-]+) (?:to|or)\s+([\d.e-]+);\s*([\d.e-]+) \*/", block, re.DOTALL
@@ -75,4 +76,4 @@ def test_the_settings_list_has_every_setting_with_the_manual_s_range_and_default
         )
     }
     assert list(listed) == re.findall(r"float (\w+);", block)
-    assert told == listed
+    assert drawn == listed

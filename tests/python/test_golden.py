@@ -1,4 +1,4 @@
-"""The C tests' reference data: what is committed is what the program makes, and a change is found."""
+"""The reference data of the C tests: the committed files are those of the generator, and a change is detected."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Other people's builds: a plain configure of a fresh copy, and what cmake --install puts where."""
+"""Builds by other projects: a plain configure of a fresh copy, and the files that cmake --install writes."""
 
 from __future__ import annotations
 
@@ -22,7 +22,8 @@ def run(*command: object, **options: object) -> str:
 
 
 def test_a_plain_configure_needs_nothing(tmp_path: Path) -> None:
-    """Without Unity the tests are left out, and it says so; asked for outright, their absence is an error."""
+    """Without Unity a plain configure leaves the tests out, with a message. If they are requested, their absence is an
+    error."""
     copy = tmp_path / "goe"
     copy.mkdir()
     for name in ("lib", "port", "sim_host", "tests"):
@@ -33,7 +34,9 @@ def test_a_plain_configure_needs_nothing(tmp_path: Path) -> None:
     said = run("cmake", "-S", copy, "-B", tmp_path / "build", without)
     assert "The tests are left out: no Unity test framework. tools/setup.sh installs" in said
     done = subprocess.run(
-        ["cmake", "-S", copy, "-B", tmp_path / "asked", without, "-DGOE_BUILD_TESTS=ON"], capture_output=True, text=True
+        ["cmake", "-S", copy, "-B", tmp_path / "requested", without, "-DGOE_BUILD_TESTS=ON"],
+        capture_output=True,
+        text=True,
     )
     assert done.returncode != 0 and "The Unity test framework is not here" in done.stderr
 

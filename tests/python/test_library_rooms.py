@@ -1,4 +1,4 @@
-"""The rooms of lib/: includes go one way, down the floors, and never in a circle."""
+"""The folders of lib/: includes go one way, down the floors, and never in a circle."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import pytest
 
 LIBRARY = Path(__file__).resolve().parents[2] / "lib"
 
-# Floors, from the ground up. A file may include what lies in its own room or on a lower floor, nothing else: rooms on
-# the same floor do not know each other. "" is lib/ itself, where the contract lies at the bottom and the chain on top.
+# Floors, from the ground up. A file may include files of its own folder and of lower floors only; folders on the same
+# floor must not include each other. "" is lib/ itself, with the contract at the bottom and the chain at the top.
 FLOORS = [
     {"contract"},
     {"maths"},
@@ -24,8 +24,8 @@ CONTRACT = {"goe.h", "goe_state.h", "goe_settings_list.h"}
 COVARIANCE = {"goe_guard.h", "goe_guard.c", "goe_latest.h", "goe_covariance.h", "goe_covariance.c"}
 
 
-def room(file: str) -> str:
-    """The room of a file, given by its path in lib/."""
+def folder_of(file: str) -> str:
+    """The folder of a file, given by its path in lib/."""
     folder, _, name = file.rpartition("/")
     if folder:
         return folder
@@ -33,11 +33,11 @@ def room(file: str) -> str:
 
 
 def floor(file: str) -> int:
-    return next(number for number, rooms in enumerate(FLOORS) if room(file) in rooms)
+    return next(number for number, folders in enumerate(FLOORS) if folder_of(file) in folders)
 
 
 def sources(library: Path) -> dict[str, set[str]]:
-    """Each file of the library with the files that it includes, as paths in lib/."""
+    """The include graph: each file of the library with the files that it includes, as paths in lib/."""
     files = {path.relative_to(library).as_posix(): path for path in sorted(library.rglob("*.[ch]"))}
     graph: dict[str, set[str]] = {}
     for name, path in files.items():
@@ -49,12 +49,12 @@ def sources(library: Path) -> dict[str, set[str]]:
 
 
 def upward(graph: dict[str, set[str]]) -> list[str]:
-    """Includes that go to a higher floor, or to another room of the same one."""
+    """Includes that go to a higher floor, or to another folder of the same floor."""
     return [
         f"{name} -> {target}"
         for name, targets in graph.items()
         for target in sorted(targets)
-        if room(target) != room(name) and floor(target) >= floor(name)
+        if folder_of(target) != folder_of(name) and floor(target) >= floor(name)
     ]
 
 
@@ -87,9 +87,9 @@ def graph() -> dict[str, set[str]]:
     return sources(LIBRARY)
 
 
-def test_every_file_has_a_room(graph: dict[str, set[str]]) -> None:
-    rooms = set().union(*FLOORS)
-    assert {name for name in graph if room(name) not in rooms} == set()
+def test_every_file_has_a_floor(graph: dict[str, set[str]]) -> None:
+    folders = set().union(*FLOORS)
+    assert {name for name in graph if folder_of(name) not in folders} == set()
 
 
 def test_includes_go_down(graph: dict[str, set[str]]) -> None:

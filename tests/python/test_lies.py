@@ -1,4 +1,5 @@
-"""The search for lies: its simulator against independent properties, its judge against planted lies, the command."""
+"""The search for wrong answers with small sigmas ("lies"): its simulator against independent properties, its judge
+against planted lies, the command."""
 
 from __future__ import annotations
 
@@ -58,12 +59,12 @@ def params(mix: int, count: int, seed: int = 1, **changes: float) -> Params:
 
 
 def quiet(mix: int, count: int, seed: int = 1, **changes: float) -> Params:
-    """Neither noise nor mishaps."""
+    """Neither noise nor faults."""
     return params(mix, count, seed, **dict.fromkeys(QUIET, 0.0), **NO_MISHAPS, **changes)
 
 
 def solids(count: int, rng: np.random.Generator) -> Solid:
-    """Around the origin, where the camera is, but not over it."""
+    """Solids around the origin, where the camera is, but not over it."""
     angle, away = rng.uniform(0, 2 * np.pi, count), rng.uniform(25.0, 80.0, count)
     is_round = rng.random(count) < 0.4
     half = rng.uniform(1.0, 12.0, (count, 2))
@@ -74,7 +75,7 @@ def solids(count: int, rng: np.random.Generator) -> Solid:
 
 
 def views(solid: Solid, rng: np.random.Generator, lens: bool) -> optics.View:
-    """Cameras that look about towards the middle, rolled and pitched."""
+    """Cameras that look roughly towards the middle, rolled and pitched."""
     count = len(solid.round)
     yaw = np.arctan2(solid.center[:, 1], solid.center[:, 0]) + rng.uniform(-0.2, 0.2, count)
     angles = [yaw, rng.uniform(-0.4, 0.1, count), rng.uniform(-0.5, 0.5, count)]
@@ -98,9 +99,9 @@ def test_a_point_lies_where_hand_calculation_puts_it() -> None:
     pixels, ahead = optics.project(level, np.array([[[100.0, 10.0, 5.0], [-100.0, 10.0, 5.0]]]))
     assert ahead.tolist() == [[True, False]]
     np.testing.assert_allclose(pixels[0, 0], [740.0, 525.0])
-    left = optics.mounted(np.array([-90.0]), np.zeros(1), np.zeros(1))[0]  # a camera that looks left
+    left = optics.mounted(np.array([-90.0]), np.zeros(1), np.zeros(1))[0]  # the camera looks left
     np.testing.assert_allclose(left @ [0.0, -1.0, 0.0], [0.0, 0.0, 1.0], atol=1e-12)
-    up = optics.mounted(np.zeros(1), np.array([30.0]), np.zeros(1))[0]  # positive pitch: up
+    up = optics.mounted(np.zeros(1), np.array([30.0]), np.zeros(1))[0]  # positive pitch is up
     np.testing.assert_allclose(up @ [np.cos(np.pi / 6), 0.0, -0.5], [0.0, 0.0, 1.0], atol=1e-12)
     tilted = optics.mounted(np.zeros(1), np.zeros(1), np.array([90.0]))[0]  # its right is the body's down
     np.testing.assert_allclose(tilted @ [0.0, 0.0, 1.0], [1.0, 0.0, 0.0], atol=1e-12)
@@ -118,7 +119,7 @@ def test_a_quaternion_turns_as_its_rotation_and_its_error_is_about_body_axes() -
     rng = np.random.default_rng(RNG_SEED)
     angles, small = rng.uniform(-1.2, 1.2, (50, 3)), rng.normal(0.0, 1e-4, (50, 3))
     w, x, y, z = world.quaternion(angles, small).T
-    turned = np.stack([  # of a quaternion, as textbooks have it
+    turned = np.stack([  # the quaternion's textbook formula
         np.stack([1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)], 1),
         np.stack([2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)], 1),
         np.stack([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)], 1),
@@ -205,11 +206,11 @@ def test_a_closest_approach_is_that_of_many_small_steps() -> None:
         moved.center = -(start[i] + velocity[i] * times[:, None])
         away = np.maximum(moved.distance(), 0.0)
         if found.time_s[i] < 29.0:
-            assert found.miss_m[i] == pytest.approx(away.min(), abs=0.02)
+            assert found.dcpa_m[i] == pytest.approx(away.min(), abs=0.02)
             first = times[np.argmax(away <= away.min() + 1e-6)]
             slow = np.hypot(*velocity[i]) < 1.0
             assert slow or away[np.searchsorted(times, found.time_s[i])] == pytest.approx(away.min(), abs=0.05)
-            assert found.miss_m[i] > 0.0 or found.time_s[i] == pytest.approx(first, abs=0.01)
+            assert found.dcpa_m[i] > 0.0 or found.time_s[i] == pytest.approx(first, abs=0.01)
             inside = times[away <= 0.0]
             if len(inside) and inside[-1] < 29.0:
                 assert found.leaves_s[i] == pytest.approx(inside[-1], abs=0.01)
@@ -231,7 +232,7 @@ def test_the_library_finds_cylinders_without_noise() -> None:
 
 @pytest.fixture(scope="module")
 def honest() -> Flown:
-    """Answers that are the truth, with sigmas, of collision courses with cuboids."""
+    """Answers equal to the truth, with sigmas, for collision courses with cuboids."""
     p = quiet(
         BASE,
         40,
@@ -250,14 +251,14 @@ def honest() -> Flown:
 
 
 def truthful(flown: world.World) -> answers.Answers:
-    """What an estimator without error would say: made of the truth by goe.h."""
+    """Answers of an error-free estimator, computed from the truth by the definitions of goe.h."""
     n = len(flown.flight)
     found = answers.Answers(
         np.zeros(n, np.int32), np.zeros(n, goe.ESTIMATE), np.zeros((n, answers.RULES), np.int32),
         np.zeros((n, answers.RULES), goe.HAZARD),
     )  # fmt: skip
     e, own = found.estimates, flown.solid.take(flown.flight)
-    e["method"], e["model"], e["valid"], e["fresh"], e["points"] = 2, 4, 0x3F, True, np.arange(n) + 1
+    e["method"], e["model"], e["valid"], e["fresh"], e["images_used"] = 2, 4, 0x3F, True, np.arange(n) + 1
     heading = np.degrees(own.heading)
     e["trajectory_heading_deg"] = heading - 20.0
     side, ahead = np.radians(heading), np.radians(heading - 20.0)
@@ -275,9 +276,9 @@ def truthful(flown: world.World) -> answers.Answers:
         e["sigma"][name] = 0.5
     h, numbers = found.hazards, answers.rule_numbers(flown.p)[flown.flight]
     met = search.judge.meet(flown, np.arange(n), np.zeros((n, answers.RULES)))
-    h["miss_m"], h["clearance_m"], h["time_s"], h["has_clearance"] = met.miss_m, met.clearance_m, met.time_s, True
-    h["miss_sd_m"], h["clearance_sd_m"], h["time_sd_s"] = 0.5, 0.5, 0.1
-    h["violation"] = (met.miss_m < numbers[..., 0]) & (met.clearance_m < numbers[..., 1])
+    h["dcpa_m"], h["clearance_m"], h["tcpa_s"], h["has_clearance"] = met.dcpa_m, met.clearance_m, met.time_s, True
+    h["dcpa_sd_m"], h["clearance_sd_m"], h["tcpa_sd_s"] = 0.5, 0.5, 0.1
+    h["conflict_probability"] = (met.dcpa_m < numbers[..., 0]) & (met.clearance_m < numbers[..., 1])
     return found
 
 
@@ -329,7 +330,7 @@ def test_a_planted_error_is_found(honest: Flown, field: str, column: str) -> Non
     assert not shift(6.5, suspect=True).any() and not shift(6.5, method=1).any()
 
 
-@pytest.mark.parametrize(("field", "column", "sd"), [("miss_m", "miss", 0.5), ("clearance_m", "clearance", 0.5)])
+@pytest.mark.parametrize(("field", "column", "sd"), [("dcpa_m", "miss", 0.5), ("clearance_m", "clearance", 0.5)])
 def test_a_planted_error_of_a_hazard_is_found(honest: Flown, field: str, column: str, sd: float) -> None:
     def change(found: answers.Answers) -> None:
         found.hazards[field] += 7.0 * sd
@@ -340,7 +341,7 @@ def test_a_planted_error_of_a_hazard_is_found(honest: Flown, field: str, column:
 def test_false_safety_is_found_and_doubt_counted_apart(honest: Flown) -> None:
     def safe(**more: float) -> Flown:
         def change(found: answers.Answers) -> None:
-            found.hazards["violation"] = 0.009
+            found.hazards["conflict_probability"] = 0.009
             for name, value in more.items():
                 found.estimates[name] = value
 
@@ -353,16 +354,16 @@ def test_false_safety_is_found_and_doubt_counted_apart(honest: Flown) -> None:
 
 
 def one_image(honest: Flown, change: Callable[[answers.Answers, int], None]) -> tuple[Flown, int]:
-    """Changed in the fifth image of a flight that warned before."""
+    """The fifth image of a flight that warned before is changed."""
     flown = honest.world
-    warns = honest.judged.violated[:, 0] & (honest.found.hazards["violation"][:, 0] > 0.5)
+    warns = honest.judged.violated[:, 0] & (honest.found.hazards["conflict_probability"][:, 0] > 0.5)
     k = next(int(s) + 5 for s in flown.start[:-1] if warns[s + 4 : s + 6].all() and flown.detected[s + 4 : s + 6].all())
     return judged(honest, lambda found: change(found, k)), k
 
 
 def test_a_warning_that_vanishes_is_found_with_its_cause(honest: Flown) -> None:
     def quietly(found: answers.Answers, k: int) -> None:
-        found.hazards["violation"][k] = 0.04
+        found.hazards["conflict_probability"][k] = 0.04
 
     def held(found: answers.Answers, k: int) -> None:
         quietly(found, k)
@@ -373,7 +374,7 @@ def test_a_warning_that_vanishes_is_found_with_its_cause(honest: Flown) -> None:
 
     def restarted(found: answers.Answers, k: int) -> None:
         quietly(found, k)
-        found.estimates["points"][k] = 1
+        found.estimates["images_used"][k] = 1
 
     for change, cause in (
         (quietly, "other"),
@@ -402,7 +403,7 @@ def test_an_unknown_reset_may_end_the_track_and_not_the_truth(honest: Flown) -> 
     flown.world.unknown = np.arange(len(flown.world.flight)) == k - 1
     taken = find(flown.world, flown.found, judge(flown.world, flown.found))
     assert CAUSES[taken.cause[k, 0]] == "other"
-    flown.world.refused = flown.world.unknown  # the next image shows the counter
+    flown.world.refused = flown.world.unknown  # the next image carries the counter
     refused = find(flown.world, flown.found, judge(flown.world, flown.found))
     assert CAUSES[refused.cause[k, 0]] == "unknown reset"
 
@@ -411,7 +412,7 @@ def test_an_unknown_reset_may_end_the_track_and_not_the_truth(honest: Flown) -> 
 
 
 def lying(flown: world.World) -> answers.Answers:
-    """The library, and from the eighth image of a flight on x is 30 m wrong and well known."""
+    """The library, but from the eighth image of a flight on x is wrong by 30 m with a small sigma."""
     found = TRUE_FLY(flown)
     late = np.arange(len(flown.flight)) - flown.start[flown.flight] >= 7
     found.estimates["valid"] |= np.where(late, 1, 0).astype(np.uint32)
@@ -425,7 +426,7 @@ TRUE_FLY = answers.fly
 
 
 def image_of(frame: Frame) -> goe.Image:
-    """What goe_replay makes of a row."""
+    """The image that goe_replay makes of a row."""
     pose = goe.Pose(
         frame.time_us or 0, frame.position_m, frame.height_m, frame.attitude, frame.reset_count, frame.reset_delta_m
     )
@@ -452,7 +453,7 @@ def test_shrinking_keeps_the_find_and_leaves_the_rest_out(monkeypatch: pytest.Mo
 def test_a_find_is_the_same_log(tmp_path: Path) -> None:
     p = params(BOXES, 1, seed=9, reset_kind=3, two_cameras=0, refused=0, unknown=0, pre_turn=0)
     flown = world.fly(p)
-    small = shrink.rounder(flown, Want(KINDS[0], "x"))  # is no find: stays as it is
+    small = shrink.rounder(flown, Want(KINDS[0], "x"))  # no find: left as it is
     found = answers.fly(small)
     found.estimates["valid"][:] = 1
     lie = search.look_at(small, found)
@@ -498,29 +499,29 @@ KNOWN = {row["find"]: row for row in csv.DictReader((LIES / "known.csv").read_te
 
 
 def replayed(folder: Path, found: dict[str, Any]) -> list[tuple[goe.Estimate, goe.Hazard | None]]:
-    """The answer to each image of a log, by the options and the plan of its find.json."""
+    """The answer to each image of a log, with the options and the plan of its find.json."""
     log = read_log(folder)
     words = found["replay"].split()
     named = dict(word.split("=") for word in words if not word.startswith("--") and "=" in word)
     model = next((word.partition("=")[2] for word in words if word.startswith("--model=")), "auto")
     options = Options(model=model, settings={name: float(value) for name, value in named.items()})
-    estimator, plan = goe.Estimator(goe.Settings.from_names(settings_of(log, options))), goe.Plan(**found["plan"])
+    estimator, plan = goe.Estimator(goe.Settings.from_names(settings_of(log, options))), goe.Intent(**found["plan"])
     return [(estimator.update(image_of(frame)), estimator.decide(plan)[1]) for frame in log.frames]
 
 
 @pytest.mark.parametrize("folder", sorted(LIES.glob("*/")), ids=lambda folder: str(folder.name))
 def test_a_recorded_find_is_cured_or_listed(folder: Path) -> None:
-    """A find that is cured leaves known.csv; its log stays."""
+    """A find that is cured is removed from known.csv; its log stays."""
     found = json.loads((folder / "find.json").read_text(encoding="utf-8"))
     answered, k = replayed(folder, found), found["image"]
     (estimate, now), (_, before) = answered[k], answered[k - 1]
-    figure = "no answer" if now is None else f"{now.violation:.3g}"
+    figure = "no answer" if now is None else f"{now.conflict_probability:.3g}"
     if found["kind"] == "vanished":
-        warned = before is not None and before.violation >= WARNS_LEAST
-        lie = warned and (now is None or now.violation < GONE_MOST)
+        warned = before is not None and before.conflict_probability >= WARNS_LEAST
+        lie = warned and (now is None or now.conflict_probability < GONE_MOST)
     else:
         trusted = not estimate.suspect and estimate.age_s <= FRESH_MOST_S
-        lie = now is not None and now.violation < SAFE_MOST and trusted
+        lie = now is not None and now.conflict_probability < SAFE_MOST and trusted
     assert lie == (folder.name in KNOWN), f"now {figure}"
     if lie:
         recorded = KNOWN[folder.name]["figure"]
@@ -555,7 +556,7 @@ def test_finds_are_written_as_logs(
 ) -> None:
     monkeypatch.setattr(answers, "fly", lying)
     monkeypatch.setattr(command, "LOGS_MOST", 2)
-    monkeypatch.setattr(command, "shrink", lambda p, _: world.fly(p))  # another test's
+    monkeypatch.setattr(command, "shrink", lambda p, _: world.fly(p))  # of another test
     for module in (search, evolve):
         monkeypatch.setattr(module, "BATCH", 30)
     monkeypatch.setattr(evolve, "PER_MIX", 30)

@@ -1,4 +1,4 @@
-"""Opens the live page (port/wasm) in headless Chromium: the hash is right, sliders and keys do as told, it fits."""
+"""Opens the live page (port/wasm) in headless Chromium: the hash is right, sliders and keys work, the layout fits."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def built() -> modules.Modules:
 
 @pytest.fixture(scope="module")
 def live(built: modules.Modules, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The page, as its command writes it."""
+    """The page as its command writes it."""
     file = tmp_path_factory.mktemp("live") / "live.html"
     assert main(["live", "--out", str(file)]) == 0
     return file
@@ -41,7 +41,7 @@ def live(built: modules.Modules, tmp_path_factory: pytest.TempPathFactory) -> Pa
 
 @pytest.fixture(scope="module")
 def shots(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Where screenshots go: GOE_SCREENSHOTS, or a folder that pytest removes."""
+    """Folder for screenshots: GOE_SCREENSHOTS, or one that pytest removes."""
     given = os.environ.get("GOE_SCREENSHOTS")
     folder = Path(given) if given else tmp_path_factory.mktemp("shots")
     folder.mkdir(parents=True, exist_ok=True)
@@ -57,11 +57,11 @@ def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
 
 
 def open_page(browser: Any, file: Path, fragment: str, size: tuple[int, int] = WIDE, scheme: str = "light") -> None:
-    """Waits until the page has proved its module, or failed to."""
+    """Waits until the page has verified its module, or failed to."""
     from selenium.webdriver.support.ui import WebDriverWait
 
     browser.get("about:blank")
-    browser.get_log("performance"), browser.get_log("browser")  # what came before is not this page's
+    browser.get_log("performance"), browser.get_log("browser")  # drops entries of the previous page
     browser.execute_cdp_cmd(
         "Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": scheme}]}
     )
@@ -72,7 +72,7 @@ def open_page(browser: Any, file: Path, fragment: str, size: tuple[int, int] = W
 
 
 def state(browser: Any) -> dict[str, Any]:
-    """What the page shows: proof, decision, and each quantity with its one sigma; None where it is not known."""
+    """The displayed proof and decision, and each quantity with its 1-sigma uncertainty; None if unknown."""
     read = (
         "const of = id => document.getElementById(id), d = of('order').dataset, s = {};"
         "for (const id of ['ahead', 'side', 'width', 'height']) { const v = of(id + '-value').dataset;"
@@ -86,7 +86,7 @@ def state(browser: Any) -> dict[str, Any]:
 
 
 def drag(browser: Any, control: str, value: float) -> dict[str, Any]:
-    """Moves a slider, or chooses; what the page shows then."""
+    """Moves a slider, or selects a choice. Returns the displayed state after that."""
     browser.execute_script(
         "const [name, value] = arguments; const all = [...document.querySelectorAll(`[data-control=${name}]`)];"
         "const one = all.length > 1 ? all.find(e => e.value === String(value)) : all[0];"
@@ -175,12 +175,12 @@ def test_noise_widens_the_band(browser: Any, live: Path) -> None:
         assert noisy["suspect"] == calm["suspect"] == ""
 
 
-def test_untold_noise_is_suspect(browser: Any, live: Path) -> None:
+def test_unconfigured_noise_is_suspect(browser: Any, live: Path) -> None:
     open_page(browser, live, "t=12&pixel_px=6&detector=0")
     assert state(browser)["doubts"] == ""
-    untold = drag(browser, "knows", 0)
-    assert untold["suspect"] in ("noise", "late", "convention")
-    assert untold["doubts"].startswith("Suspect: ")
+    unconfigured = drag(browser, "knows", 0)
+    assert unconfigured["suspect"] in ("noise", "late", "convention")
+    assert unconfigured["doubts"].startswith("Suspect: ")
 
 
 def test_a_high_altimeter_makes_things_large(browser: Any, live: Path) -> None:
@@ -191,7 +191,7 @@ def test_a_high_altimeter_makes_things_large(browser: Any, live: Path) -> None:
 
 
 def test_roll_turns_the_box_but_not_the_estimate(browser: Any, live: Path) -> None:
-    """A box about a rolled mast is wider than the mast; the estimate is not."""
+    """A box around a rolled mast is wider than the mast; the estimate is not."""
     open_page(browser, live, "t=13.6&kind=2&detector=0&roll_deg=0&pixel_px=0.5")
     level = state(browser)
     rolled = drag(browser, "roll_deg", 25)
@@ -209,8 +209,8 @@ def test_obstacle_and_side(browser: Any, live: Path) -> None:
     drag(browser, "kind", 0)
     left, ahead, right = (drag(browser, "side_m", side) for side in (-40, 0, 40))
     assert left["side"][0] == pytest.approx(-40.0, abs=3.0) and right["side"][0] == pytest.approx(40.0, abs=3.0)
-    assert left["order"] == right["order"] == "clear" and "beside it" in left["line"]
-    assert ahead["order"] == "go-around" and "through it" in ahead["line"]
+    assert left["order"] == right["order"] == "clear" and "to the side" in left["line"]
+    assert ahead["order"] == "go-around" and "through the obstacle" in ahead["line"]
 
 
 def test_the_region_shrinks_on_the_truth(browser: Any, live: Path) -> None:
@@ -259,6 +259,47 @@ def test_focused_controls_keep_their_keys(browser: Any, live: Path) -> None:
     assert "Play" in state(browser)["play"]
 
 
+def test_it_says_why_there_is_no_estimate_yet(browser: Any, live: Path) -> None:
+    open_page(browser, live, "t=0")
+    shown = state(browser)
+    assert shown["order"] == "nothing" and shown["ahead"] is None
+    head, first = browser.execute_script(
+        "return [document.getElementById('order-head').textContent,"
+        " document.getElementById('order-line').textContent.match(/First estimate in ([\\d.]+) s/)]"
+    )
+    assert head == "Collecting images" and "One image contains no range" in shown["line"]
+    open_page(browser, live, f"t={first[1]}")
+    assert state(browser)["ahead"] is not None
+
+
+def test_reduced_motion_shows_an_estimate_and_stands_still(browser: Any, live: Path) -> None:
+    from selenium.webdriver.support.ui import WebDriverWait
+
+    features = [{"name": "prefers-reduced-motion", "value": "reduce"}]
+    browser.get("about:blank")
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": features})
+    browser.get(live.as_uri())
+    wait = WebDriverWait(browser, chromium.HANG_S, poll_frequency=0.02)
+    wait.until(lambda b: b.execute_script("return document.documentElement.dataset.ready"))
+    first = state(browser)
+    assert first["ahead"] is not None and "Play" in first["play"]
+    chromium.step_time(browser, 0.45)
+    assert state(browser)["at"] == first["at"]
+
+
+def test_controls_speak_plainly(browser: Any, live: Path) -> None:
+    open_page(browser, live, "t=5")
+    says = "return document.getElementById(`${arguments[0]}-says`).textContent"
+    for name, values in {
+        "height_offset_m": {0: "none", 3: "reads 3 m too high", -8: "reads 8 m too low"},
+        "roll_deg": {0: "none", 20: "20° each way"},
+        "side_m": {0: "on the course", -40: "40 m left of the course"},
+    }.items():
+        for value, text in values.items():
+            drag(browser, name, value)
+            assert browser.execute_script(says, name) == text
+
+
 def test_it_plays_by_itself(browser: Any, live: Path) -> None:
     open_page(browser, live, "")
     chromium.step_time(browser, 0.45)
@@ -266,13 +307,13 @@ def test_it_plays_by_itself(browser: Any, live: Path) -> None:
 
 
 @pytest.mark.parametrize("spoiled", ["constant", "logs", "code"])
-def test_a_wrong_byte_is_told(browser: Any, built: modules.Modules, tmp_path: Path, spoiled: str) -> None:
-    """A bit of degrees per radian; a bit of the logs; a library that is no WebAssembly any more."""
+def test_a_wrong_byte_is_reported(browser: Any, built: modules.Modules, tmp_path: Path, spoiled: str) -> None:
+    """A wrong bit of degrees per radian; a wrong bit of the logs; a library that is no valid WebAssembly."""
     if spoiled == "constant":
         constant = struct.pack("<f", 57.2957795)
         wrong = replace(built, goe=built.goe.replace(constant, bytes([constant[0] ^ 1]) + constant[1:]))
     elif spoiled == "logs":
-        at = built.golden.index(struct.pack("<fff", 120.0, -75.0, -25.0))  # the first image's position
+        at = built.golden.index(struct.pack("<fff", 120.0, -75.0, -25.0))  # position of the first image
         wrong = replace(built, golden=built.golden[:at] + bytes([built.golden[at] ^ 1]) + built.golden[at + 1 :])
     else:
         wrong = replace(built, goe=b"\1" + built.goe[1:])

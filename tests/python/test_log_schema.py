@@ -1,5 +1,5 @@
-"""The log format: what its schemas allow is read by the programs and by Python, what they do not allow is refused by
-both with file, line and column; and the page that describes it says the same."""
+"""The log format. The programs and Python read logs that the schemas allow, and refuse other logs with file, line and
+column. The page that describes the format agrees."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ FRAMES, TRUTH, CAMERA = (
 )
 PAGE = (FOLDER / "README.md").read_text(encoding="utf-8")
 BIG = 2**63
-Table = dict[str, str]  # column: the field of the one row
+Table = dict[str, str]  # column: its field in the one row
 
 GOOD = {"number": ("1.5", "-2", "+3e-2", ".5", "nan", "-inf", "1e400"), "integer": ("0", "1")}
 BAD = {
@@ -72,7 +72,7 @@ def allowed(schema: dict) -> Iterator[tuple[str, Table]]:
 
 
 def forbidden(schema: dict) -> Iterator[tuple[int, str, Table]]:
-    """(line, column, log) that the schema does not allow."""
+    """(line, column, log) for logs that the schema forbids."""
     table = whole(schema)
     for f in fields(schema):
         name, constraints = f["name"], f.get("constraints", {})
@@ -97,7 +97,7 @@ def forbidden(schema: dict) -> Iterator[tuple[int, str, Table]]:
 
 @pytest.fixture(scope="module")
 def replay() -> Callable[[Path], str]:
-    """Runs goe_replay over a folder and tells its error; empty if the log was read."""
+    """Runs goe_replay over a folder and returns its error; empty if it read the log."""
     program = Path(os.environ.get("GOE_REPLAY", ROOT / "build" / "sim_host" / "goe_replay"))
     if not program.is_file():
         pytest.skip(f"{program} is not built")
@@ -161,8 +161,8 @@ def test_a_field_too_many_or_too_few(tmp_path: Path, replay: Callable[[Path], st
 
 
 def test_a_last_row_that_may_be_cut_off(tmp_path: Path, replay: Callable[[Path], str]) -> None:
-    """869.5 must not be read as 86: without a line break at its end no row is known to be whole, also after blank lines
-    and with quotes; and no other byte than LF ends a row, so that both readers count the same lines."""
+    """869.5 must not be read as 86. Without a line break at its end a row may be incomplete, also after blank lines and
+    with quotes. Only LF ends a row, so both readers count the same lines."""
     camera_file(tmp_path, CAMERA_LINES)
     table = plain(FRAMES)
     path = write(tmp_path / "frames.csv", table)
@@ -192,8 +192,8 @@ def test_a_last_row_that_may_be_cut_off(tmp_path: Path, replay: Callable[[Path],
         read_truth(truth)
 
 
-def test_what_is_out_of_range_is_read_and_its_image_refused(tmp_path: Path, replay: Callable[[Path], str]) -> None:
-    """The library's own word: the status of the row."""
+def test_a_row_out_of_range_is_read_and_its_image_refused(tmp_path: Path, replay: Callable[[Path], str]) -> None:
+    """The library decides: the status of the row is out of range."""
     program = Path(os.environ.get("GOE_REPLAY", ROOT / "build" / "sim_host" / "goe_replay"))
     camera_file(tmp_path, CAMERA_LINES)
     level = plain(FRAMES) | {"qw": "1", "qx": "0", "qy": "0", "qz": "0", "agl_m": "1"}
@@ -214,7 +214,7 @@ def test_what_is_out_of_range_is_read_and_its_image_refused(tmp_path: Path, repl
             beyond = end + math.copysign(max(abs(end), 1.0) * 1e-3, end)
             table = level | (box if name in box else pair) | {name: repr(float(beyond))}
             assert status(table) in refused, (name, beyond)
-            if name != "t_s" and not name.startswith("q"):  # of these the ends are beyond, too
+            if name != "t_s" and not name.startswith("q"):  # the ends of these are beyond, too
                 assert status(table | {name: repr(float(end))}) not in refused, (name, end)
 
 
@@ -233,13 +233,13 @@ def test_truth(tmp_path: Path) -> None:
 
 
 def number_of(key: str) -> dict:
-    """The numbers that a key takes."""
-    asked = CAMERA["properties"][key]
-    return next((one for one in asked.get("anyOf", ()) if "minimum" in one), asked)
+    """The numbers that a key accepts."""
+    entry = CAMERA["properties"][key]
+    return next((one for one in entry.get("anyOf", ()) if "minimum" in one), entry)
 
 
 def second(key: str) -> list[str]:
-    """What a key of the second camera needs beside it."""
+    """Keys that the second camera needs together with this one."""
     return [f"{name} = 100" for name in CAMERA["dependentRequired"].get(key, ())]
 
 
@@ -264,15 +264,15 @@ def test_cameras_that_the_schema_forbids_are_refused(tmp_path: Path, replay: Cal
         path = camera_file(tmp_path, lines)
         with pytest.raises(LogError) as error:
             read_cameras(path)
-        where = f":{line}" if line else ""  # what is missing has no line of its own; the programs name the last one
+        where = f":{line}" if line else ""  # a missing key has no line of its own; the programs name the last line
         assert str(error.value).startswith(f"{path}{where}: {key}: ")
         assert re.match(re.escape(str(path)) + (f":{line}" if line else r":\d+") + f": {key}: ", replay(tmp_path))
 
     for key in CAMERA["properties"]:
         rest = [line for line in CAMERA_LINES if not line.startswith(f"{key} ")] + second(key)
         at = len(rest) + 1
-        asked = number_of(key)
-        low, high = (asked[end] for end in ("minimum", "maximum"))
+        entry = number_of(key)
+        low, high = (entry[end] for end in ("minimum", "maximum"))
         for value in ("wide", "", f"{low - 1e-3 * max(abs(low), 1):g}", f"{high + 1e-3 * high:g}", "nan", "inf"):
             refuse([*rest, f"{key} = {value}"], key, at)
         refuse([*rest, f"{key} = 1", f"{key} = 1"], key, at + 1)
@@ -289,8 +289,8 @@ def test_cameras_that_the_schema_forbids_are_refused(tmp_path: Path, replay: Cal
 
 def test_the_camera_has_the_ranges_of_the_readers_and_of_the_library(replay: Callable[[Path], str]) -> None:
     program = Path(os.environ.get("GOE_REPLAY", ROOT / "build" / "sim_host" / "goe_replay"))
-    told = subprocess.run([str(program), "--settings"], capture_output=True, text=True, check=True).stdout
-    listed = {line.split("\t")[0]: [float(x) for x in line.split("\t")[2:4]] for line in told.splitlines()}
+    output = subprocess.run([str(program), "--settings"], capture_output=True, text=True, check=True).stdout
+    listed = {line.split("\t")[0]: [float(x) for x in line.split("\t")[2:4]] for line in output.splitlines()}
     index = dict(zip("xyz", "012"))
     for key in CAMERA["properties"]:
         owner, _, name = key.partition(".")
@@ -317,15 +317,15 @@ def test_the_page_has_every_column_and_key() -> None:
                 assert [float(x) for x in cells[2].split(" to ")] == f["range"]
             assert cells[-1] == f.get("empty", "not allowed")
             assert (cells[-1] == "not allowed") == bool(f.get("constraints", {}).get("required"))
-    for key, asked in CAMERA["properties"].items():
+    for key, entry in CAMERA["properties"].items():
         if key.startswith("camera2."):
             first = CAMERA["properties"][key.replace("camera2.", "camera.")]
-            assert asked == first
+            assert entry == first
             continue
         ((unit, text, span, default),) = rows[f"`{key}`"]
-        assert (unit, text) == (asked["unit"], asked["description"])
+        assert (unit, text) == (entry["unit"], entry["description"])
         assert [float(x) for x in span.split(" to ")] == [number_of(key)["minimum"], number_of(key)["maximum"]]
-        assert default == ("required" if key in CAMERA["required"] else str(asked["default"]))
+        assert default == ("required" if key in CAMERA["required"] else str(entry["default"]))
 
 
 def test_the_log_on_the_page(tmp_path: Path, replay: Callable[[Path], str]) -> None:

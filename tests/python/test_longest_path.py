@@ -16,7 +16,7 @@ from ci.cost.longest.machine_code import Function, functions_below
 from ci.cost.longest.source_lines import Place, places_of
 from ci.cost.longest.whole_numbers import Program, proved, solve
 
-# 3 + 4 n instructions, of which a call of leaf() each turn; n turns, tested at the end.
+# 3 + 4 n instructions for n turns, tested at the end; each turn calls leaf().
 LOOP = """
 00000100 <root>:
  100:\tpush\t{r4, lr}
@@ -82,7 +82,7 @@ def test_blocks_of_conditional_returns_and_tail_calls() -> None:
         ("nop", "nothing follows 100"),
     ],
 )
-def test_what_cannot_be_followed_is_refused(line: str, reason: str) -> None:
+def test_jumps_that_cannot_be_followed_are_refused(line: str, reason: str) -> None:
     text = f"00000100 <root>:\n 100:\t{line}\n\n00000200 <leaf>:\n 200:\tnop\n 202:\tbx\tlr\n"
     with pytest.raises(LedgerError, match=reason):
         functions(text)
@@ -138,7 +138,7 @@ def graph(edges: dict[int, list[int]]) -> Function:
 
 def test_loops_lie_within_each_other() -> None:
     found = loops_of(graph({0x0: [], 0x10: [0x40], 0x20: [0x20], 0x30: [0x10], 0x40: []} | {0x0: [0x10]}))
-    assert not found  # nothing leads from one to the next but the jumps
+    assert not found  # only the jumps lead from one to the next
     text = """
 00000100 <root>:
  100:\tmovs\tr1, #3
@@ -175,7 +175,7 @@ def test_a_second_way_into_a_loop_is_an_entry() -> None:
 
 
 def test_a_loop_turns_as_often_as_the_table_lets_it() -> None:
-    leaf = 3 + 2 + 3  # the longer way, with tail()
+    leaf = 3 + 2 + 3  # the longer path, with tail()
     for turns in (1, 5):
         assert most_of(code_of(LOOP, loop_row(str(turns)))) == 3 + turns * (4 + leaf)
     with pytest.raises(LedgerError, match="a loop at 104 without a bound"):
@@ -201,7 +201,7 @@ def test_a_loop_whose_line_counts_needs_no_table(tmp_path: Path) -> None:
     assert most_of(code) == 3 + 5 * (4 + 8)
 
 
-def test_statements_join_what_lies_in_different_functions() -> None:
+def test_statements_join_blocks_of_different_functions() -> None:
     text = """
 00000100 <root>:
  100:\tcbz\tr0, 106 <root+0x6>
@@ -257,7 +257,7 @@ def test_a_bound_may_depend_on_who_calls(tmp_path: Path) -> None:
 
 
 def program() -> Program:
-    """x1 + x2 <= 3, x1 <= 2, most of 2 x1 + x2."""
+    """Maximizes 2 x1 + x2 for x1 + x2 <= 3, x1 <= 2."""
     made = Program()
     made.variable()
     made.variable(2)
@@ -280,7 +280,7 @@ def test_multipliers_that_prove_nothing_are_refused(factors: tuple[int, int]) ->
         proved(program(), [], [Fraction(factor) for factor in factors])
 
 
-def test_what_has_no_end_or_no_way_is_told() -> None:
+def test_a_problem_without_bound_or_solution_is_reported() -> None:
     endless = program()
     endless.at_most = []
     with pytest.raises(LedgerError, match="is unbounded"):
@@ -339,17 +339,17 @@ def test_places_are_read_innermost_first() -> None:
 
 
 class Machine(Build):
-    """Counts what is asked for as if the loop had turned six times."""
+    """Counts the given addresses as if the loop had turned six times."""
 
     def image(self, kind: str) -> Path:
         return self.tree / kind
 
     def run_image(self, image: Path, *options: str) -> str:
-        asked = dict(word.split("=", 1) for word in options[1].split(",")[1:])
-        events = Path(asked["map"]).read_text(encoding="utf-8").splitlines()
+        given = dict(word.split("=", 1) for word in options[1].split(",")[1:])
+        events = Path(given["map"]).read_text(encoding="utf-8").splitlines()
         assert "count 104 0" in events
         assert "reset 102 0" in events
-        Path(asked["out"]).write_text("6\n", encoding="utf-8")
+        Path(given["out"]).write_text("6\n", encoding="utf-8")
         return ""
 
 
@@ -364,8 +364,8 @@ def test_a_bound_that_the_logs_exceed_is_found(
     assert len(trip_counts.exceeded(trips)) == wrong
 
 
-def test_what_excludes_each_other_is_counted_together() -> None:
-    """Each statement by every call that it names; times may be negative; a block that was put in place counts alone."""
+def test_blocks_that_exclude_each_other_are_counted_together() -> None:
+    """Each statement applies to every call that it names. Times may be negative. An inlined block counts alone."""
     place = (Place("tail", "", 1), Place("leaf", "", 1))
     rows = [
         Row(4, "most", "all", "root > leaf | -2 =leaf > tail", "", "1", "", "for a test"),

@@ -1,4 +1,4 @@
-"""Blocks of pages that commands write: what is around them stays."""
+"""Blocks of pages that commands write: the text around them stays."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from goe_tools.logs.marked_block import MarkedBlock
 BLOCK = MarkedBlock("figures")
 
 
-def test_only_what_is_between_the_marks_changes(tmp_path: Path) -> None:
+def test_only_the_text_between_the_marks_changes(tmp_path: Path) -> None:
     page = tmp_path / "page.md"
     page.write_text(f"before\n{BLOCK.begin}\nold\n{BLOCK.end}\nbehind\n", encoding="utf-8")
     BLOCK.write(page, "new\n")

@@ -1,4 +1,5 @@
-"""port/mavlink against pymavlink: what mavgen makes of goe.xml and of the standard messages is what the codec packs."""
+"""port/mavlink against pymavlink: the code that mavgen makes of goe.xml and the standard messages packs the same bytes
+as the codec."""
 
 from __future__ import annotations
 
@@ -48,15 +49,15 @@ NEWER = """<?xml version="1.0"?>
 </mavlink>
 """
 
-# Fields whose name in C is not that of the XML.
+# Fields whose name in C differs from the name in the XML.
 RENAMED = {"ICAO_address": "icao_address"}
 
-# What goe.xml numbers as the headers do: entries by their prefix in the XML, and that in C.
+# Enumerations of goe.xml with the same numbers in the headers: entries by their prefix in the XML, and the prefix in C.
 SAME_NUMBERS = {
-    "GOE_FEATURE_BOX_": ("GOE_MAVLINK_SEES_BOX_", ("LEFT", "TOP", "RIGHT", "BOTTOM")),
+    "GOE_FEATURE_BOX_": ("GOE_MAVLINK_FEATURE_BOX_", ("LEFT", "TOP", "RIGHT", "BOTTOM")),
     "GOE_TIME_BASE_": ("GOE_FLIGHT_", ("AUTOPILOT", "SENDER", "AGE")),
     "GOE_SHAPE_": ("GOE_MODEL_", ("NONE", "DISC", "LINE", "BOX", "PRISM")),
-    "GOE_OBSTACLE_FLAG_": ("GOE_MAVLINK_", ("SUSPECT", "PASSED", "IN_VIEW", "WORST", "LATE", "ORDER")),
+    "GOE_OBSTACLE_FLAG_": ("GOE_MAVLINK_", ("SUSPECT", "RECEDING", "IN_VIEW", "WORST", "LATE", "ORDER")),
     "GOE_ACTION_": ("GOE_FLIGHT_", ("NONE", "LEFT", "RIGHT", "CLIMB", "GO_AROUND", "HOLD")),
     "GOE_ALIVE_": ("GOE_MAVLINK_", ("DETECTOR", "POSE")),
 }
@@ -104,7 +105,7 @@ def load(path: Path) -> ModuleType:
 
 @pytest.fixture(scope="module")
 def definitions(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """goe.xml beside a dialect that includes it: anybody can."""
+    """goe.xml in a folder with a dialect that includes it, as any user can arrange it."""
     folder = tmp_path_factory.mktemp("definitions")
     shutil.copy(LAYER / "goe.xml", folder)
     (folder / "newer.xml").write_text(NEWER, encoding="utf-8")
@@ -119,7 +120,7 @@ def newer(definitions: Path) -> ModuleType:
 
 @pytest.fixture(scope="module")
 def modules(newer: ModuleType) -> dict[str, ModuleType]:
-    """By a message's name, the generated module that has it."""
+    """The generated module of each message, by the message's name."""
     everything = __import__("pymavlink.dialects.v20.all", fromlist=["all"])
     own = {message.msgname for message in newer.mavlink_map.values()}
     return {row.name: newer if row.name in own else everything for row in TABLE}
@@ -178,7 +179,7 @@ def echo(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def value(kind: str, dice: random.Random) -> Any:
-    """Of a field's type: anything; often 0, so that ends are cut, or the largest."""
+    """Any value of a field's type; often 0, which truncates messages, or the largest."""
     if kind == "float":
         return dice.choice([0.0, float("nan"), -0.0, dice.uniform(-1e3, 1e3), 3.4028234663852886e38])
     bits = int(re.sub(r"\D", "", kind))
@@ -187,7 +188,7 @@ def value(kind: str, dice: random.Random) -> Any:
 
 
 def content(cls: Any, dice: random.Random) -> list[Any]:
-    """Of every field, as the constructor takes them."""
+    """Values of every field, as the constructor takes them."""
     values = []
     for name in cls.fieldnames:
         kind = cls.fieldtypes[cls.fieldnames.index(name)]
@@ -226,21 +227,21 @@ def echoed(echo: Path, sent: list[bytes]) -> list[bytes]:
 
 
 @pytest.mark.parametrize("row", TABLE, ids=lambda row: row.name)
-def test_what_python_packs_comes_back_from_c_byte_by_byte(modules: dict[str, ModuleType], echo: Path, row: Row) -> None:
+def test_c_repacks_the_messages_of_python_byte_by_byte(modules: dict[str, ModuleType], echo: Path, row: Row) -> None:
     frames = [sent.frame for sent in sent_by_python(modules, row)]
-    assert len({len(frame) for frame in frames}) > 1  # ends of several lengths were cut
+    assert len({len(frame) for frame in frames}) > 1  # ends of several lengths were truncated
     assert echoed(echo, frames) == frames
 
 
 def single(field: Any) -> Any:
-    """As the wire's 32 bits hold it."""
+    """Rounded to the 32 bits of the wire."""
     if isinstance(field, list):
         return [single(one) for one in field]
     return struct.unpack("<f", struct.pack("<f", field))[0]
 
 
 def bits(field: Any) -> Any:
-    """A NaN is itself."""
+    """The bits of a float, so that a NaN equals itself."""
     if isinstance(field, (list, tuple)):
         return [bits(one) for one in field]
     return struct.pack("<d", field) if isinstance(field, float) else field
@@ -253,18 +254,18 @@ def comparable(field: Any, kind: str) -> Any:
 
 
 @pytest.mark.parametrize("row", TABLE, ids=lambda row: row.name)
-def test_what_c_packs_python_reads(modules: dict[str, ModuleType], echo: Path, row: Row) -> None:
+def test_python_reads_the_messages_that_c_packs(modules: dict[str, ModuleType], echo: Path, row: Row) -> None:
     all_sent = sent_by_python(modules, row)
     reader = modules[row.name].MAVLink(None)
     for sent, frame in zip(all_sent, echoed(echo, [sent.frame for sent in all_sent])):
         (message,) = reader.parse_buffer(frame)
         assert message.get_type() == row.name
         for name, kind in zip(message.fieldnames, message.fieldtypes):
-            read, told = getattr(message, name), getattr(sent.message, name)
-            assert comparable(read, kind) == comparable(told, kind), name
+            read, stated = getattr(message, name), getattr(sent.message, name)
+            assert comparable(read, kind) == comparable(stated, kind), name
 
 
-def test_a_frame_of_nobody_s_is_told_apart(echo: Path) -> None:
+def test_an_unknown_frame_is_recognized_as_such(echo: Path) -> None:
     done = subprocess.run([str(echo)], input="fd\n\nfd0100000001010000000000\n", capture_output=True, text=True)
     assert done.stdout.splitlines() == ["?", "?", "?"]
 
@@ -351,7 +352,7 @@ def numbers() -> str:
         for prefix, (own, names) in SAME_NUMBERS.items()
         for name in names
     ]
-    pairs += [(f"GOE_FEATURE_{name}", f"GOE_MAVLINK_SEES_POINT << {i}") for i, name in enumerate(POINTS)]
+    pairs += [(f"GOE_FEATURE_{name}", f"GOE_MAVLINK_FEATURE_POINT << {i}") for i, name in enumerate(POINTS)]
     return "".join(f"    NUMBER({xml}, {own})\n" for xml, own in pairs)
 
 
@@ -400,16 +401,16 @@ def readme() -> str:
     return (LAYER / "README.md").read_text(encoding="utf-8")
 
 
-def test_the_readme_tells_ids_and_sizes() -> None:
-    told = dict(re.findall(r"^\| `([A-Z_0-9]+)` \| (\d+) \|", readme(), re.MULTILINE))
-    assert {name: int(number) for name, number in told.items()} == {row.name: row.id for row in TABLE}
+def test_the_readme_states_ids_and_sizes() -> None:
+    stated = dict(re.findall(r"^\| `([A-Z_0-9]+)` \| (\d+) \|", readme(), re.MULTILINE))
+    assert {name: int(number) for name, number in stated.items()} == {row.name: row.id for row in TABLE}
     frames = dict(re.findall(r"^\| `(GOE_\w+)` \| \d+ \| ([^|]*) \|", readme(), re.MULTILINE))
     for row in TABLE[:4]:
         wanted = {str(row.length_min + 12), str(row.length + 12)}
         assert set(re.findall(r"\d+", frames[row.name])) == wanted, row.name
 
 
-def test_the_readme_tells_what_the_code_costs() -> None:
+def test_the_readme_states_the_cost_of_the_code() -> None:
     done = subprocess.run([ROOT / "tools" / "sizes.sh", "goe_mavlink"], capture_output=True, text=True, check=True)
     rows = re.findall(r"^\| Cortex-M4F.*\|$", done.stdout, re.MULTILINE)
     versions = set(re.findall(r"\(([\d.]+)\)", "".join(rows)))
@@ -419,8 +420,8 @@ def test_the_readme_tells_what_the_code_costs() -> None:
     assert all(row in readme() for row in rows)
 
 
-def test_the_readme_s_camera_sends_what_c_reads(newer: ModuleType, echo: Path) -> None:
-    """The example as it stands, with a link that keeps what is written."""
+def test_c_reads_the_messages_of_the_readme_s_camera(newer: ModuleType, echo: Path) -> None:
+    """The example runs unchanged, with a link that stores the bytes."""
     (example,) = re.findall(r"^```python\n(.*?)^```$", readme(), re.MULTILINE | re.DOTALL)
     written: list[bytes] = []
 
@@ -444,5 +445,5 @@ def test_the_readme_s_camera_sends_what_c_reads(newer: ModuleType, echo: Path) -
     first, second, empty = (reader.parse_buffer(frame)[0] for frame in written)
     assert (first.number, second.number, empty.number) == (2, 2, 0)
     assert list(first.box) == [-400, -600, 600, 600]
-    assert (first.obstacle_id, first.score, first.time_base, first.seen) == (3, 90, 2, 15)
+    assert (first.obstacle_id, first.score, first.time_base, first.visible) == (3, 90, 2, 15)
     assert first.age_usec >= 35000

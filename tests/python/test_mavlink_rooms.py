@@ -1,4 +1,5 @@
-"""The files of port/mavlink: the codec knows nobody, the mappings the flight layer's public header and maths."""
+"""The files of port/mavlink: the codec includes no other part, the mappings only the flight layer's public header and
+maths."""
 
 from __future__ import annotations
 

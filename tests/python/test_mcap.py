@@ -1,4 +1,4 @@
-"""Logs as MCAP: what mcap's own reader gives back is what the CSV files say."""
+"""Logs as MCAP: mcap's own reader returns the content of the CSV files."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ Messages = dict[str, list[tuple[str, int, dict]]]
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A log of two obstacles, its estimates beside it."""
+    """A log of two obstacles with its estimates in the same folder."""
     program = Path(os.environ.get("GOE_REPLAY") or ROOT / "build" / "sim_host" / "goe_replay")
     if not program.is_file():
         pytest.skip(f"{program} is not built")
@@ -52,7 +52,7 @@ def read(path: Path) -> Messages:
 
 
 def assert_of_schema(value: object, schema: dict, where: str) -> None:
-    """The parts of JSON Schema that are used; no field is without one."""
+    """Checks the parts of JSON Schema in use. Every field must have a schema."""
     kinds = {"number": (int, float), "integer": int, "string": str, "array": list, "object": dict, "boolean": bool}
     assert isinstance(value, kinds[schema["type"]]), where
     if isinstance(value, dict):
@@ -72,8 +72,8 @@ def table(path: Path) -> list[dict[str, str]]:
 def test_it_reads_back_as_the_csv_says(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "log.mcap"
     assert main(["mcap", str(folder), "--out", str(out)]) == 0
-    told, found = capsys.readouterr().out, read(out)
-    assert all(f"{topic}: {len(rows)}\n" in told for topic, rows in found.items())
+    printed, found = capsys.readouterr().out, read(out)
+    assert all(f"{topic}: {len(rows)}\n" in printed for topic, rows in found.items())
     for name, topic in (("estimates.csv", "estimate"), ("frames.csv", "observation")):
         for key in ("1", "2"):
             rows = [row for row in table(folder / name) if row["id"] == key]
@@ -133,7 +133,7 @@ def test_the_scene_has_the_obstacles(folder: Path, tmp_path: Path) -> None:
         if entity["cubes"]:
             boxes += 1
             turn = matrices(np.array([solid[0]["pose"]["orientation"][axis] for axis in "wxyz"]))
-            heading = math.degrees(math.atan2(turn[0, 0], turn[1, 0]))  # of the length, clockwise from north
+            heading = math.degrees(math.atan2(turn[0, 0], turn[1, 0]))  # length axis, clockwise from north
             first = read_log(folder).tracks()[1][0]
             forward = matrices(np.array(first.attitude))[:, 0]
             z_axis = math.degrees(math.atan2(forward[1], forward[0]))
@@ -147,7 +147,7 @@ def test_the_scene_has_the_obstacles(folder: Path, tmp_path: Path) -> None:
 
 
 def test_turns() -> None:
-    assert turned_up((1.0, 0.0, 0.0, 0.0)) == pytest.approx(heading_turn(0.0))  # level, to the north
+    assert turned_up((1.0, 0.0, 0.0, 0.0)) == pytest.approx(heading_turn(0.0))  # level, facing north
     east = (math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5))
     assert np.abs(turned_up(east)) == pytest.approx([1.0, 0.0, 0.0, 0.0])
     assert set(SCHEMAS) == {"foxglove.PoseInFrame", "foxglove.FrameTransform", "foxglove.SceneUpdate"}
@@ -163,7 +163,7 @@ def test_bad_measurements_have_no_pose(folder: Path, tmp_path: Path) -> None:
     assert main(["mcap", str(tmp_path), "--out", str(tmp_path / "log.mcap")]) == 0
     found = read(tmp_path / "log.mcap")
     rows = sum(len(messages) for topic, messages in found.items() if topic.startswith("/observation"))
-    assert rows == len(lines) - 2  # without the header, and the row without a time
+    assert rows == len(lines) - 2  # without the header and the row without a time
     assert any("n_m" not in content for _, _, content in found["/observation/1"])
 
 

@@ -26,7 +26,7 @@ from goe_tools.montecarlo.summary import BAND_RUNS, summaries
 from goe_tools.spread import _client
 from goe_tools.view.answers import Options
 
-HANG_S = 600  # only a guard against what hangs
+HANG_S = 600  # guard against a hang
 AHEAD = """# a building ahead, a mast that the course passes
 [flight]
 speed = 18
@@ -88,7 +88,7 @@ def test_table_page_and_files(scenario: Path, tmp_path: Path, capsys: pytest.Cap
 
 
 def test_the_seed_alone_decides(scenario: Path, tmp_path: Path) -> None:
-    scenario.write_text(AHEAD.replace("speed = 18", "seed = 77\nspeed = 18"))  # the command's seeds go before it
+    scenario.write_text(AHEAD.replace("speed = 18", "seed = 77\nspeed = 18"))  # the command's own seeds take precedence
     for name, words in (("one", ["--jobs", "1"]), ("two", ["--jobs", "2"]), ("other", ["--jobs", "1", "--seed", "3"])):
         assert main(["montecarlo", str(scenario), "--runs", "3", "--out", str(tmp_path / name), *words]) == 0
     for name in ("runs.csv", "summary.json", "montecarlo.html"):
@@ -98,7 +98,7 @@ def test_the_seed_alone_decides(scenario: Path, tmp_path: Path) -> None:
 
 
 def test_on_a_cluster(scenario: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Its workers run elsewhere: they see neither the file nor this folder."""
+    """Workers of a cluster run elsewhere: they can access neither the file nor this folder."""
     distributed, dask = pytest.importorskip("distributed"), pytest.importorskip("dask")
     monkeypatch.setattr("goe_tools.spread.CONNECT_S", HANG_S)
     (tmp_path / "here").mkdir()
@@ -120,7 +120,7 @@ def test_on_a_cluster(scenario: Path, tmp_path: Path, monkeypatch: pytest.Monkey
 
 def test_options_of_the_replay_count(scenario: Path, tmp_path: Path) -> None:
     found = []
-    for words in ([], ["--set", "detector.box_px=30"], ["--margin", "90"]):
+    for words in ([], ["--set", "detector.box_noise_px=30"], ["--margin", "90"]):
         assert main(["montecarlo", str(scenario), "--runs", "2", "--jobs", "1", "--out", str(tmp_path), *words]) == 0
         found.append(rows_of(tmp_path))
     assert float(found[1][1]["z0_sd_m"]) > 1.5 * float(found[0][1]["z0_sd_m"])
@@ -170,7 +170,7 @@ def wait_for(what: Callable[[], bool]) -> None:
         time.sleep(0.05)
 
 
-def test_ctrl_c_keeps_what_is_flown(scenario: Path, tmp_path: Path) -> None:
+def test_ctrl_c_keeps_the_finished_flights(scenario: Path, tmp_path: Path) -> None:
     out, many = tmp_path / "out", 100000
     command = [sys.executable, "-m", "goe_tools", "montecarlo", str(scenario), "--runs", str(many), "--jobs", "1"]
     with subprocess.Popen(
@@ -203,7 +203,7 @@ def test_exact_images_give_small_errors(scenario: Path) -> None:
 
 
 def test_a_cylinder_is_as_wide_from_every_side(scenario: Path) -> None:
-    """From exact boxes its width comes out exactly: 4 m."""
+    """From exact boxes its width is exact: 4 m."""
     mast = fly(scenario_of(AHEAD.replace("boxes", "boxes\nnoise = none")), 1)[1]
     assert abs(mast.error[-1, KEYS.index("width")]) < 0.01
 
@@ -211,7 +211,8 @@ def test_a_cylinder_is_as_wide_from_every_side(scenario: Path) -> None:
 def test_drift_of_the_own_position_is_part_of_the_error(
     scenario: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    """Z and Z0 differ by what the logged position has drifted since the start: read here from the files."""
+    """The errors of Z and Z0 differ by the drift of the logged position since the start. This test reads the drift from
+    the files."""
     logs: list[Path] = []
     simulate = flown._simulate
 
@@ -255,7 +256,8 @@ def test_distance_to_walls() -> None:
     [(0.0, -20.0, 7.5), (19.0, -20.0, 9.0), (21.0, -20.0, math.nan), (0.0, -39.0, 7.5), (0.0, -41.0, math.nan)],
 )  # fmt: skip
 def test_a_violation_is_found_beyond_the_last_image(east_m: float, down_m: float, violated_s: float) -> None:
-    """10 m/s to the north, images until 4 s: the wall is at 90 m, the margin 15 m, the clearance over 30 m 10 m."""
+    """10 m/s to the north, images until 4 s. The wall is at 90 m, the margin is 15 m, the clearance over a height of 30
+    m is 10 m."""
     time_s = np.arange(0.0, 4.1, 0.5)
     path = np.stack([10.0 * time_s, np.full_like(time_s, east_m), np.full_like(time_s, down_m)], -1)
     course = course_of(truth(), time_s, path, 15.0, 10.0)
@@ -267,7 +269,8 @@ def test_a_violation_is_found_beyond_the_last_image(east_m: float, down_m: float
 
 
 def passed(seed: int, violated_s: float = math.nan, warned_s: float = math.nan, ratio: float | None = None) -> Pass:
-    """Gaussian errors with sigma 3, or all of one ratio; no answer in the first two images."""
+    """Judged flights with Gaussian errors of sigma 3, or with one constant ratio; the first two images have no
+    answer."""
     random = np.random.default_rng(seed)
     error = 3.0 * (random.normal(size=(40, len(KEYS))) if ratio is None else np.full((40, len(KEYS)), ratio))
     error[:2] = np.nan

@@ -1,4 +1,5 @@
-"""No test is about the speed of the machine: none asserts what a clock showed; guards against hangs wait long."""
+"""No test depends on the speed of the machine: none asserts the reading of a clock, and guards against hangs wait
+long."""
 
 from __future__ import annotations
 
@@ -16,14 +17,14 @@ USED = {"ru_utime", "ru_stime"}
 GUARD_S = 300  # at least
 
 
-def reads_a_clock(node: ast.AST, told: set[str]) -> bool:
-    """An expression of a clock, or of what one has shown."""
+def reads_a_clock(node: ast.AST, names: set[str]) -> bool:
+    """Whether an expression contains a clock call or a name that holds a clock's reading."""
     for part in ast.walk(node):
         if isinstance(part, ast.Attribute):
             of_module = isinstance(part.value, ast.Name) and part.value.id in MODULES
             if (of_module and part.attr in CLOCKS) or part.attr in USED:
                 return True
-        elif isinstance(part, ast.Name) and part.id in told:
+        elif isinstance(part, ast.Name) and part.id in names:
             return True
     return False
 
@@ -37,27 +38,27 @@ def assigned(node: ast.AST) -> tuple[list[ast.AST], ast.AST | None]:
 
 
 def names_of_times(function: ast.AST) -> set[str]:
-    """Local names that hold what a clock has shown."""
-    told: set[str] = set()
+    """Local names that hold the reading of a clock."""
+    names: set[str] = set()
     before = -1
-    while len(told) != before:
-        before = len(told)
+    while len(names) != before:
+        before = len(names)
         for node in ast.walk(function):
             targets, value = assigned(node)
-            if value is not None and reads_a_clock(value, told):
-                told |= {target.id for target in targets if isinstance(target, ast.Name)}
-    return told
+            if value is not None and reads_a_clock(value, names):
+                names |= {target.id for target in targets if isinstance(target, ast.Name)}
+    return names
 
 
 def timed(text: str) -> Iterator[int]:
-    """Lines of assertions on a clock, and of guards that are short."""
+    """Lines of assertions on a clock, and of guards that are too short."""
     tree = ast.parse(text)
     lines = set()
     for function in ast.walk(tree):
         if isinstance(function, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Module)):
-            told = names_of_times(function) if not isinstance(function, ast.Module) else set()
+            names = names_of_times(function) if not isinstance(function, ast.Module) else set()
             asserts = (node for node in ast.walk(function) if isinstance(node, ast.Assert))
-            lines |= {node.lineno for node in asserts if reads_a_clock(node.test, told)}
+            lines |= {node.lineno for node in asserts if reads_a_clock(node.test, names)}
     for node in ast.walk(tree):
         if isinstance(node, ast.keyword) and node.arg == "timeout" and isinstance(node.value, ast.Constant):
             value = node.value.value
@@ -65,8 +66,8 @@ def timed(text: str) -> Iterator[int]:
     yield from sorted(lines)
 
 
-def test_no_test_asserts_what_a_clock_showed() -> None:
-    """Within a function: a time that another function returns is not known for one."""
+def test_no_test_asserts_the_reading_of_a_clock() -> None:
+    """Within a function only: a time that another function returns is not recognized."""
     paths = sorted(TESTS.rglob("*.py"))
     assert len(paths) > 90
     found = {str(path.relative_to(ROOT)): list(timed(path.read_text(encoding="utf-8"))) for path in paths}

@@ -1,4 +1,4 @@
-"""The settings that logs ask for: found again on simulated logs, and worth something on recorded ones."""
+"""The noise settings that ``noise`` fits to logs: the true ones on simulated logs, useful ones on recorded logs."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ from goe_tools.noise.rows import Effect, Fading, Rows
 
 ROOT = Path(__file__).resolve().parents[2]
 SIM = ROOT / "build" / "sim_host" / "goe_sim"
-TOLD = {  # what the simulator is told, by the library's names
-    "detector.box_px": 0.8, "detector.box_share": 0.03, "navigation.attitude_white_deg": 0.15,
-    "navigation.attitude_bias_deg": 0.6,
+NOISE = {  # the simulator's noise, by the library's names
+    "detector.box_noise_px": 0.8, "detector.box_noise_rel": 0.03, "navigation.attitude_white_sd_deg": 0.15,
+    "navigation.attitude_bias_sd_deg": 0.6,
 }  # fmt: skip
 CLOSE = 0.25
 FLIGHTS = 12
@@ -33,7 +33,7 @@ LEAST, MOST = 88.0, 98.0  # % within two sigma
 
 
 def rows_of(rng: np.random.Generator, truth: dict[str, float], name: str = "x") -> Rows:
-    """Thirty images of two series with white, fading and constant errors, and a slope that nobody knows."""
+    """Thirty images of two series with white, correlated and constant errors, and an unconfigured slope."""
     time_s = np.repeat(np.arange(30) / 8.0, 2)
     series = np.tile([0, 1], 30)
     result = Rows(
@@ -73,7 +73,7 @@ def test_the_information_is_the_spread_of_the_slopes() -> None:
     assert np.abs(np.mean([slope for slope, _ in pairs], 0)).max() < 4.0 * np.sqrt(np.diag(expected).max() / 400)
 
 
-def test_what_is_told_is_found_within_its_sigma_and_what_is_not_is_left() -> None:
+def test_configured_noise_is_found_within_its_sigma_and_other_settings_are_left() -> None:
     rng = np.random.default_rng(3)
     tracks = [rows_of(rng, TRUTH) for _ in range(40)]
     given = {"white": 1.0, "constant": 1.0, "share": 0.1, "time": 0.8}
@@ -100,7 +100,7 @@ def test_outliers_are_left_out() -> None:
 
 @pytest.fixture(scope="module")
 def boxes(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
-    """Masts that are passed by a rolling aircraft."""
+    """Masts that a rolling aircraft passes."""
     if not SIM.is_file():
         pytest.skip(f"{SIM} is not built")
     folder, result = tmp_path_factory.mktemp("boxes"), []
@@ -109,9 +109,11 @@ def boxes(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
         words = [
             SIM, "--obstacle", "cylinder", "--x0", -12 + 3 * (seed % 4), "--yaw-camera", 0, "--reach", 14, "--run", 11,
             "--speed", 17, "--altitude", 20, "--features", "boxes", "--roll-amplitude-deg", 10,
-            "--box-px", TOLD["detector.box_px"], "--box-share", TOLD["detector.box_share"], "--box-correlation", 1.2,
-            "--attitude-noise", TOLD["navigation.attitude_white_deg"],
-            "--attitude-bias", TOLD["navigation.attitude_bias_deg"], "--altimeter-bias", 0.5, "--velocity-bias", 0.05,
+            "--box-px", NOISE["detector.box_noise_px"], "--box-share", NOISE["detector.box_noise_rel"],
+            "--box-correlation", 1.2,
+            "--attitude-noise", NOISE["navigation.attitude_white_sd_deg"],
+            "--attitude-bias", NOISE["navigation.attitude_bias_sd_deg"], "--altimeter-bias", 0.5,
+            "--velocity-bias", 0.05,
             "--position-walk", 0.05, "--seed", seed, "--out", out,
         ]  # fmt: skip
         subprocess.run([str(word) for word in words], check=True, capture_output=True)
@@ -120,13 +122,13 @@ def boxes(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
 
 
 def found(text: str) -> dict[str, float]:
-    """The --set line."""
+    """The --set line of the output."""
     return {name: float(value) for name, value in re.findall(r"--set (\S+)=(\S+)", text)}
 
 
 def assert_close(values: dict[str, float], *names: str) -> None:
     for name in names:
-        assert values[name] == pytest.approx(TOLD[name], rel=CLOSE), name
+        assert values[name] == pytest.approx(NOISE[name], rel=CLOSE), name
 
 
 def test_the_noise_of_boxes_is_found(boxes: list[Path], capsys: pytest.CaptureFixture[str]) -> None:
@@ -134,13 +136,13 @@ def test_the_noise_of_boxes_is_found(boxes: list[Path], capsys: pytest.CaptureFi
     assert main(["noise", *logs, "--without-truth"]) == 0
     text = capsys.readouterr().out
     assert "from the innovations" in text and "within 2 sigma" not in text
-    detector = ("detector.box_px", "detector.box_share", "navigation.attitude_white_deg")
+    detector = ("detector.box_noise_px", "detector.box_noise_rel", "navigation.attitude_white_sd_deg")
     assert_close(found(text), *detector)
     assert set(found(text)) == set(detector)
     assert main(["noise", *logs, "--all"]) == 0
     text = capsys.readouterr().out
     assert "from the errors, as the truth is known" in text
-    assert_close(found(text), *detector, "navigation.attitude_bias_deg")
+    assert_close(found(text), *detector, "navigation.attitude_bias_sd_deg")
     shares = re.search(r"the 12 tracks, as fitted: X0 (\S+) %, Z0 (\S+) %, H (\S+) %", text)
     assert shares is not None and all(float(share) > 80.0 for share in shares.groups())  # twelve tracks
 
@@ -154,7 +156,7 @@ def test_the_line_is_one_that_goe_replay_takes(boxes: list[Path], capsys: pytest
 
 
 def test_the_noise_of_points_is_found(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Exact poses, white pixels: nothing else is told, and the pixels are."""
+    """Exact poses and white pixel noise; the output names only the pixel noise."""
     logs = []
     for seed in range(4):
         scene = Scene(
@@ -166,7 +168,7 @@ def test_the_noise_of_points_is_found(tmp_path: Path, capsys: pytest.CaptureFixt
     assert main(["noise", *logs]) == 0
     text = capsys.readouterr().out
     assert "4 tracks with points" in text
-    assert found(text)["detector.point_px"] == pytest.approx(0.8, rel=0.1)
+    assert found(text)["detector.point_noise_px"] == pytest.approx(0.8, rel=0.1)
     assert main(["noise", *logs, "--without-truth"]) == 2
     assert "points need the truth" in capsys.readouterr().err
 
@@ -175,7 +177,7 @@ def test_the_noise_of_points_is_found(tmp_path: Path, capsys: pytest.CaptureFixt
 
 
 @pytest.mark.parametrize("feed", ["RRC", "YOLO-STRONG-SORT"])
-def test_settings_from_one_half_hold_on_the_other(feed: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_settings_from_one_half_fit_the_other(feed: str, capsys: pytest.CaptureFixture[str]) -> None:
     folders = [folder for folder in kitti_feeds() if folder.name == feed]
     if not folders:
         pytest.skip("KITTI's boxes are not there (GOE_BOXES_DIR)")
@@ -207,9 +209,9 @@ def refused(capsys: pytest.CaptureFixture[str]) -> Callable[..., str]:
 def test_wrong_input(boxes: list[Path], tmp_path: Path, refused: Callable[..., str]) -> None:
     log = str(boxes[0])
     assert f"{tmp_path / 'none'}: no such folder" in refused(str(tmp_path / "none"))
-    assert "is not NAME=VALUE with one of detector.box_px" in refused(log, "--set", "box_px=1")
-    assert "detector.box_px: 'wide' is not a number" in refused(log, "--set", "detector.box_px=wide")
-    assert "detector.box_px: '-1' must be at least 0" in refused(log, "--set", "detector.box_px=-1")
+    assert "is not NAME=VALUE with one of detector.box_noise_px" in refused(log, "--set", "box_noise_px=1")
+    assert "detector.box_noise_px: 'wide' is not a number" in refused(log, "--set", "detector.box_noise_px=wide")
+    assert "detector.box_noise_px: '-1' must be at least 0" in refused(log, "--set", "detector.box_noise_px=-1")
     assert "'100' is not a percentage" in refused(log, "--cover", "100")
     assert "--cover needs boxes and their truth" in refused(log, "--without-truth", "--cover", "95")
     short = replace(read_log(boxes[0]))

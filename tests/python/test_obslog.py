@@ -1,4 +1,4 @@
-"""Observation logs: what is read, what is refused, and that writing adds no noise."""
+"""Observation logs: valid and refused input, and exact writing."""
 
 from __future__ import annotations
 
@@ -135,7 +135,7 @@ def test_columns_in_any_order_and_unknown_ones(tmp_path: Path) -> None:
     assert frame.id == 7
     assert frame.position_m == (1.0, 2.0, -3.0)
     assert frame.attitude == (0.1, 0.2, 0.3, 0.4)
-    assert frame.height_m == 3.0  # no altimeter: -down
+    assert frame.height_m == 3.0  # without an altimeter: -down
     assert frame.left is None
 
 
@@ -146,7 +146,7 @@ def test_empty_fields_are_not_measured(tmp_path: Path) -> None:
     )
     assert (full.height_m, full.left, full.top) == (31.5, (10.0, 20.0), (30.0, 40.0))
     assert (half.height_m, half.left, half.top) == (30.0, None, (30.0, 40.0))
-    assert math.isnan(pose.position_m[0])  # a bad measurement, not bad input
+    assert math.isnan(pose.position_m[0])  # a bad measurement, but valid input
 
 
 def test_boxes_and_resets(tmp_path: Path) -> None:
@@ -244,7 +244,7 @@ def test_truth(tmp_path: Path) -> None:
         read_truth(write(path, header + "\n" + "4,1,1,2,3,4,5,6,7,13\n" * 2))
 
 
-def test_progress_is_for_terminals_and_for_what_takes_long(
+def test_progress_is_for_terminals_and_for_long_tasks(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     clock = [0.0]

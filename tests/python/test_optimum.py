@@ -1,4 +1,4 @@
-"""The bound, the offline fit and the goals: what they rest on is checked by other means than they use."""
+"""The bound, the offline fit and the goals: independent checks of their foundations."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ from goe_tools.models.judge import judge, renamed, renamed_sigma
 
 CORNER = Path(__file__).resolve().parents[1] / "data" / "corner"
 EXACT = Noise(pixel_px=0.0)
-SENSORS = replace(FIELD, outliers=0.0, position_walk_m=0.0)  # all that the model knows, and nothing else
+SENSORS = replace(FIELD, outliers=0.0, position_walk_sd_m=0.0)  # all errors that the model knows, and no other
 
 
 def box_scene(**change: object) -> Scene:
@@ -56,7 +56,7 @@ def disc_scene(x0: float = 25.0) -> Scene:
 
 @pytest.mark.parametrize("scene", [box_scene(), disc_scene()], ids=["box", "disc"])
 def test_exact_points_leave_no_residuals(scene: Scene) -> None:
-    """The simulator projects corners in NED, the model works in T: two ways to the same pixels."""
+    """The simulator projects corners in NED, the model works in T: two derivations of the same pixels."""
     flight = measure(scene, EXACT)
     view, state = model.view_of(flight), model.true_state(flight)
     corners = model.correspond(view, state)
@@ -115,7 +115,7 @@ def test_the_bound_is_linear_in_the_pixel_noise() -> None:
 
 
 def test_twice_the_images_are_worth_the_square_root_of_two() -> None:
-    noise = Noise(pixel_px=0.5, attitude_white_deg=0.05)
+    noise = Noise(pixel_px=0.5, attitude_white_sd_deg=0.05)
     flight = measure(box_scene(), EXACT)
     names = ("time_s", "pixel_px", "seen", "position_ned_m", "attitude", "height_m")
     doubled = replace(flight, **{name: np.repeat(getattr(flight, name), 2, 0) for name in names})
@@ -124,7 +124,7 @@ def test_twice_the_images_are_worth_the_square_root_of_two() -> None:
 
 
 def test_the_bound_of_a_distant_disc_is_that_of_three_numbers() -> None:
-    """Far away a disc's outline is x = (a -+ w/2)/(1 - dZ q): its information can be written down by hand."""
+    """Far away a disc's outline is x = (a -+ w/2)/(1 - dZ q), and its information can be written in closed form."""
     scene = disc_scene(x0=0.0).trimmed(0)
     flight = measure(scene, EXACT).first(80)  # to 120 m before it
     flight.seen[:, TOP] = False
@@ -158,7 +158,7 @@ def test_the_fit_finds_the_truth_without_noise(scene: Scene) -> None:
     start[model.A :] *= [1.02, 0.98, 1.03, 0.98, 1.02, 1.02, 1.0, 1.0]
     if flight.truth.kind == "disc":
         start[[model.SX, model.SZ]] = model.true_state(flight)[[model.SX, model.SZ]]
-    result = fit(flight, replace(SENSORS, pixel_px=20.0), start)  # so little trust that the start has no outliers
+    result = fit(flight, replace(SENSORS, pixel_px=20.0), start)  # so much noise that the start has no outliers
     shown = np.arange(6) if scene.truth.kind == "box" else [0, 1, 3, 5]
     assert np.abs((result.values - flight.truth.values)[shown]).max() < 1e-5
     assert np.abs(result.state[model.NUISANCES]).max() < 1e-6
@@ -201,7 +201,7 @@ def test_a_log_becomes_a_flight() -> None:
     assert (truth.x0_m, truth.z0_m) == (-50.0, 612.0)
     assert truth.orientation_rad == pytest.approx(math.radians(-5.0))
     assert len(flight.time_s) == 121 and flight.seen[:, LEFT].sum() > 100
-    assert flight.top_is_highest  # the scene's: the highest point in the image
+    assert flight.top_is_highest  # from the scene: the highest point in the image
 
 
 def test_the_truth_of_a_log_without_the_simulators_columns(tmp_path: Path) -> None:
@@ -209,8 +209,8 @@ def test_the_truth_of_a_log_without_the_simulators_columns(tmp_path: Path) -> No
         (tmp_path / name).write_text((CORNER / name).read_text())
     lines = (CORNER / "truth.csv").read_text().splitlines()
     (tmp_path / "truth.csv").write_text("\n".join(",".join(line.split(",")[:9]) for line in lines) + "\n")
-    (plain,), (told,) = from_log(tmp_path), from_log(CORNER)
-    assert np.allclose(plain.truth.values, told.truth.values, atol=1e-6)
+    (plain,), (configured,) = from_log(tmp_path), from_log(CORNER)
+    assert np.allclose(plain.truth.values, configured.truth.values, atol=1e-6)
 
 
 def test_the_boxes_of_a_log(tmp_path: Path) -> None:
@@ -242,14 +242,14 @@ def test_commands(command: str, capsys: pytest.CaptureFixture[str]) -> None:
         assert np.abs(np.array(line.split()[4:], float)).max() < 3.0
 
 
-def test_a_log_of_two_cameras_is_told(tmp_path: Path) -> None:
+def test_a_log_of_two_cameras_is_refused(tmp_path: Path) -> None:
     log = read_log(CORNER)
     write_log(tmp_path, replace(log, camera2=log.camera))
     with pytest.raises(LogError, match=r"camera\.ini: camera2: a second camera, a flight has one"):
         from_log(tmp_path)
 
 
-def test_a_log_without_truth_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_log_without_truth_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for name in ("camera.ini", "frames.csv"):
         (tmp_path / name).write_text((CORNER / name).read_text())
     assert main(["bound", str(tmp_path)]) == 2
@@ -282,7 +282,7 @@ def test_names_of_front_and_side_may_be_exchanged() -> None:
     truth = flight.truth.values
     twice = renamed(renamed(truth, 1), -1)
     assert np.allclose(twice, truth, atol=1e-9)
-    other = renamed(truth, 1)  # the camera passes on the right of a box that stands at the left
+    other = renamed(truth, 1)  # the camera passes to the right of a box that is on the left
     error = judge(track_of(np.array([truth, other]), MODEL_BOX), flight)
     assert np.abs(error.error).max() < 1e-9
     assert error.renamed.tolist() == [False, True]
@@ -325,25 +325,26 @@ def test_the_library_over_a_flight(built: None) -> None:
 
 def test_the_size_of_the_image_is_a_setting(built: None) -> None:
     flight = replace(measure(box_scene(), EXACT), image_size_px=(1280.0, 960.0))
-    told = settings_of(flight)
-    assert (told["camera.width_px"], told["camera.height_px"]) == (1280.0, 960.0)
+    configured = settings_of(flight)
+    assert (configured["camera.width_px"], configured["camera.height_px"]) == (1280.0, 960.0)
     with pytest.raises(ValueError, match=r"camera\.height_px"):
         estimate(replace(flight, image_size_px=(1280.0, -1.0)))
 
 
 @pytest.mark.parametrize("double", [False, True])
 def test_the_library_over_two_cameras(built: None, double: bool) -> None:
-    """A second camera like the first is as good as one; one that looks elsewhere is not; none at all is refused."""
+    """A second camera equal to the first changes no bit. A turned one changes the answers to its images. If no second
+    camera is configured, its images are refused."""
     flight = measure(box_scene(), EXACT)
     one = settings_of(flight)
     cameras = np.arange(len(flight.time_s)) >= len(flight.time_s) // 2
     second = {name.replace("camera.", "more_cameras[0]."): one[name] for name in one if name.startswith("camera.")}
     turned = second | {"more_cameras[0].mount_yaw_deg": second["more_cameras[0].mount_yaw_deg"] + 5.0}
-    plain, alike, apart, none = (
+    plain, same, apart, none = (
         estimate(flight, one | settings, double=double, cameras=numbers)
         for settings, numbers in (({}, None), (second, cameras), (turned, cameras), ({}, cameras))
     )
-    assert np.isfinite(plain.values[-1]).any() and np.array_equal(plain.values, alike.values, equal_nan=True)
+    assert np.isfinite(plain.values[-1]).any() and np.array_equal(plain.values, same.values, equal_nan=True)
     assert np.array_equal(plain.values[~cameras], apart.values[~cameras], equal_nan=True)
     assert not np.array_equal(plain.values, apart.values, equal_nan=True)
     assert ((none.status == -11) == cameras).all()  # out of range
@@ -352,8 +353,8 @@ def test_the_library_over_two_cameras(built: None, double: bool) -> None:
 
 
 def boxed(images: int) -> Flight:
-    """Exact boxes, no points, of a disc before a level camera: left and right are tangents, top and bottom touch the
-    roof and the foot where they are nearest along the axis."""
+    """Exact boxes without points of a disc in front of a level camera. Left and right are tangents; top and bottom
+    touch the roof and the foot at their nearest points along the axis."""
     flight = measure(disc_scene(), EXACT).first(images)
     truth, camera = flight.truth, flight.camera
     ahead, radius = truth.z0_m - (flight.position_ned_m - flight.position_ned_m[0])[:, 0], 0.5 * truth.width_m
@@ -372,7 +373,7 @@ def test_the_library_over_boxes_alone(built: None, double: bool) -> None:
     assert flight.box_px is not None
     flight.box_px[5] = np.nan
     track = estimate(flight, double=double)
-    assert track.status[5] == 4  # nothing seen
+    assert track.status[5] == 4  # nothing visible
     assert track.model[-1] == MODEL_PRISM
     error = (track.values[-1] - flight.truth.values)[[0, 1, 3, 5]]
     assert np.abs(error).max() < 0.01
@@ -402,7 +403,7 @@ def test_goals_of_table3(built: None, tmp_path: Path, capsys: pytest.CaptureFixt
     assert not any(row["asked"] for row in rows)  # a quick run has no verdict
 
 
-def test_goals_says_what_it_does_not_know(built: None, capsys: pytest.CaptureFixture[str]) -> None:
+def test_goals_names_an_unknown_group(built: None, capsys: pytest.CaptureFixture[str]) -> None:
     assert bench_main(["goals", "--only", "everything"]) == 2
     assert "everything" in capsys.readouterr().err
 

@@ -1,4 +1,4 @@
-"""Packages for other people's package managers: every manifest says what the library says, and no file is missing."""
+"""Packages for package managers: every manifest agrees with the library, and no file is missing."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ from ci.packages.targets import COMMITTED, CONFIG, TARGETS
 ROOT = Path(__file__).resolve().parents[2]
 FACTS = Facts()
 WORDS = Words('NAME "N" <maintainer@goe.invalid>', "https://goe.invalid/?a=1&b=2")
-HEADINGS = ["From this tree", "Into a project", "Parts", "How it is checked", "What is missing"]
+HEADINGS = ["From this tree", "Into a project", "Parts", "Tests", "Limits"]
 PAGES = ("arduino", "conan", "debian", "esp-idf", "pkgconfig", "platformio", "python", "rust")
 
-# Of Arduino's library specification.
+# From Arduino's library specification.
 ARDUINO_CATEGORIES = (
     "Communication", "Data Processing", "Data Storage", "Device Control", "Display", "Other", "Sensors",
     "Signal Input/Output", "Timing", "Uncategorized",
@@ -37,7 +37,7 @@ ARDUINO_OPTIONAL = ("depends", "dot_a_linkage", "includes", "precompiled", "ldfl
 
 @pytest.fixture(scope="module")
 def staged(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """All targets, with words of a publisher."""
+    """All targets, with the data of a publisher."""
     folder = tmp_path_factory.mktemp("packages") / "out"
     words = ("--maintainer", WORDS.maintainer, "--url", WORDS.url)
     assert main(["packages", "--out", str(folder), *words]) == 0
@@ -56,7 +56,7 @@ def test_the_facts_are_those_of_the_sources() -> None:
     cmake = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
     options = set(re.findall(r"^option\((GOE_WITH_\w+) ", cmake, re.MULTILINE))
     assert {part.define for part in FACTS.parts} == options
-    assert [part.name for part in FACTS.parts] == ["window", "refined", "hazard", "movers"]
+    assert [part.name for part in FACTS.parts] == ["window", "filter", "hazard", "target_motion"]
     assert set(FACTS.sources) == below(ROOT / "lib", ".c") and len(FACTS.sources) > 40
     limits = {limit.define: (limit.low, limit.high, limit.default) for limit in FACTS.limits}
     assert limits == {"GOE_WINDOW_MAX": (3, 64, 8), "GOE_CAMERAS_MAX": (1, 8, 1), "GOE_FLIGHT_SLOTS": (1, 16, 4)}
@@ -69,14 +69,14 @@ def test_manifests_in_the_tree_are_renewed() -> None:
 
 @pytest.fixture
 def small_tree(tmp_path: Path) -> Path:
-    """What --check and --write read."""
+    """The files that --check and --write read."""
     for name in (*COMMITTED, "lib/goe.h", "port/rust/Cargo.toml.j2", "port/python/pyproject.toml.j2"):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(ROOT / name, tmp_path / name)
     return tmp_path
 
 
-def test_write_renews_what_check_refuses(small_tree: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_write_mends_the_manifests_that_check_refuses(small_tree: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     crate, tools = small_tree / "port" / "rust" / "Cargo.toml", small_tree / "tools" / "pyproject.toml"
     crate.write_text("something else")
     tools.write_text(re.sub(r'^version = ".*"$', 'version = "9.9.9"', tools.read_text(), flags=re.MULTILINE))
@@ -90,7 +90,7 @@ def test_write_renews_what_check_refuses(small_tree: Path, monkeypatch: pytest.M
 
 def test_another_version_is_noticed(small_tree: Path) -> None:
     """[GOE_VERSION_MAJOR, GOE_VERSION_MINOR, GOE_VERSION_PATCH]
-    A tree whose goe.h went on and whose manifests did not."""
+    In a tree whose goe.h has a newer version than its manifests."""
     header = small_tree / "lib" / "goe.h"
     header.write_text(header.read_text().replace("#define GOE_VERSION_PATCH 0", "#define GOE_VERSION_PATCH 7"))
     facts = dataclasses.replace(FACTS, root=small_tree)
@@ -132,7 +132,7 @@ def test_words_that_would_break_a_manifest(tmp_path: Path) -> None:
     assert not (tmp_path / "out").exists()
 
 
-# ------------------------------------------------------------------------------------------------------- what is staged
+# --------------------------------------------------------------------------------------------------------- staged files
 
 
 def test_the_read_me_commands_stage_one_target(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -143,7 +143,7 @@ def test_the_read_me_commands_stage_one_target(tmp_path: Path, capsys: pytest.Ca
 
 
 def test_only_sources_are_staged(staged: Path, tmp_path: Path) -> None:
-    """Whatever else lies in the tree: built, cached, left by an editor."""
+    """No other file of the tree is staged: build products, caches, editors' files."""
     root = tmp_path / "root"
     for name in ("lib", "port"):
         shutil.copytree(ROOT / name, root / name, ignore=shutil.ignore_patterns("target", "__pycache__"))
@@ -191,7 +191,7 @@ def test_page_licence_and_words(staged: Path, target: str) -> None:
         for link in re.findall(r"\]\(([^)#]+)\)", page):
             place = (stage / link).resolve()
             assert place.exists() and place.is_relative_to(stage), f"{target}: {link} leads nowhere"
-        assert re.findall(r"^## (.*)$", page, re.MULTILINE) == ["Into a project", "Parts", "What is missing"]
+        assert re.findall(r"^## (.*)$", page, re.MULTILINE) == ["Into a project", "Parts", "Limits"]
         assert "<version>" not in page and not re.search(r"goe_tools|python -m (bench|ci)\b", page)
     texts = [path.read_text() for path in (staged / target).rglob("*") if path.is_file() and path.suffix != ".zip"]
     assert not any("{{ facts" in text or "{%" in text for text in texts)
@@ -200,7 +200,7 @@ def test_page_licence_and_words(staged: Path, target: str) -> None:
 
 @pytest.mark.parametrize("host", PAGES)
 def test_page_of_the_tree(host: str) -> None:
-    """The same headings in the same order, which copy_page() goes by."""
+    """copy_page() relies on the same headings in the same order."""
     page = (ROOT / "port" / host / "README.md").read_text(encoding="utf-8")
     assert re.findall(r"^## (.*)$", page, re.MULTILINE) == HEADINGS
     assert set(OF_THE_TREE) <= set(HEADINGS)
@@ -208,7 +208,7 @@ def test_page_of_the_tree(host: str) -> None:
 
 
 def test_links_out_of_a_package_go(tmp_path: Path) -> None:
-    """Also where by chance something lies at their end."""
+    """Also if by chance a file exists at their target."""
     (tmp_path / "flight").mkdir()
     (tmp_path / "flight" / "README.md").write_text("another page")
     (folder, _) = TARGETS["arduino"](FACTS, WORDS, tmp_path)
@@ -217,7 +217,7 @@ def test_links_out_of_a_package_go(tmp_path: Path) -> None:
 
 
 def test_figures_of_pages_and_manifests() -> None:
-    """The pages' and manifests' own numbers are those of the library's pages."""
+    """The numbers in pages and manifests are those of the library's pages."""
     sizes = re.findall(r"^\| 8 \| (\d{4}) \|$", (ROOT / "lib" / "README.md").read_text(encoding="utf-8"), re.MULTILINE)
     (size,) = map(int, sizes)
     assert f"at most {math.ceil(size / 102.4) / 10} KiB" in FACTS.paragraph
@@ -234,7 +234,7 @@ def test_figures_of_pages_and_manifests() -> None:
 
 
 def test_arduino_properties(staged: Path) -> None:
-    """The rules of the library specification that a manifest can break."""
+    """The rules of the library specification that a manifest can violate."""
     for name in ("goe", "goe_flight"):
         lines = (staged / "arduino" / name / "library.properties").read_text(encoding="ascii").splitlines()
         fields = dict(line.split("=", 1) for line in lines)
@@ -251,7 +251,7 @@ def test_arduino_properties(staged: Path) -> None:
         headers = [staged / "arduino" / name / "src" / header for header in fields["includes"].split(",")]
         assert all(header.is_file() for header in headers)
         assert fields.get("depends") == ({"goe": None, "goe_flight": f"goe (={FACTS.version})"}[name])
-    example = staged / "arduino" / "goe" / "examples" / "Approach" / "Approach.ino"  # folder and sketch: one name
+    example = staged / "arduino" / "goe" / "examples" / "Approach" / "Approach.ino"  # same name for folder and sketch
     assert example.is_file()
 
 
@@ -312,7 +312,7 @@ def test_conan_recipe(staged: Path) -> None:
     assert (recipe["author"], recipe["url"], recipe["topics"]) == (WORDS.maintainer, WORDS.url, FACTS.keywords)
     assert recipe["LIMITS"] == {"window_max": ("GOE_WINDOW_MAX", 3, 64), "cameras_max": ("GOE_CAMERAS_MAX", 1, 8)}
     assert recipe["required_conan_version"] == ">=2.4"
-    assert 'rm_safe("with_movers")' in text and '"cmake_target_name", "goe::all"' in text
+    assert 'rm_safe("with_target_motion")' in text and '"cmake_target_name", "goe::all"' in text
     assert f'    version = "{FACTS.version}"\n' in text and '    license = "MIT"\n' in text
     assert all(f'"with_{part.name}": [True, False]' in text for part in FACTS.parts)
 
@@ -324,7 +324,7 @@ def test_cargo_manifest(staged: Path) -> None:
     assert set(features) == {"default", "flight", *(part.name for part in FACTS.parts)}
     assert sorted(re.findall(r'"(\w+)"', features["default"])) == sorted(set(features) - {"default"})
     assert f"homepage = {json.dumps(WORDS.url)}\n" in text
-    # What is tested is pinned where no dependent sees it.
+    # Tools of the tests are pinned in a place that no dependent reads.
     assert re.findall(r'^cc = "(.*)"$', text, re.MULTILINE) == ["1.1"]
     golden = (ROOT / "port" / "rust" / "golden" / "Cargo.toml").read_text(encoding="utf-8")
     assert re.findall(r'^cc = "(.*)"$', golden, re.MULTILINE)[0].startswith("=1.")

@@ -19,10 +19,10 @@ FACTS = Facts()
 CONSUMER = ROOT / "tests" / "consumer_package" / "main.c"
 STARTS = ROOT / "port" / "conan" / "test_package" / "main.c"  # exits with 0 if header and library agree
 ARM = ("arm-none-eabi-gcc", "-mcpu=cortex-m4", "-mthumb", "-mfpu=fpv4-sp-d16", "-mfloat-abi=hard")
-SECONDS = 1800  # only a guard against what hangs
+SECONDS = 1800  # guard against a hang
 MAINTAINER = "NAME <maintainer@goe.invalid>"
 
-# What Arduino.h brings into a sketch that may collide with a library's names: the project's own words for them.
+# The names from Arduino.h that may collide with a library's, in a minimal header of our own.
 ARDUINO_H = """
 #include <stdint.h>
 #include <stdlib.h>
@@ -85,7 +85,7 @@ def staged(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def compile_all(folder: Path, out: Path, compiler: tuple[str, ...], *flags: str) -> None:
-    """Every source below src, with include paths as those hosts give them, at -O0 to save time."""
+    """Compiles every source below src with the hosts' include paths, at -O0 to save time."""
     out.mkdir()
     sources = sorted((folder / "src").rglob("*.c"))
     assert sources
@@ -108,11 +108,11 @@ def test_arduino_libraries_and_sketch(staged: Path, tmp_path: Path) -> None:
 
 
 def test_arduino_part_left_out_by_the_header(staged: Path, tmp_path: Path) -> None:
-    """As the page says: edit goe_config.h. The sketch sees the same estimator as the library."""
+    """As the page describes: edit goe_config.h. The sketch and the library then have the same estimator."""
     shutil.copytree(staged / "arduino" / "goe", tmp_path / "goe")
     config = tmp_path / "goe" / "src" / "goe_config.h"
     text = config.read_text()
-    for part in ("WINDOW", "MOVERS"):
+    for part in ("WINDOW", "TARGET_MOTION"):
         text = text.replace(f"#define GOE_WITH_{part} 1", f"#define GOE_WITH_{part} 0")
     config.write_text(text)
     compile_all(tmp_path / "goe", tmp_path / "objects", ("cc",))
@@ -122,7 +122,7 @@ def test_arduino_part_left_out_by_the_header(staged: Path, tmp_path: Path) -> No
 
 
 def test_platformio_libraries_and_flags(staged: Path, tmp_path: Path) -> None:
-    """build_flags hold for the project and its libraries. Without the hazard the flight layer is not included."""
+    """build_flags apply to the project and its libraries. Without the hazard the flight layer is not included."""
     flags = ("-DGOE_WITH_HAZARD=0", "-DGOE_WINDOW_MAX=16", "-ffp-contract=off")
     compile_all(staged / "platformio" / "goe", tmp_path / "goe", ("cc",), *flags)
     objects = sorted((tmp_path / "goe").glob("*.o"))
@@ -163,7 +163,7 @@ def build_component(folder: Path, component: Path, consumer: str, config: dict[s
 
 
 def all_on() -> dict[str, str]:
-    """What sdkconfig says by default: limits, and y of what is on."""
+    """The default sdkconfig: limits, and y for every enabled option."""
     parts = {part.define: "y" for part in FACTS.parts}
     return {**parts, "GOE_FLIGHT": "y", **{limit.define: str(limit.default) for limit in FACTS.limits}}
 
@@ -179,8 +179,8 @@ def test_esp_idf_component_and_example(staged: Path, tmp_path: Path) -> None:
 
 
 def test_esp_idf_parts(staged: Path, tmp_path: Path) -> None:
-    """What is off is not in sdkconfig at all."""
-    config = {"GOE_WITH_REFINED": "y", "GOE_WINDOW_MAX": "8", "GOE_CAMERAS_MAX": "1"}
+    """Disabled options are not in sdkconfig at all."""
+    config = {"GOE_WITH_FILTER": "y", "GOE_WINDOW_MAX": "8", "GOE_CAMERAS_MAX": "1"}
     build = build_component(tmp_path / "idf", staged / "esp-idf" / "goe", str(STARTS), config)
     assert ": ok, 2016 bytes," in passed(build / "consumer")
     names = passed("nm", build / "component" / "libcomponent.a")
@@ -195,10 +195,10 @@ def test_esp_idf_kconfig(staged: Path, tmp_path: Path) -> None:
     values = {name: symbols[name].str_value for name in all_on()}
     assert values == all_on()
     assert {s.name for s in config.unique_defined_syms} == set(values)
-    symbols["GOE_WITH_REFINED"].set_value("n")
+    symbols["GOE_WITH_FILTER"].set_value("n")
     symbols["GOE_WITH_WINDOW"].set_value("n")
     assert symbols["GOE_WITH_WINDOW"].str_value == "y", "no method is left"
-    assert symbols["GOE_WITH_MOVERS"].str_value == "n"
+    assert symbols["GOE_WITH_TARGET_MOTION"].str_value == "n"
     symbols["GOE_WITH_HAZARD"].set_value("n")
     assert symbols["GOE_FLIGHT"].str_value == "n"
     symbols["GOE_WINDOW_MAX"].set_value("65")
@@ -210,7 +210,7 @@ def test_esp_idf_kconfig(staged: Path, tmp_path: Path) -> None:
 
 @pytest.fixture(scope="module", params=["whole", "parts"])
 def built(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory, staged: Path) -> tuple[str, Path]:
-    """Built as port/debian/README.md says: the tree; and what Conan gets, which is whole then, without two parts."""
+    """Built as port/debian/README.md describes: the whole tree, and Conan's copy, whole but without two parts."""
     need("cmake", "cc")
     build = tmp_path_factory.mktemp(request.param) / "build-deb"
     page = (ROOT / "port" / "debian" / "README.md").read_text(encoding="utf-8")
@@ -220,7 +220,7 @@ def built(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     more = ["-DCMAKE_BUILD_TYPE=Debug"]
     folder = ROOT
     if request.param == "parts":
-        more += ["-DGOE_WITH_MOVERS=OFF", "-DGOE_WITH_WINDOW=OFF"]
+        more += ["-DGOE_WITH_TARGET_MOTION=OFF", "-DGOE_WITH_WINDOW=OFF"]
         folder = staged / "conan" / "goe"
     passed(*shlex.split(configure.replace("build-deb", str(build))), *more, folder=folder)
     assert not (build / "debian").exists()  # made when it is packed, and only then
@@ -236,7 +236,7 @@ def flags_of(place: Path, package: str, **environment: str) -> list[str]:
 
 
 def consume(prefix: Path, out: Path, source: Path, package: str, **environment: str) -> str:
-    """Builds and runs a consumer by the flags that pkg-config tells of what lies below a folder."""
+    """Builds and runs a consumer with the flags that pkg-config prints for an installation below a folder."""
     need("pkg-config")
     (place,) = {path.parent for path in prefix.rglob("goe*.pc")}
     flags = flags_of(place, package, **environment)
@@ -262,13 +262,13 @@ def test_pkg_config(built: tuple[str, Path], tmp_path: Path) -> None:
 
 
 def need_pkgconf() -> None:
-    """The older pkg-config has its own way with spaces and sysroots."""
+    """The older pkg-config handles spaces and sysroots differently."""
     if "pkgconf" not in passed("pkg-config", "--about"):
         pytest.skip("pkg-config is not pkgconf")
 
 
 def test_pkg_config_of_absolute_folders(tmp_path: Path) -> None:
-    """Configured only: what stands in the file."""
+    """Configured only: reads the generated file."""
     need("cmake", "cc", "pkg-config")
     (tmp_path / "inc").mkdir()
     places = [f"-DCMAKE_INSTALL_{name}={tmp_path / folder}" for name, folder in (("LIBDIR", "lib"), ("PREFIX", "pre"))]
@@ -282,7 +282,7 @@ def test_pkg_config_of_absolute_folders(tmp_path: Path) -> None:
     assert f"-I{tmp_path}/inc" in flags and f"-L{tmp_path}/build/lib/../../lib" in flags
 
 
-# Words of CMake that came after the version that the project asks for.
+# CMake commands that are newer than the version that the project requires.
 NEWER = {
     "COMMAND_ERROR_IS_FATAL": (3, 19), "cmake_path(": (3, 20), "file(COPY_FILE": (3, 21), "ARCHIVE_CREATE": (3, 18),
     "string(JSON": (3, 19), "file(REAL_PATH": (3, 19), "cmake_language(": (3, 18),
@@ -344,7 +344,7 @@ def test_conan_create(staged: Path, tmp_path: Path) -> None:
     need("conan")
     home = str(tmp_path / "home")
     passed("conan", "profile", "detect", CONAN_HOME=home)
-    for create, size in (("conan create .", 2936), ("conan create . -o '&:with_movers=False'", 2368)):
+    for create, size in (("conan create .", 2936), ("conan create . -o '&:with_target_motion=False'", 2368)):
         text = passed("sh", "-c", f"{create} 2>&1", folder=staged / "conan" / "goe", CONAN_HOME=home)
         assert f"goe {FACTS.version}: ok, {size} bytes, self check 0x00, GOE_STATUS" in text
     for wrong in ("window_max=65", "cameras_max=two"):

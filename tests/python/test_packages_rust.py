@@ -16,7 +16,7 @@ BAREMETAL = ROOT / "port" / "baremetal"
 TARGET = "thumbv7em-none-eabihf"
 CORTEX_M4F = ("-mcpu=cortex-m4", "-mthumb", "-mfpu=fpv4-sp-d16", "-mfloat-abi=hard")
 MEMORY = ("ROM_ORIGIN=0", "ROM_LENGTH=0x400000", "RAM_ORIGIN=0x20000000", "RAM_LENGTH=0x400000", "STACK_LENGTH=0x8000")
-SECONDS = 1800  # only a guard against what hangs
+SECONDS = 1800  # guard against a hang
 
 
 def run(
@@ -33,11 +33,11 @@ def run(
 def passed(*words: str | Path, folder: Path = CRATE, target: Path | None = None) -> str:
     done = run(*words, folder=folder, target=target)
     assert done.returncode == 0, f"{words}: {done.stdout}{done.stderr}"
-    return done.stdout + done.stderr  # QEMU writes what an image says to the latter
+    return done.stdout + done.stderr  # QEMU writes the image's output to stderr
 
 
 def names_the_network(text: str) -> bool:
-    """What cargo and its HTTP library say when there is no network."""
+    """The messages of cargo and its HTTP library when there is no network."""
     return bool(
         re.search(r"resolve host|connect to|network (error|failure)|timed? ?out|HTTP re(quest|sponse)", text, re.I)
     )
@@ -45,7 +45,7 @@ def names_the_network(text: str) -> bool:
 
 @pytest.fixture(scope="module")
 def target() -> Path:
-    """Where cargo builds, or why it cannot."""
+    """The folder in which cargo builds, or the reason why it cannot."""
     if not shutil.which("cargo") or not shutil.which("rustc"):
         pytest.skip("no cargo: the Rust crate is not tested")
     version = tuple(int(n) for n in re.findall(r"\d+", passed("rustc", "--version"))[:2])
@@ -73,7 +73,7 @@ def test_the_example_goes_around(target: Path) -> None:
 
 
 def test_only_the_network_is_an_excuse(target: Path, tmp_path: Path) -> None:
-    """A proxy that is not there; and a manifest that is wrong."""
+    """A proxy that does not exist is an excuse; a wrong manifest is not."""
     shutil.copytree(CRATE, tmp_path / "rust", ignore=shutil.ignore_patterns("target", "Cargo.lock"))
     manifest = tmp_path / "rust" / "golden" / "Cargo.toml"
     dead = {"CARGO_HOME": str(tmp_path / "home"), "CARGO_NET_RETRY": "0", "CARGO_HTTP_PROXY": "http://127.0.0.1:9"}
@@ -84,26 +84,26 @@ def test_only_the_network_is_an_excuse(target: Path, tmp_path: Path) -> None:
     assert done.returncode != 0 and not names_the_network(done.stderr), done.stderr
 
 
-@pytest.mark.parametrize("features", ["window", "refined", "window,refined", "movers", "window,flight"])
+@pytest.mark.parametrize("features", ["window", "filter", "window,filter", "target_motion", "window,flight"])
 def test_each_combination_of_parts_compiles(target: Path, features: str) -> None:
     words = ("--offline", "--no-default-features", "--features", features)
     assert "warning" not in passed("cargo", "check", "--all-targets", *words, target=target)
 
 
 def test_parts(target: Path) -> None:
-    words = ("--no-default-features", "--features", "refined,hazard", "--test", "estimator")
+    words = ("--no-default-features", "--features", "filter,hazard", "--test", "estimator")
     assert "test result: ok" in passed("cargo", "test", "--offline", *words, target=target)
 
 
 def test_no_method_is_refused(target: Path) -> None:
     done = run("cargo", "check", "--offline", "--no-default-features", target=target)
-    assert done.returncode != 0 and "one of the features `window` and `refined` is needed" in done.stderr
+    assert done.returncode != 0 and "one of the features `window` and `filter` is needed" in done.stderr
 
 
 def test_another_layout_does_not_compile(target: Path, tmp_path: Path) -> None:
-    """C alone, and both: a field that C has moved, and one that both believe elsewhere."""
+    """A field that only C has; then offsets and constants that are wrong in Rust."""
     text = (CRATE / "src" / "layout.rs").read_text(encoding="utf-8")
-    assert "        misfit: 144," in text
+    assert "        nis_ratio: 144," in text
     header = (ROOT / "lib" / "goe.h").read_text(encoding="utf-8")
     for name in ("lib", "port/rust", "port/flight"):
         shutil.copytree(ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("target"))
@@ -111,21 +111,21 @@ def test_another_layout_does_not_compile(target: Path, tmp_path: Path) -> None:
     assert other != header
     (tmp_path / "lib" / "goe.h").write_text(other, encoding="utf-8")
     done = run("cargo", "check", "--offline", folder=tmp_path / "port" / "rust", target=target)
-    assert done.returncode != 0 and "goe_estimate_t_misfit" in done.stderr
+    assert done.returncode != 0 and "goe_estimate_t_nis_ratio" in done.stderr
     (tmp_path / "lib" / "goe.h").write_text(header, encoding="utf-8")
     changes = (
-        ("layout.rs", "misfit: 144", "misfit: 148", "goe_estimate_t_misfit"),
+        ("layout.rs", "nis_ratio: 144", "nis_ratio: 148", "goe_estimate_t_nis_ratio"),
         ("layout.rs", "sent_us: 8", "sent_us: 12", "goe_flight_frame_t_sent_us"),
         ("ffi.rs", "GOE_NO_EDGE = -5", "GOE_NO_EDGE = -50", "constant_GOE_NO_EDGE"),
         ("ffi.rs", "GOE_FLIGHT_HOLD = 5", "GOE_FLIGHT_HOLD = 4", "constant_GOE_FLIGHT_HOLD"),
     )
-    for name, right, wrong, told in changes:
+    for name, right, wrong, reported in changes:
         text = (CRATE / "src" / name).read_text(encoding="utf-8")
         assert right in text
         changed = tmp_path / "port" / "rust" / "src" / name
         changed.write_text(text.replace(right, wrong), encoding="utf-8")
         done = run("cargo", "check", "--offline", folder=tmp_path / "port" / "rust", target=target)
-        assert done.returncode != 0 and told in done.stderr, done.stderr
+        assert done.returncode != 0 and reported in done.stderr, done.stderr
         changed.write_text(text, encoding="utf-8")
 
 
@@ -138,7 +138,7 @@ def test_style(target: Path) -> None:
 
 
 def need(*programs: str) -> None:
-    """Programs, and Rust for the Cortex-M4F."""
+    """Skips the test without these programs and Rust for the Cortex-M4F."""
     for program in programs:
         if not shutil.which(program):
             pytest.skip(f"no {program}")
@@ -188,7 +188,8 @@ pub extern "C" fn _start() -> ! {
 
 @pytest.mark.parametrize("profile", ["dev", "release"])
 def test_an_image_that_cargo_alone_links(target: Path, tmp_path: Path, profile: str) -> None:
-    """No C library: the optimizer makes sqrtf an instruction, without it compiler_builtins has it."""
+    """Without a C library: the optimizer makes sqrtf an instruction, and unoptimized builds take it from
+    compiler_builtins."""
     need("arm-none-eabi-gcc", "arm-none-eabi-nm")
     (tmp_path / "src").mkdir()
     (tmp_path / "src" / "main.rs").write_text(ALONE_MAIN)

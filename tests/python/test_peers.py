@@ -17,10 +17,10 @@ from bench.peers.measure import Bench
 from bench.peers.others import Others, find_others
 from bench.peers.throughput import KINDS
 
-# Of W, relative: single precision over a window whose normal equations are conditioned like 1e4.
+# Relative error of W: single precision over a window whose normal equations have a condition number of 1e4.
 WINDOW_ERROR_MOST = 1.0e-3
-# Of an update: rounding must not matter beside the noise. TinyEKF, whose covariance in single precision does not reach
-# that, is not held to it: it is not here.
+# Error of an update: rounding must be negligible compared with the noise. TinyEKF's covariance in single precision does
+# not reach this accuracy; it is exempt.
 CHANGE_SIGMAS_MOST = 1.0e-2
 VARIANCE_ERROR_MOST = 1.0e-2  # relative: half of it in sigma
 NIS_ERROR_MOST = 1.0e-2  # relative
@@ -34,7 +34,7 @@ Table = list[Row]
 
 
 def tables(text: str) -> list[Table]:
-    """The Markdown tables of a text. Of columns with one name the second has " (2)" behind it."""
+    """The Markdown tables of a text. A second column of the same name gets the suffix " (2)"."""
     found: list[Table] = []
     head: list[str] | None = None
     for line in text.splitlines():
@@ -77,11 +77,11 @@ def windows(printed: str) -> Table:
 
 @pytest.fixture(scope="module")
 def updates(printed: str) -> list[Table]:
-    """One for each number of rows."""
+    """One update for each number of rows."""
     return tables(printed)[1:-1]
 
 
-# ------------------------------------------------------------------------------------------------------ what is printed
+# ------------------------------------------------------------------------------------------------------- printed tables
 
 
 def test_each_solver_is_printed(windows: Table, updates: list[Table], others: Others) -> None:
@@ -143,15 +143,15 @@ def test_throughput_is_printed(printed: str) -> None:
     assert [row["obstacles"] for row in rows] == ["1", "10"]
     for row in rows:
         window_hz, refined_hz, hazard_hz = (float(row[f"{kind}: updates per second"]) for kind in KINDS)
-        assert_ratio(row["time of refined over window"], window_hz, refined_hz)
-        assert_ratio(row["of refined and hazard over refined"], refined_hz, hazard_hz)
+        assert_ratio(row["time of filter over window"], window_hz, refined_hz)
+        assert_ratio(row["of filter and hazard over filter"], refined_hz, hazard_hz)
 
 
-def assert_ratio(told: str, dividend: float, divisor: float) -> None:
-    """Rounded to two digits behind the point, of what is rounded to whole numbers."""
+def assert_ratio(ratio: str, dividend: float, divisor: float) -> None:
+    """Checks a ratio with two decimals, whose dividend and divisor are rounded to whole numbers."""
     assert dividend > 0.0 and divisor > 0.0
     least, most = (dividend - 0.5) / (divisor + 0.5) - 0.005, (dividend + 0.5) / (divisor - 0.5) + 0.005
-    assert least <= float(told) + 1e-9 and float(told) - 1e-9 <= most
+    assert least <= float(ratio) + 1e-9 and float(ratio) - 1e-9 <= most
 
 
 @emulated
@@ -181,7 +181,7 @@ def test_a_wrong_width_shows() -> None:
 
 
 def random_recorded() -> np.ndarray:
-    """An update as record.c prints it, without a zero."""
+    """A random update in the format of record.c, without a zero."""
     random = np.random.default_rng(20190601)
     root = random.normal(size=(update.STATES, update.STATES)) + 4.0 * np.eye(update.STATES)
     columns = random.normal(size=(update.COLUMNS, update.ROWS))
@@ -210,7 +210,7 @@ def test_a_wrong_update_shows() -> None:
     )
 
 
-def test_each_form_of_a_covariance_tells_the_same() -> None:
+def test_each_form_of_a_covariance_gives_the_same() -> None:
     case = update.case_of(random_recorded()).astype(float)
     root, factors, covariance, _, _ = np.split(case, np.cumsum(update.CASE)[:-1])
     full = covariance.reshape(update.STATES, update.STATES)
@@ -250,7 +250,7 @@ def test_operations_without_a_zero() -> None:
     pivots = (n + t) * (dot + 2 + 4)  # h'h; + r r; root, u, beta's product and division
     nuisances = sum(n + t - j for j in range(t)) * (dot + 1 + 2 * m)  # g; h'c beta; c + g h
     states = sum(n - 1 - j for j in range(n)) * (dot + 2 + 1 + 2 * m + 2)  # the same with r
-    residual = n * (dot + 1 + 2 * m + 1)  # to which the triangle gives nothing, as its right-hand side is 0
+    residual = n * (dot + 1 + 2 * m + 1)  # the triangle adds nothing, because its right-hand side is 0
     solution = n * (n - 1) + n + dot  # back substitution; NIS
     one = update.Update.of_case(update.case_of(random_recorded()))
     operations = Operations()

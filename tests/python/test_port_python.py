@@ -1,4 +1,4 @@
-"""The Python package: what it refuses and how it says so, names of C, whole tracks, threads, pages, the example."""
+"""The Python package: errors and their messages, names of C, whole tracks, threads, pages, the example."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def settings() -> goe.Settings:
 
 
 def approach(images: int = 60, **change: object) -> goe.Images:
-    """Towards a plate of 6 m by 30 m, 30 m to the left: exact boxes."""
+    """An approach to a plate of 6 m by 30 m, 30 m to the left, with exact boxes."""
     k = np.arange(images)
     box = 640.0 + 914.0 * np.array([-33.0, -15.0, -27.0, 15.0]) / (200.0 - 2.0 * k)[:, None]
     columns = {
@@ -51,8 +51,8 @@ def image(k: int, images: goe.Images) -> goe.Image:
 # ------------------------------------------------------------------------------------------------------------- sources
 
 
-def test_what_is_installed_is_made_of_these_sources() -> None:
-    """Not skipped: a test of yesterday's library tells nothing of today's."""
+def test_the_installed_package_is_made_of_these_sources() -> None:
+    """A failure and not a skip, because tests of an outdated library prove nothing."""
     assert library.package() is goe
 
 
@@ -103,7 +103,7 @@ def leaves(group: object, prefix: str = "") -> dict[str, object]:
 
 
 def test_settings_are_those_of_c() -> None:
-    """None is missing, none is of Python's own making, and the defaults are C's."""
+    """The same settings exist in both, with the same defaults."""
     rows = {row.name: row for row in goe.setting_rows()}
     mine = leaves(goe.Settings())
     assert mine.pop("more_cameras") == ()
@@ -117,7 +117,7 @@ def test_settings_are_those_of_c() -> None:
 
 @pytest.mark.parametrize("name", [row.name for row in goe.setting_rows() if row.name != "heading_auto"])
 def test_every_setting_reaches_c_and_its_range_is_c_s(name: str) -> None:
-    """The ends of the range are taken; beyond them the error names field, value and range."""
+    """The ends of the range are accepted; beyond them the error names field, value and range."""
     row = next(row for row in goe.setting_rows() if row.name == name)
     base = {"camera.fx_px": 914.0, "camera.fy_px": 914.0, "heading_auto": 0.0}
     for value in (row.low, row.high):
@@ -139,8 +139,8 @@ def test_every_setting_reaches_c_and_its_range_is_c_s(name: str) -> None:
         (lambda s: setattr(s.camera, "fx_px", 0.0), r"camera\.fx_px = 0: not within 1 to 100000 px; it must be set"),
         (lambda s: setattr(s.window, "points", 8.5), r"window\.points = 8\.5: not a whole number"),
         (lambda s: setattr(s.window, "points", 65), r"window\.points = 65: not within 3 to 64 images"),
-        (lambda s: setattr(s.detector, "box_px", "1"), r"detector\.box_px = '1': not a number"),
-        (lambda s: setattr(s.detector, "box_px", None), r"detector\.box_px = None: not a number"),
+        (lambda s: setattr(s.detector, "box_noise_px", "1"), r"detector\.box_noise_px = '1': not a number"),
+        (lambda s: setattr(s.detector, "box_noise_px", None), r"detector\.box_noise_px = None: not a number"),
         (lambda s: setattr(s.camera, "offset_m", (1.0, 2.0)), r"camera\.offset_m: 2 numbers, not 3"),
         (lambda s: setattr(s, "heading_deg", 361.0), r"heading_deg = 361: not within -360 to 360 deg"),
         (lambda s: setattr(s, "more_cameras", (goe.Camera(1.0, 0.0),)), r"more_cameras\[0\]\.fy_px = 0"),
@@ -159,10 +159,10 @@ def test_a_bad_setting_is_named(change: object, words: str) -> None:
 
 
 def test_a_name_that_is_not_there_is_refused_at_once() -> None:
-    with pytest.raises(AttributeError, match=r"Detector has no setting point_pix; did you mean point_px\?"):
+    with pytest.raises(AttributeError, match=r"Detector has no setting point_pix; did you mean point_noise_px\?"):
         settings().detector.point_pix = 1.0
     with pytest.raises(
-        goe.SettingError, match=r"detector\.pont_px: no such setting; did you mean detector\.point_px\?"
+        goe.SettingError, match=r"detector\.pont_px: no such setting; did you mean detector\.point_noise_px\?"
     ):
         goe.Settings.from_names({"detector.pont_px": 1.0})
     for name in ("more_cameras[7].fx_px", "more_cameras[0].of_nothing", "camera[0].fx_px", "", "more_cameras[0]"):
@@ -170,7 +170,7 @@ def test_a_name_that_is_not_there_is_refused_at_once() -> None:
             goe.Settings.from_names({name: 1.0})
     with pytest.raises(goe.SettingError, match=r"heading_auto = 2: not 0 or 1"):
         goe.Settings.from_names({"heading_auto": 2})
-    with pytest.raises(goe.SettingError, match=r"method = 3: not one of 1 \(window\), 2 \(refined\)"):
+    with pytest.raises(goe.SettingError, match=r"method = 3: not one of 1 \(window\), 2 \(filter\)"):
         goe.Settings.from_names({"method": 3})
 
 
@@ -181,7 +181,7 @@ def test_the_layer_s_settings() -> None:
         goe.Flight(goe.Settings.for_camera(914.0, 914.0, 640.0, 640.0))
 
 
-def test_what_is_sent_to_other_processes() -> None:
+def test_objects_can_be_sent_to_other_processes() -> None:
     given = settings()
     given.more_cameras = (goe.Camera(900.0, 900.0, 640.0, 640.0),)
     assert pickle.loads(pickle.dumps(given)) == given
@@ -201,12 +201,12 @@ def test_what_is_sent_to_other_processes() -> None:
 @pytest.mark.parametrize(
     ("kind", "prefix", "left_out", "file"),
     [
-        (goe.Status, "GOE_", {"BAD_SETTINGS", "BAD_ARGUMENT", "NOT_INITIALISED"}, "lib/goe.h"),
+        (goe.Status, "GOE_", {"BAD_SETTINGS", "BAD_ARGUMENT", "NOT_INITIALIZED"}, "lib/goe.h"),
         (goe.Method, "GOE_METHOD_", set(), "lib/goe.h"),
         (goe.Model, "GOE_MODEL_", {"NONE", "AUTO"}, "lib/goe.h"),
         (goe.Shape, "GOE_MODEL_", {"NONE", "BOX", "PRISM"}, "lib/goe.h"),
         (goe.Reason, "GOE_REASON_", {"NONE"}, "lib/goe.h"),
-        (flight.FlightStatus, "GOE_FLIGHT_", {"BAD_SETTINGS", "BAD_ARGUMENT", "NOT_INITIALISED"},
+        (flight.FlightStatus, "GOE_FLIGHT_", {"BAD_SETTINGS", "BAD_ARGUMENT", "NOT_INITIALIZED"},
          "port/flight/goe_flight.h"),
         (goe.Decision, "GOE_DECISION_", set(), "lib/goe.h"),
         (flight.Action, "GOE_FLIGHT_", set(), "port/flight/goe_flight.h"),
@@ -266,23 +266,26 @@ def test_quantities_and_their_sigmas() -> None:
 
 
 def test_rules_are_plans_that_grow_with_doubt_and_age() -> None:
-    """Against a plan of the same margins; at last nothing is seen, so that the estimate grows old."""
+    """Against an intended velocity with the same margins. At the end no detection comes, and the estimate becomes
+    old."""
     images = approach()
     images.box_px[-20:] = NAN
-    rules = [goe.Rule(15.0, 10.0, doubt=2.0, drift_m_s=3.0, since_image_s=0.2), goe.Rule(5.0, 4.0, 1.0, 0.0)]
+    rules = [
+        goe.Rule(15.0, 10.0, suspect_factor=2.0, stale_growth_m_s=3.0, since_image_s=0.2), goe.Rule(5.0, 4.0, 1.0, 0.0)
+    ]
     track = goe.run(settings(), images, rules=rules)
     estimator = goe.Estimator(settings())
     ages = set()
     for k in range(len(images)):
         estimate = estimator.update(image(k, images))
         for number, rule in enumerate(rules):
-            doubt = rule.doubt if estimate.suspect else 1.0
+            doubt = rule.suspect_factor if estimate.suspect else 1.0
             old_s = np.float32(estimate.age_s) + np.float32(rule.since_image_s)
             margin, clearance = (
-                float(np.float32(doubt * m) + np.float32(rule.drift_m_s) * old_s)
+                float(np.float32(doubt * m) + np.float32(rule.stale_growth_m_s) * old_s)
                 for m in (rule.margin_m, rule.clearance_m)
             )
-            plan = goe.Plan((16.0, 0.0, 0.0), margin, clearance, rule.since_image_s)
+            plan = goe.Intent((16.0, 0.0, 0.0), margin, clearance, rule.since_image_s)
             assert track.hazard(k, number) == estimator.hazard(plan)
         ages.add(estimate.age_s > 0.0)
     assert ages == {False, True}
@@ -291,7 +294,7 @@ def test_rules_are_plans_that_grow_with_doubt_and_age() -> None:
 
 
 def collision() -> goe.Images:
-    """Head-on, a plate of 6 m by 30 m."""
+    """Head-on towards a plate of 6 m by 30 m."""
     k = np.arange(60)
     box = 640.0 + 914.0 * np.array([-3.0, -15.0, 3.0, 15.0]) / (200.0 - 2.0 * k)[:, None]
     return approach(box_px=box)
@@ -299,14 +302,14 @@ def collision() -> goe.Images:
 
 def expected_decision(rule: goe.Rule, hazard: goe.Hazard, estimate: goe.Estimate) -> goe.Decision:
     """By the definition of goe_decide, from the hazard with the widened margins."""
-    old_m = rule.drift_m_s * estimate.age_s
-    doubt = rule.doubt if estimate.suspect else 1.0
-    if hazard.violation >= rule.violation_max:
-        if hazard.soonest_s <= rule.act_s:
+    old_m = rule.stale_growth_m_s * estimate.age_s
+    doubt = rule.suspect_factor if estimate.suspect else 1.0
+    if hazard.conflict_probability >= rule.conflict_probability_max:
+        if hazard.earliest_tcpa_s <= rule.act_within_s:
             return goe.Decision.ACT
-        later = hazard.time_s - 2.0 * hazard.time_sd_s > rule.act_s
+        later = hazard.tcpa_s - 2.0 * hazard.tcpa_sd_s > rule.act_within_s
         return goe.Decision.CLEAR if later else goe.Decision.UNKNOWN
-    aside = hazard.miss.m - hazard.miss.sd_m >= doubt * rule.margin_m + old_m
+    aside = hazard.dcpa.m - hazard.dcpa.sd_m >= doubt * rule.margin_m + old_m
     over = hazard.clearance
     above = over is not None and over.m - over.sd_m >= doubt * rule.clearance_m + old_m
     return goe.Decision.CLEAR if aside or above else goe.Decision.UNKNOWN
@@ -316,27 +319,37 @@ def test_decisions_are_those_of_the_rule() -> None:
     """Probability, distances and times of the hazard with the widened margins."""
     images = collision()
     images.box_px[30:40] = NAN
-    rules = [goe.Rule(15.0, 10.0), goe.Rule(15.0, 10.0, violation_max=0.9, act_s=6.0, doubt=3.0, drift_m_s=0.5)]
+    other = goe.Rule(
+        15.0, 10.0, conflict_probability_max=0.9, act_within_s=6.0, suspect_factor=3.0, stale_growth_m_s=0.5
+    )
+    rules = [goe.Rule(15.0, 10.0), other]
     track = goe.run(settings(), images, rules=rules)
     estimator = goe.Estimator(settings())
     for k in range(len(images)):
         estimate = estimator.update(image(k, images))
         for number, rule in enumerate(rules):
-            own = goe.DecisionRule(rule.violation_max, rule.act_s, rule.doubt, rule.drift_m_s)
-            decision, hazard = estimator.decide(goe.Plan((16.0, 0.0, 0.0), rule.margin_m, rule.clearance_m), own)
+            own = goe.DecisionRule(
+                rule.conflict_probability_max, rule.act_within_s, rule.suspect_factor, rule.stale_growth_m_s
+            )
+            decision, hazard = estimator.decide(goe.Intent((16.0, 0.0, 0.0), rule.margin_m, rule.clearance_m), own)
             assert (decision, hazard) == (track.decision[k, number], track.hazard(k, number))
             if hazard is None:
-                assert decision == goe.Decision.UNKNOWN and track.hazard_status[k, number] == goe.Status.COLLECTING
+                assert decision == goe.Decision.UNKNOWN and track.hazard_status[k, number] == goe.Status.CONVERGING
                 continue
-            soonest_s = hazard.time_s**2 / (hazard.time_s + 2.0 * hazard.time_sd_s)
-            assert hazard.soonest_s == pytest.approx(soonest_s, rel=1e-6)
+            earliest_tcpa_s = hazard.tcpa_s**2 / (hazard.tcpa_s + 2.0 * hazard.tcpa_sd_s)
+            assert hazard.earliest_tcpa_s == pytest.approx(earliest_tcpa_s, rel=1e-6)
             assert decision == expected_decision(rule, hazard, estimate)
     assert set(track.decision.flat) == {goe.Decision.UNKNOWN, goe.Decision.CLEAR, goe.Decision.ACT}
     assert str(goe.Decision.ACT) == "act"
-    last = estimator.decide(goe.Plan((16.0, 0.0, 0.0), 15.0, 10.0))
+    last = estimator.decide(goe.Intent((16.0, 0.0, 0.0), 15.0, 10.0))
     assert last == (track.decision[-1, 0], track.hazard(-1, 0))  # the defaults are those of C
     defaults = goe.DecisionRule()
-    assert (defaults.violation_max, defaults.act_s, defaults.doubt, defaults.drift_m_s) == (0.1, 12.0, 1.5, 1.0)
+    probability, act_within_s, factor = (
+        defaults.conflict_probability_max,
+        defaults.act_within_s,
+        defaults.suspect_factor,
+    )
+    assert (probability, act_within_s, factor, defaults.stale_growth_m_s) == (0.1, 12.0, 1.5, 1.0)
     assert goe.Rule(1.0, 1.0)[2:4] == (1.5, 1.0) and goe.Rule(1.0, 1.0)[5:7] == (0.1, 12.0)
 
 
@@ -352,10 +365,10 @@ def test_a_velocity_that_is_no_number_keeps_the_decision() -> None:
 def test_an_uncertain_velocity_makes_the_hazard_uncertain() -> None:
     estimator = goe.Estimator(settings())
     estimator.run(approach())
-    sure, unsure = (estimator.hazard(goe.Plan((16.0, 0.0, 0.0), 15.0, 10.0, 0.0, sd)) for sd in (0.0, 3.0))
-    assert unsure.miss.sd_m > 2.0 * sure.miss.sd_m
+    sure, unsure = (estimator.hazard(goe.Intent((16.0, 0.0, 0.0), 15.0, 10.0, 0.0, sd)) for sd in (0.0, 3.0))
+    assert unsure.dcpa.sd_m > 2.0 * sure.dcpa.sd_m
     track = goe.run(settings(), approach(), rules=[goe.Rule(15.0, 10.0, velocity_sd_m_s=3.0)])
-    assert track.hazard(-1).miss.sd_m == unsure.miss.sd_m
+    assert track.hazard(-1).dcpa.sd_m == unsure.dcpa.sd_m
 
 
 def test_a_box_without_sides_and_one_without_a_height() -> None:
@@ -364,8 +377,8 @@ def test_a_box_without_sides_and_one_without_a_height() -> None:
     images.height_m[0] = 0.0
     estimator = goe.Estimator(settings())
     track = estimator.run(images)
-    assert estimator.causes[-int(goe.Status.BOX_INCOMPLETE)] == 1
-    assert estimator.causes[-int(goe.Status.NO_HEIGHT)] == 1 and len(estimator.causes) == 16
+    assert estimator.fault_counts[-int(goe.Status.BOX_INCOMPLETE)] == 1
+    assert estimator.fault_counts[-int(goe.Status.NO_HEIGHT)] == 1 and len(estimator.fault_counts) == 16
     alone = goe.run(settings(), approach(1, box_px=np.array([[500.0, NAN, NAN, NAN]])))
     assert goe.Status(alone.status[0]) == goe.Status.BOX_INCOMPLETE and track.status[-1] == goe.Status.OK
 
@@ -394,23 +407,23 @@ def test_a_column_of_another_shape_is_named(change: dict[str, object], words: st
 
 
 def test_bad_measurements_are_a_status() -> None:
-    """They refuse one image, and leave the last good estimate."""
+    """Each is refused for its image, and the last good estimate remains."""
     images = approach()
     images.position_ned_m[20, 1] = NAN
-    images.height_m[21] = 1e39  # no float holds it
+    images.height_m[21] = 1e39  # too large for a float
     images.attitude[22] = 2.0
     images.time_us[23] = 0
     images.box_px[24] = NAN
     track = goe.run(settings(), images)
-    told = [goe.Status(number) for number in track.status[19:26]]
-    assert told == [goe.Status.OK, goe.Status.NOT_FINITE, goe.Status.NOT_FINITE, goe.Status.BAD_ATTITUDE,
-                    goe.Status.BAD_TIME, goe.Status.NOTHING_SEEN, goe.Status.OK]  # fmt: skip
+    reported = [goe.Status(number) for number in track.status[19:26]]
+    assert reported == [goe.Status.OK, goe.Status.NOT_FINITE, goe.Status.NOT_FINITE, goe.Status.BAD_ATTITUDE,
+                    goe.Status.BAD_TIME, goe.Status.NO_DETECTION, goe.Status.OK]  # fmt: skip
     assert track[22].position is not None and not track[22].fresh and track[22].age_s > 0.0
     assert goe.Status.BAD_TIME.is_fault and not goe.Status.BAD_TIME.is_image_taken
     points = np.full((60, 6, 2), NAN)
-    seen = goe.run(settings(), approach(points_px=points, points_seen=np.ones((60, 6), bool), box_px=None))
+    seen = goe.run(settings(), approach(points_px=points, points_visible=np.ones((60, 6), bool), box_px=None))
     assert set(seen.status) == {goe.Status.NOT_FINITE}
-    assert set(goe.run(settings(), approach(points_px=points, box_px=None)).status) == {goe.Status.NOTHING_SEEN}
+    assert set(goe.run(settings(), approach(points_px=points, box_px=None)).status) == {goe.Status.NO_DETECTION}
 
 
 def test_vectors_and_plans_that_c_would_misread() -> None:
@@ -426,15 +439,17 @@ def test_vectors_and_plans_that_c_would_misread() -> None:
     ):  # fmt: skip
         for ask in (estimator.hazard, estimator.decide):
             with pytest.raises(ValueError, match=f"^{words} = .*: not within"):
-                ask(goe.Plan(*plan))
-    for change in ({"violation_max": 1.1}, {"act_s": NAN}, {"doubt": 0.5}, {"drift_m_s": 101.0}):
+                ask(goe.Intent(*plan))
+    for change in (
+        {"conflict_probability_max": 1.1}, {"act_within_s": NAN}, {"suspect_factor": 0.5}, {"stale_growth_m_s": 101.0}
+    ):  # fmt: skip
         words = rf"^{next(iter(change))} = .*: not within"
         with pytest.raises(ValueError, match=words):
-            estimator.decide(goe.Plan((1.0, 0.0, 0.0), 1.0, 1.0), goe.DecisionRule(**change))
+            estimator.decide(goe.Intent((1.0, 0.0, 0.0), 1.0, 1.0), goe.DecisionRule(**change))
         with pytest.raises(ValueError, match=words):
             goe.run(settings(), approach(), rules=[goe.Rule(1.0, 1.0, **change)])
-    assert estimator.decide(goe.Plan((1.0, 0.0, 0.0), 1.0, 1.0)) == (goe.Decision.UNKNOWN, None)
-    assert estimator.hazard(goe.Plan((1.0, 0.0, 0.0), 1.0, 1.0)) is None  # nothing is known
+    assert estimator.decide(goe.Intent((1.0, 0.0, 0.0), 1.0, 1.0)) == (goe.Decision.UNKNOWN, None)
+    assert estimator.hazard(goe.Intent((1.0, 0.0, 0.0), 1.0, 1.0)) is None  # no estimate is known
     assert estimator.covariance() is None
 
 
@@ -453,34 +468,34 @@ def test_reset_and_copy() -> None:
 
 
 def test_calls_release_python_s_lock() -> None:
-    """Python goes on while C runs. With the lock held this thread would stand still until the call is over."""
+    """Python runs while C runs. If C kept the lock, this thread would stop until the call is over."""
     c = approach(98).to_c()
     c = np.tile(c, 200)
     c["pose"]["time_us"] = 125_000 * np.arange(len(c))
-    estimator, told = goe.Estimator(settings()), []
+    estimator, reported = goe.Estimator(settings()), []
 
     def work() -> None:
-        told.append("begun")
+        reported.append("begun")
         estimator.run(c)
-        told.append("ended")
+        reported.append("ended")
 
     thread = threading.Thread(target=work)
     interval_s = sys.getswitchinterval()
     sys.setswitchinterval(1e3)  # no thread takes the lock from another one: it has to be released
     try:
         thread.start()
-        seen = list(told)
+        seen = list(reported)
     finally:
         sys.setswitchinterval(interval_s)
     thread.join()
-    assert (seen, told) == (["begun"], ["begun", "ended"])
+    assert (seen, reported) == (["begun"], ["begun", "ended"])
 
 
 def test_threads_do_not_mix_tracks_up() -> None:
     tracks = [approach(40, height_m=np.full(40, 10.0 + i)) for i in range(24)]
     each = [settings() for _ in tracks]
     for i, own in enumerate(each):
-        own.detector.box_px = 1.0 + 0.1 * i
+        own.detector.box_noise_px = 1.0 + 0.1 * i
     rules = [goe.Rule(15.0, 10.0)]
     alone = [goe.run(own, images, rules=rules) for own, images in zip(each, tracks)]
     for threads in (1, 4, None):
@@ -491,7 +506,7 @@ def test_threads_do_not_mix_tracks_up() -> None:
 
 
 def test_one_estimator_given_to_threads_serves_them_in_turn() -> None:
-    """Every fault is counted: no call runs into another."""
+    """Every bad image is counted, so no call interrupts another."""
     estimator = goe.Estimator(settings())
     bad = np.tile(approach(50, attitude=np.zeros((50, 4))).to_c(), 10)
     threads = [threading.Thread(target=lambda: [estimator.run(bad) for _ in range(10)]) for _ in range(6)]
@@ -499,7 +514,7 @@ def test_one_estimator_given_to_threads_serves_them_in_turn() -> None:
         thread.start()
     for thread in threads:
         thread.join()
-    assert estimator.causes[-int(goe.Status.BAD_ATTITUDE)] == 6 * 10 * 500
+    assert estimator.fault_counts[-int(goe.Status.BAD_ATTITUDE)] == 6 * 10 * 500
 
 
 def test_parallel_errors_are_those_of_the_track() -> None:
@@ -516,7 +531,7 @@ def test_parallel_errors_are_those_of_the_track() -> None:
 
 
 def test_the_flight_layer_from_samples_to_an_order() -> None:
-    """A mast dead ahead; images come 100 ms late; the clock's 32 bits wrap on the way."""
+    """A mast dead ahead. Images arrive 100 ms late, and the 32-bit clock wraps on the way."""
     layer = goe.Flight(settings(), goe.FlightSettings(margin_m=15.0))
     start = 2**32 - 3_000_000
     assert layer.assess(start) is None and layer.sectors(20000) is None and layer.obstacles() == {}
@@ -532,17 +547,19 @@ def test_the_flight_layer_from_samples_to_an_order() -> None:
         box = (640.0 + 914.0 * m / (200.0 - north + 1.6) for m in (-3.0, -15.0, 3.0, 15.0))
         frame = flight.Frame(t, t - 100_000, [flight.Detection(0.9, 7, goe.BoundingBox(*box))])
         assert layer.frame(frame) == (flight.FlightStatus.OK if k else flight.FlightStatus.NO_POSE) or k < 2
-        told = layer.assess(t)
-        orders.append(told.action)
-        if first is None and told.action:
-            first = told
+        reported = layer.assess(t)
+        orders.append(reported.action)
+        if first is None and reported.action:
+            first = reported
     ((slot, mast),) = layer.obstacles().items()
     assert mast.id == 7 and layer.obstacle(slot) == mast and layer.obstacle(slot + 1) is None
     assert mast.place.center_ned_m[0] == pytest.approx(200.0, abs=10.0) and mast.hazard is not None
     assert orders[0] == flight.Action.NONE and orders[-1] != flight.Action.NONE
-    assert told.worst == slot and told.pose_alive and told.detector_alive and told.target_ned_m is not None
+    assert (
+        reported.worst == slot and reported.pose_alive and reported.detector_alive and reported.target_ned_m is not None
+    )
     assert first.reason == flight.OrderReason.CLEAR and first.clear_m > 0.0 and str(first.reason)
-    assert told.reason == flight.OrderReason.LEAST_BAD and told.clear_m < 0.0  # nobody turned
+    assert reported.reason == flight.OrderReason.LEAST_BAD and reported.clear_m < 0.0  # the aircraft did not turn
     landed = layer.assess(t, flight.Phase.LANDED)
     assert (landed.action, landed.reason) == (flight.Action.NONE, flight.OrderReason.LANDING)
     sectors = layer.sectors(20000)
@@ -591,11 +608,11 @@ def test_the_readme_s_examples_run(capsys: pytest.CaptureFixture[str]) -> None:
 def test_the_example_goes_around(capsys: pytest.CaptureFixture[str]) -> None:
     path = PACKAGE / "examples" / "approach.py"
     cells = re.findall(r"^# %%.*$", path.read_text(encoding="utf-8"), re.MULTILINE)
-    assert len(cells) >= 8  # an editor sees a notebook
-    told = runpy.run_path(str(path))
+    assert len(cells) >= 8  # an editor shows a notebook
+    reported = runpy.run_path(str(path))
     text = capsys.readouterr().out
-    assert re.search(r"go around at [\d.]+ s: [\d.]+ s to go", text) and told["share"] > 0.9
-    errors = [abs(told["track"][k].position.z.m - told["true_m"][k]) for k in (60, 80, 99)]
-    sigmas = [told["track"][k].position.z.sd_m for k in (60, 80, 99)]
+    assert re.search(r"go around at [\d.]+ s: [\d.]+ s to go", text) and reported["share"] > 0.9
+    errors = [abs(reported["track"][k].position.z.m - reported["true_m"][k]) for k in (60, 80, 99)]
+    sigmas = [reported["track"][k].position.z.sd_m for k in (60, 80, 99)]
     assert all(error < 3.0 * sd for error, sd in zip(errors, sigmas)) and sigmas[0] > sigmas[-1]
-    assert told["true_m"][told["order"]] > 100.0  # in time
+    assert reported["true_m"][reported["order"]] > 100.0  # in time

@@ -1,4 +1,4 @@
-"""The Python package over the embedded logs: the hashes that C has on every target, image by image through the typed
+"""The Python package over the embedded logs, against the hashes of C on every target: image by image through the typed
 classes, as whole tracks, and in threads."""
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from embedded_logs import Hash, LoggedImage, LoggedTrack, golden, read_tracks
 
 goe = pytest.importorskip("goe", reason="the Python package is not installed (tools/setup.sh)")
 NONE = goe.Length(0.0, 0.0)
-PLAN = goe.Plan((15.0, 1.0, -0.5), 10.0, 5.0)
+PLAN = goe.Intent((15.0, 1.0, -0.5), 10.0, 5.0)
 LATE = 2  # images
 IMAGE_PX = 1280.0
 MAX_CM = 20000
@@ -29,7 +29,7 @@ def settings_of(track: LoggedTrack, method: goe.Method) -> goe.Settings:
     settings.heading_deg = None if track.heading_auto else n[15]
     settings.window.points, settings.window.line_points = track.window, track.line_points
     settings.window.orientation_memory = track.orientation_memory
-    settings.navigation.position_white_m = track.position_white_m
+    settings.navigation.position_white_sd_m = track.position_white_sd_m
     return settings
 
 
@@ -55,12 +55,12 @@ def image_of(image: LoggedImage) -> goe.Image:
 def images_of(track: LoggedTrack) -> goe.Images:
     n = np.array([image.numbers for image in track.images])
     bits = np.array([[image.seen, image.box] for image in track.images])
-    seen = (bits[:, :1] >> np.arange(6) & 1).astype(bool)
+    visible = (bits[:, :1] >> np.arange(6) & 1).astype(bool)
     box = np.where(bits[:, 1:] >> np.arange(4) & 1, n[:, 11:15], np.nan)
     known = np.array([[image.reset_delta_known] for image in track.images])
     return goe.Images(
         [image.time_us for image in track.images], n[:, :3], n[:, 4:8], n[:, 3], box,
-        n[:, 11:].reshape(-1, 6, 2), seen, [image.reset_count for image in track.images],
+        n[:, 11:].reshape(-1, 6, 2), visible, [image.reset_count for image in track.images],
         np.where(known, n[:, 8:11], np.nan), velocity_ned_m_s=np.tile(PLAN.velocity_ned_m_s, (len(n), 1)),
     )  # fmt: skip
 
@@ -69,7 +69,7 @@ def images_of(track: LoggedTrack) -> goe.Images:
 
 
 def hash_estimate(h: Hash, e: goe.Estimate) -> None:
-    """What is not known is 0 in C."""
+    """An unknown value is 0 in C."""
     p = e.position or goe.Position(NONE, NONE, NONE, NONE, 0.0, 0.0)
     o = e.orientation or goe.Orientation(0.0, 0.0, 0.0, 0.0, (0, 0), (0, 0), (0, 0), (0, 0))
     c = e.center or goe.Center(NONE, NONE, 0.0)
@@ -80,11 +80,13 @@ def hash_estimate(h: Hash, e: goe.Estimate) -> None:
     h.flags(*(quantity is not None for quantity in known))
     h.word(e.fresh, e.suspect)
     h.text("none" if e.reason is None else str(e.reason))
-    h.word(e.nis_rows, e.images)
+    h.word(e.nis_rows, e.images_used)
     h.numbers(e.age_s, v.north_m_s, v.east_m_s, e.latency_s, p.x0.m, p.z0.m, p.x.m, p.z.m)
     h.numbers(width.m, length.m, height.m, o.side_deg, o.side_raw_deg, o.front_deg)
     h.numbers(*o.length_axis, *o.width_axis, *o.length_axis_ne, *o.width_axis_ne)
-    h.numbers(e.trajectory_heading_deg, c.north.m, c.east.m, c.covariance_m2, p.residual, p.baseline_m, e.nis, e.misfit)
+    h.numbers(
+        e.trajectory_heading_deg, c.north.m, c.east.m, c.covariance_m2, p.residual, p.baseline_m, e.nis, e.nis_ratio
+    )
     h.numbers(p.x0.sd_m, p.z0.sd_m, p.x.sd_m, p.z.sd_m, width.sd_m, length.sd_m, height.sd_m, o.side_sd_deg)
     h.numbers(c.north.sd_m, c.east.sd_m, v.north_sd_m_s, v.east_sd_m_s, e.latency_sd_s)
 
@@ -95,13 +97,16 @@ def hash_status(h: Hash, status: goe.Status) -> None:
 
 
 def hash_after(h: Hash, covariance: np.ndarray | None, hazard: goe.Hazard | None) -> None:
-    hash_status(h, goe.Status.OK if covariance is not None else goe.Status.COLLECTING)
+    hash_status(h, goe.Status.OK if covariance is not None else goe.Status.CONVERGING)
     h.numbers(*(np.zeros(36) if covariance is None else covariance.ravel()))
-    hash_status(h, goe.Status.OK if hazard is not None else goe.Status.COLLECTING)
-    told = hazard or goe.Hazard(0.0, 0.0, NONE, None, 0.0)
-    clearance = told.clearance or NONE
-    h.numbers(told.time_s, told.miss.m, clearance.m, told.violation, told.time_sd_s, told.miss.sd_m, clearance.sd_m)
-    h.word(told.clearance is not None)
+    hash_status(h, goe.Status.OK if hazard is not None else goe.Status.CONVERGING)
+    shown = hazard or goe.Hazard(0.0, 0.0, NONE, None, 0.0)
+    clearance = shown.clearance or NONE
+    h.numbers(
+        shown.tcpa_s, shown.dcpa.m, clearance.m, shown.conflict_probability, shown.tcpa_sd_s, shown.dcpa.sd_m,
+        clearance.sd_m,
+    )
+    h.word(shown.clearance is not None)
 
 
 def runs_of(tracks: list[LoggedTrack]) -> Iterator[tuple[LoggedTrack, goe.Settings]]:
@@ -127,7 +132,7 @@ def test_estimates_have_the_bits_of_c(tracks: list[LoggedTrack]) -> None:
             hash_estimate(h, estimate)
             hash_after(h, estimator.covariance(), estimator.hazard(PLAN))
             images += 1
-        h.word(*estimator.causes)
+        h.word(*estimator.fault_counts)
         estimator.reset()
         hash_status(h, goe.Status.OK)
     assert images > 1000
@@ -136,9 +141,9 @@ def test_estimates_have_the_bits_of_c(tracks: list[LoggedTrack]) -> None:
 
 @pytest.mark.parametrize("threads", [1, 3])
 def test_whole_tracks_have_the_bits_of_c(tracks: list[LoggedTrack], threads: int) -> None:
-    """[A11] All in one call; also in threads, of more than there are processors."""
+    """[A11] In one call for all logs, and in more threads than there are processors."""
     runs = list(runs_of(tracks))
-    rules = [goe.Rule(PLAN.margin_m, PLAN.clearance_m, doubt=1.0, drift_m_s=0.0)]
+    rules = [goe.Rule(PLAN.margin_m, PLAN.clearance_m, suspect_factor=1.0, stale_growth_m_s=0.0)]
     jobs = {"rules": rules, "covariance": True, "threads": threads}
     answers = goe.run_parallel([settings for _, settings in runs], [images_of(track) for track, _ in runs], **jobs)
     h = Hash()
@@ -150,7 +155,7 @@ def test_whole_tracks_have_the_bits_of_c(tracks: list[LoggedTrack], threads: int
             hash_estimate(h, estimate)
             hash_after(h, answer.covariance[k] if estimate.position else None, answer.hazard(k))
         estimator.run(images_of(track))
-        h.word(*estimator.causes)
+        h.word(*estimator.fault_counts)
         hash_status(h, goe.Status.OK)
     assert str(h) == golden("golden_hash.txt")
 
@@ -159,10 +164,13 @@ def test_whole_tracks_have_the_bits_of_c(tracks: list[LoggedTrack], threads: int
 
 
 def hash_hazard(h: Hash, hazard: goe.Hazard | None) -> None:
-    told = hazard or goe.Hazard(0.0, 0.0, NONE, None, 0.0)
-    clearance = told.clearance or NONE
-    h.numbers(told.time_s, told.miss.m, clearance.m, told.time_sd_s, told.miss.sd_m, clearance.sd_m, told.violation)
-    h.word(told.clearance is not None)
+    shown = hazard or goe.Hazard(0.0, 0.0, NONE, None, 0.0)
+    clearance = shown.clearance or NONE
+    h.numbers(
+        shown.tcpa_s, shown.dcpa.m, clearance.m, shown.tcpa_sd_s, shown.dcpa.sd_m, clearance.sd_m,
+        shown.conflict_probability,
+    )
+    h.word(shown.clearance is not None)
 
 
 def hash_assessment(h: Hash, a: goe.flight.Assessment | None) -> None:
@@ -188,7 +196,7 @@ def hash_obstacle(h: Hash, o: goe.flight.Obstacle | None) -> None:
     known = (o.place, o.length_m, o.height, o.length_heading_deg, None, o.width_m)
     h.flags(*(quantity is not None for quantity in known), o.moves)
     h.word(o.model or 0)
-    h.flags(o.suspect, o.passed, o.in_view, o.hazard is not None)
+    h.flags(o.suspect, o.receding, o.in_view, o.hazard is not None)
     h.numbers(o.age_s, *place.center_ned_m, *place.covariance_ne_m2, place.radius_m, *height)
     h.numbers(*(quantity or 0.0 for quantity in (o.width_m, o.length_m, o.length_heading_deg)))
     h.numbers(*place.nearest_ned_m, *place.nearest_body_m)
@@ -197,7 +205,7 @@ def hash_obstacle(h: Hash, o: goe.flight.Obstacle | None) -> None:
 
 
 def time_of(track: LoggedTrack, k: int) -> int:
-    """Of 32 bits, which wrap on the way: the package takes what is beyond."""
+    """The time in 32 bits, which wrap on the way; the package accepts larger numbers."""
     return 0xFFF00000 + track.images[k].time_us - track.images[0].time_us
 
 
@@ -213,7 +221,7 @@ def give_samples(h: Hash, flight: goe.Flight, time_us: int, image: LoggedImage) 
 
 
 def read_layer(h: Hash, flight: goe.Flight, now_us: int, approach: bool) -> None:
-    """Python has None for a status of the three calls: with a pose, that of an empty slot."""
+    """Python returns None for a status other than OK. With a pose, that is the status of an empty slot."""
     assessment, obstacle, sectors = flight.assess(now_us, approach), flight.obstacle(0), flight.sectors(MAX_CM)
     status = goe.flight.FlightStatus.OK if assessment is not None else goe.flight.FlightStatus.NO_POSE
     h.word(status)
@@ -227,7 +235,7 @@ def read_layer(h: Hash, flight: goe.Flight, now_us: int, approach: bool) -> None
 def test_the_flight_layer_has_the_bits_of_c(tracks: list[LoggedTrack]) -> None:
     h, frames = Hash(), 0
     for track in tracks:
-        settings = settings_of(track, goe.Method.REFINED)
+        settings = settings_of(track, goe.Method.FILTER)
         if settings.camera.width_px <= 0.0:
             settings.camera.width_px = settings.camera.height_px = IMAGE_PX
         flight = goe.Flight(settings, goe.FlightSettings(confirm_images=1))
@@ -235,8 +243,8 @@ def test_the_flight_layer_has_the_bits_of_c(tracks: list[LoggedTrack]) -> None:
         for k, image in enumerate(track.images):
             give_samples(h, flight, time_of(track, k), image)
             if k >= LATE:
-                seen = track.images[k - LATE]
-                detection = goe.flight.Detection(1.0, 1, box_of(seen), **points_of(seen))
+                visible = track.images[k - LATE]
+                detection = goe.flight.Detection(1.0, 1, box_of(visible), **points_of(visible))
                 frame = goe.flight.Frame(time_of(track, k), time_of(track, k - LATE), [detection], time_sd_us=3000)
                 h.word(flight.frame(frame))
                 frames += 1

@@ -1,4 +1,5 @@
-"""The Python package as others get it: the sdist of the tree and of the staged folder, the wheel made of it alone."""
+"""The distributed Python package: the sdist of the tree and of the staged folder, and the wheel made of the sdist
+alone."""
 
 from __future__ import annotations
 
@@ -22,7 +23,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "port" / "python"
 FACTS = Facts()
 MOST_BYTES = 300_000
-SECONDS = 1800  # only a guard against what hangs
+SECONDS = 1800  # guard against a hang
 SDIST = "import sys; from scikit_build_core.build import build_sdist; print(build_sdist(sys.argv[1]))"
 WARNINGS = ("-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Werror")
 
@@ -42,7 +43,7 @@ def sdist_of(folder: Path, out: Path) -> Path:
 
 @pytest.fixture(scope="module")
 def sdist(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Made in the tree, where csrc/lib and the like are links."""
+    """Made in the tree, where csrc/lib and others are links."""
     if importlib.util.find_spec("scikit_build_core") is None:
         pytest.skip("no scikit-build-core: the Python package is not built (tools/setup.sh)")
     return sdist_of(PACKAGE, tmp_path_factory.mktemp("sdist"))
@@ -50,7 +51,7 @@ def sdist(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def wheel(sdist: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Made from the sdist alone, where nothing else of the project is."""
+    """Made from the sdist alone, in a folder without the rest of the project."""
     for program in ("cc", "cmake", "ninja"):
         if not shutil.which(program):
             pytest.skip(f"no {program}: the Python package is not built")
@@ -92,7 +93,7 @@ def test_the_wheel(wheel: Path) -> None:
 
 
 def test_the_wheel_alone_has_the_bits_of_c(wheel: Path, tmp_path: Path) -> None:
-    """Its own words, and the golden hashes, with this package before the installed one."""
+    """The package's own tests and the golden hashes, with this package found before the installed one."""
     with zipfile.ZipFile(wheel) as archive:
         archive.extractall(tmp_path)
     words = "import goe, doctest; print(goe.__file__, goe.FINGERPRINT, doctest.testmod(goe).failed)"

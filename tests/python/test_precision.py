@@ -1,4 +1,4 @@
-"""The library in float32 against the same library in float64: rounding must stay far below what an answer claims."""
+"""The library in float32 against the same library in float64: rounding must be far below the sigmas."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def test_rounding_is_small_beside_the_sigma(noise: str, scenes: list[Scene]) -> 
 
 
 def test_the_other_build_does_compute_in_float64(box: Scene) -> None:
-    """Its structs are of doubles, and its answers are others, if only a little."""
+    """Its structs contain doubles, and its answers differ slightly."""
     _, types = double_precision.library()
     single = [getattr(package(), name) for name in ("IMAGE", "ESTIMATE", "HAZARD")]
     assert all(wide.itemsize > 1.5 * plain.itemsize for wide, plain in zip(types, single))
@@ -66,7 +66,7 @@ def test_where_the_builds_decide_otherwise_is_counted(monkeypatch: pytest.Monkey
     tracks[1].model[-3:] = MODEL_DISC
     tracks[0].values[-4] += 0.5 * tracks[1].sigma[-4]
     monkeypatch.setattr("bench.optimum.precision.estimate", lambda _, double=False: tracks[int(double)])
-    told = rounding_of(flight)
-    assert told.apart == 3
-    assert np.isnan(told.last).all()
-    assert told.worst == pytest.approx(np.full(6, 0.5), abs=0.01)
+    rounding = rounding_of(flight)
+    assert rounding.apart == 3
+    assert np.isnan(rounding.last).all()
+    assert rounding.worst == pytest.approx(np.full(6, 0.5), abs=0.01)

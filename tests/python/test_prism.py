@@ -1,6 +1,6 @@
-"""The library's prism against its reference in another form, the reference's derivatives, and the bound.
+"""The library's prism against a reference in another formulation, the reference's derivatives, and the bound.
 
-The library gets what float32 holds of each flight, and so does the reference: what is left is rounding."""
+Both get each flight rounded to float32, so that only rounding remains as difference."""
 
 from __future__ import annotations
 
@@ -38,12 +38,12 @@ from goe_tools.models.prism_bound import bound_of, true_state
 from goe_tools.models.prism_filter import PrismTrack, follow
 
 X0, Z0, WIDTH, HEIGHT = 0, 1, 3, 5
-TOLD = [X0, Z0, WIDTH, HEIGHT]
-# Differences over the reference's sigma, and of the sigmas, relative. Measured: in float64 1e-5 and 2e-7, as the
-# answers are told in float32; in float32 2e-4 (30 images/s, 13 s of white noise), otherwise 3e-5; 3e-5.
+ESTIMATED = [X0, Z0, WIDTH, HEIGHT]
+# Differences over the reference's sigma, and relative differences of the sigmas. Measured in float64: 1e-5, because
+# answers are float32, and 2e-7. In float32: 2e-4 (30 images/s, 13 s of white noise), otherwise 3e-5; sigmas 3e-5.
 VALUE_MOST = {True: 3e-5, False: 6e-4}
 SIGMA_MOST = {True: 5e-7, False: 6e-5}
-EVERY_IMAGE = {"refined.range_share": 10.0}
+EVERY_IMAGE = {"filter.range_sd_rel_max": 10.0}
 LENS = {"k1": -0.1, "k2": 0.02, "p1": 0.001, "p2": 0.0005, "k3": -0.003}
 LEVER = {"offset_x_m": 1.0, "offset_y_m": 0.5, "offset_z_m": 0.2}
 MOUNT = {"mount_pitch_deg": 2.0, "mount_yaw_deg": 1.0, "mount_roll_deg": 3.0, "fy": 900.0, "heading_deg": 20.0}
@@ -59,7 +59,7 @@ def built() -> None:
 
 
 def rounded(flight: Flight) -> Flight:
-    """As float32 holds it."""
+    """Rounded to float32."""
 
     def near(values: np.ndarray) -> np.ndarray:
         return np.asarray(values, np.float32).astype(float)
@@ -71,20 +71,20 @@ def rounded(flight: Flight) -> Flight:
 
 
 def without(flight: Flight, sides: tuple[int, ...], first: int, last: int | None = None) -> Flight:
-    """Sides that are not seen in the images from first to before last."""
+    """Removes sides of the images from ``first`` to before ``last``."""
     boxes = flight.box_px.copy()
     boxes[first:last, list(sides)] = np.nan
     return replace(flight, box_px=boxes)
 
 
-def both(flight: Flight, told: ErrorModel, double: bool) -> tuple[PrismTrack, Track]:
+def both(flight: Flight, configured: ErrorModel, double: bool) -> tuple[PrismTrack, Track]:
     flight = rounded(flight)
-    settings = camera_settings(flight) | told.settings() | EVERY_IMAGE
-    return follow(flight, told), estimate(flight, settings, double=double)
+    settings = camera_settings(flight) | configured.settings() | EVERY_IMAGE
+    return follow(flight, configured), estimate(flight, settings, double=double)
 
 
-def assert_alike(reference: PrismTrack, track: Track, double: bool) -> None:
-    """In every image that tells something; the first one is not answered."""
+def assert_same(reference: PrismTrack, track: Track, double: bool) -> None:
+    """Compares every image that carries information; the first one has no answer."""
     there = np.flatnonzero(reference.fresh)
     assert np.array_equal(np.flatnonzero(track.fresh), there[1:]) and len(there) > 30
     assert set(track.model[track.fresh]) == {MODEL_PRISM}
@@ -103,9 +103,9 @@ def assert_alike(reference: PrismTrack, track: Track, double: bool) -> None:
 
 def test_the_references_defaults_are_the_librarys(built: None) -> None:
     flight = box_flight(BUILDING, BoxOptions(roll_deg=10.0), 2)
-    usual, told = (estimate(flight, camera_settings(flight) | more) for more in ({}, ErrorModel().settings()))
-    for name in ("values", "sigma", "nis", "misfit"):
-        assert np.array_equal(getattr(usual, name), getattr(told, name), equal_nan=True)
+    usual, configured = (estimate(flight, camera_settings(flight) | more) for more in ({}, ErrorModel().settings()))
+    for name in ("values", "sigma", "nis", "nis_ratio"):
+        assert np.array_equal(getattr(usual, name), getattr(configured, name), equal_nan=True)
 
 
 @pytest.mark.parametrize("double", [True, False], ids=["float64", "float32"])
@@ -116,8 +116,8 @@ def test_rolling(built: None, solid: object, roll: float, double: bool) -> None:
     for seed in (1, 2):
         reference, track = both(box_flight(solid, BoxOptions(roll_deg=roll), seed), ErrorModel(), double)
         assert not reference.refused.any()
-        assert_alike(reference, track, double)
-        assert np.isfinite(track.values[-1][TOLD]).all()
+        assert_same(reference, track, double)
+        assert np.isfinite(track.values[-1][ESTIMATED]).all()
 
 
 @pytest.mark.parametrize("double", [True, False], ids=["float64", "float32"])
@@ -134,26 +134,26 @@ def test_sides_that_are_missing(
 ) -> None:
     flight = without(box_flight(BUILDING, BoxOptions(roll_deg=10.0), 3), sides, first, last)
     reference, track = both(flight, ErrorModel(), double)
-    assert_alike(reference, track, double)
+    assert_same(reference, track, double)
 
 
 USUAL = BoxOptions(roll_deg=5.0)
-WHITE = replace(USUAL, box_share=0.0, image_rate_hz=30.0)
+WHITE = replace(USUAL, box_noise_rel=0.0, image_rate_hz=30.0)
 
 
 @pytest.mark.parametrize("double", [True, False], ids=["float64", "float32"])
 @pytest.mark.parametrize(
-    ("solid", "options", "told"),
+    ("solid", "options", "configured"),
     [
-        (MAST, replace(USUAL, height_white_m=3.0), ErrorModel()),
-        (MAST, replace(USUAL, altimeter=False), ErrorModel(height_bias_m=1000.0)),
-        (MAST, replace(USUAL, altimeter=False), ErrorModel(height_bias_m=1000.0, disc=True)),
-        (BUILDING, USUAL, ErrorModel(position_white_m=0.5)),
-        (BUILDING, USUAL, ErrorModel(attitude_drift_deg=0.1)),
-        (BUILDING, USUAL, ErrorModel(correlation_s=0.0)),
-        (MAST, WHITE, ErrorModel(box_px=0.5, box_share=0.0, disc=True)),
+        (MAST, replace(USUAL, height_white_sd_m=3.0), ErrorModel()),
+        (MAST, replace(USUAL, altimeter=False), ErrorModel(height_bias_sd_m=1000.0)),
+        (MAST, replace(USUAL, altimeter=False), ErrorModel(height_bias_sd_m=1000.0, disc=True)),
+        (BUILDING, USUAL, ErrorModel(position_white_sd_m=0.5)),
+        (BUILDING, USUAL, ErrorModel(attitude_walk_sd_deg=0.1)),
+        (BUILDING, USUAL, ErrorModel(box_correlation_time_s=0.0)),
+        (MAST, WHITE, ErrorModel(box_noise_px=0.5, box_noise_rel=0.0, disc=True)),
         (MAST, replace(USUAL, aside_m=(-60.0, -50.0), ahead_m=(150.0, 180.0)), ErrorModel()),
-        (MAST, replace(USUAL, roll_deg=25.0, altitude_m=60.0), ErrorModel(border_share=0.03, cut_noise=0.3)),
+        (MAST, replace(USUAL, roll_deg=25.0, altitude_m=60.0), ErrorModel(border_rel=0.03, truncation_noise_rel=0.3)),
     ],
     ids=[
         "altimeter noise", "no altimeter", "disc without altimeter", "position noise", "drift", "no correlation",
@@ -161,11 +161,11 @@ WHITE = replace(USUAL, box_share=0.0, image_rate_hz=30.0)
     ],
 )  # fmt: skip
 def test_other_flights_and_noise(
-    built: None, solid: object, options: BoxOptions, told: ErrorModel, double: bool
+    built: None, solid: object, options: BoxOptions, configured: ErrorModel, double: bool
 ) -> None:
-    """[navigation.ground_m, navigation.position_white_m]"""
-    reference, track = both(box_flight(solid, options, 3), told, double)
-    assert_alike(reference, track, double)
+    """[navigation.terrain_height_sd_m, navigation.position_white_sd_m]"""
+    reference, track = both(box_flight(solid, options, 3), configured, double)
+    assert_same(reference, track, double)
 
 
 @pytest.mark.parametrize("double", [True, False], ids=["float64", "float32"])
@@ -173,28 +173,29 @@ def test_other_flights_and_noise(
     "change", [LENS, LEVER, MOUNT, {**LENS, **LEVER, **MOUNT}], ids=["lens", "lever", "mount", "all"]
 )
 def test_other_cameras(built: None, change: dict[str, float], double: bool) -> None:
-    """The boxes were not seen by such a camera, which both sides must make the same of."""
+    """No such camera recorded the boxes; both sides must interpret them equally."""
     flight = box_flight(MAST, BoxOptions(roll_deg=25.0), 3)
     reference, track = both(
-        replace(flight, camera=replace(flight.camera, **change)), ErrorModel(attitude_bias_deg=5.0), double
+        replace(flight, camera=replace(flight.camera, **change)), ErrorModel(attitude_bias_sd_deg=5.0), double
     )
-    assert_alike(reference, track, double)
+    assert_same(reference, track, double)
 
 
 @pytest.mark.parametrize("double", [True, False], ids=["float64", "float32"])
 def test_residuals_that_are_doubted(built: None, double: bool) -> None:
-    """Noise that is told too small: rows count less or not at all, but none so often that the library starts anew."""
+    """With too small noise settings, rows get a low weight or none, but not so often that the library restarts the
+    track."""
     flight = box_flight(BUILDING, BoxOptions(roll_deg=10.0), 3)
-    reference, track = both(flight, ErrorModel(box_px=0.3, box_share=0.02), double)
+    reference, track = both(flight, ErrorModel(box_noise_px=0.3, box_noise_rel=0.02), double)
     assert reference.doubted.sum() >= 10 and reference.refused.sum() >= 3
-    assert_alike(reference, track, double)
+    assert_same(reference, track, double)
 
 
 def test_images_too_soon_are_not_used() -> None:
     flight = box_flight(MAST, WHITE, 3)
     every = np.diff(flight.time_s[follow(flight, ErrorModel()).fresh])
     assert np.allclose(every, 0.1, atol=1e-3)  # 0.08 * 1.2 s, in steps of 1/30 s
-    assert follow(flight, ErrorModel(correlation_s=0.0)).fresh.all()
+    assert follow(flight, ErrorModel(box_correlation_time_s=0.0)).fresh.all()
 
 
 # -------------------------------------------------------------------------------------------------- the measurement
@@ -215,7 +216,7 @@ def some_state(rng: np.random.Generator, images: list[Sight]) -> np.ndarray:
 
 
 def framed(sight: Sight, state: np.ndarray, side: int) -> float:
-    """The same from many points of both rims, projected one by one."""
+    """The same box from many points of both rims, projected one by one."""
     half = state[W]
     angle = np.linspace(0, 2 * np.pi, 20001)
     x = state[A] - (sight.moved_m[0] + state[PX]) * state[Q] + half * np.cos(angle)
@@ -253,7 +254,7 @@ def test_derivatives_are_those_of_the_outermost_point(change: dict[str, float]) 
     images = shown(change)
     step = np.full(UNKNOWNS, 1e-4)
     step[[Q, W, E]], step[PX:] = [1e-6, 1e-4, 1e-4], 0.05
-    size = np.ones(UNKNOWNS)  # of derivatives by each
+    size = np.ones(UNKNOWNS)  # derivatives by each
     size[Q], size[[S, C]], size[PX:] = 100.0, 0.2, 0.005
     for sight in images:
         state = some_state(rng, images)
@@ -270,7 +271,7 @@ def test_derivatives_are_those_of_the_outermost_point(change: dict[str, float]) 
 def test_sides_that_are_measured() -> None:
     nan = np.nan
     boxes = np.array([
-        [100.0, 200.0, 300.0, 400.0],  # as it is
+        [100.0, 200.0, 300.0, 400.0],  # valid
         [300.0, 200.0, 100.0, 400.0],  # out of order
         [100.0, 400.0, 300.0, 200.0],
         [30.0, 200.0, 300.0, 400.0],  # left near the border: cut
@@ -288,38 +289,52 @@ def test_sides_that_are_measured() -> None:
 
 
 def noise(times: float, **change: float) -> ErrorModel:
-    """All that counts for the bound."""
-    usual = ErrorModel(box_share=0.0, ground_m=0.0, disc=True)
-    names = ("box_px", "attitude_bias_deg", "attitude_white_deg", "height_bias_m", "velocity_bias_m_s")
+    """Settings with only the noise that counts for the bound."""
+    usual = ErrorModel(box_noise_rel=0.0, terrain_height_sd_m=0.0, disc=True)
+    names = (
+        "box_noise_px", "attitude_bias_sd_deg", "attitude_white_sd_deg", "height_bias_sd_m", "velocity_bias_sd_m_s",
+    )  # fmt: skip
     return replace(usual, **{name: times * getattr(usual, name) for name in names}, **change)
 
 
 def test_a_bound_grows_with_the_noise() -> None:
     flight = box_flight(MAST, replace(EXACT, roll_deg=10.0), 1)
-    once, twice = bound_of(flight, noise(1.0, cut_noise=0.5)), bound_of(flight, noise(2.0, cut_noise=1.0))
-    assert twice[TOLD] == pytest.approx(2 * once[TOLD], rel=1e-3) and np.isnan(once[[2, 4]]).all()
+    once, twice = (
+        bound_of(flight, noise(1.0, truncation_noise_rel=0.5)),
+        bound_of(flight, noise(2.0, truncation_noise_rel=1.0)),
+    )
+    assert twice[ESTIMATED] == pytest.approx(2 * once[ESTIMATED], rel=1e-3) and np.isnan(once[[2, 4]]).all()
     shorter = bound_of(flight.first(len(flight.time_s) // 2), noise(1.0))
-    assert (shorter[TOLD] > 1.2 * once[TOLD]).all()
+    assert (shorter[ESTIMATED] > 1.2 * once[ESTIMATED]).all()
 
 
-def test_an_error_that_stays_alike_is_no_white_one() -> None:
-    """One that is gone at the next image averages out; one that lasts does not, but differences cancel it."""
+def test_a_correlated_error_is_not_a_white_one() -> None:
+    """A correlation time shorter than the image interval lets an error average out; a long one does not, but
+    differences cancel the error.
+    """
     flight = box_flight(MAST, replace(EXACT, roll_deg=10.0), 1)
-    still = {"attitude_bias_deg": 0.0, "attitude_white_deg": 0.0, "velocity_bias_m_s": 0.0, "height_bias_m": 0.0}
-    told = replace(noise(1.0), box_px=0.1, box_share=0.05, **still)
-    white, usual, long = (bound_of(flight, replace(told, correlation_s=tau)) for tau in (0.0, 1.2, 100.0))
-    equal = bound_of(flight, replace(told, correlation_s=1e-3))
-    assert equal[TOLD] == pytest.approx(white[TOLD], rel=1e-6)
+    still = {
+        "attitude_bias_sd_deg": 0.0,
+        "attitude_white_sd_deg": 0.0,
+        "velocity_bias_sd_m_s": 0.0,
+        "height_bias_sd_m": 0.0,
+    }
+    configured = replace(noise(1.0), box_noise_px=0.1, box_noise_rel=0.05, **still)
+    white, usual, long = (
+        bound_of(flight, replace(configured, box_correlation_time_s=tau)) for tau in (0.0, 1.2, 100.0)
+    )
+    equal = bound_of(flight, replace(configured, box_correlation_time_s=1e-3))
+    assert equal[ESTIMATED] == pytest.approx(white[ESTIMATED], rel=1e-6)
     assert usual[Z0] > 1.5 * white[Z0] and long[Z0] < usual[Z0]
 
 
 @pytest.mark.parametrize("roll", [2.0, 10.0])
 def test_a_recursive_estimator_does_not_undercut_the_bound(monkeypatch: pytest.MonkeyPatch, roll: float) -> None:
-    """With what both reckon with: no error of the path, no white share of a side."""
+    """With the error sources that both model: no path error, no white part of a side's error."""
     monkeypatch.setattr(prism_filter, "SCATTER_SHARE", 0.0)
-    told = replace(noise(1.0), velocity_bias_m_s=0.0, position_walk_m=0.0, box_px=2.0)
+    configured = replace(noise(1.0), velocity_bias_sd_m_s=0.0, position_walk_sd_m=0.0, box_noise_px=2.0)
     flight = box_flight(MAST, replace(EXACT, roll_deg=roll), 1)
-    ratio = (follow(flight, told).sigma[-1] / bound_of(flight, told))[TOLD]
+    ratio = (follow(flight, configured).sigma[-1] / bound_of(flight, configured))[ESTIMATED]
     assert (ratio > 0.99).all() and (ratio < 1.5).all(), ratio
 
 

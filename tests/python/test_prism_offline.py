@@ -1,4 +1,4 @@
-"""The offline fit of a prism by upright boxes: against exact boxes, the bound, and the model that takes one image."""
+"""The offline fit of a prism to upright boxes, against exact boxes, the bound, and the model of single images."""
 
 from __future__ import annotations
 
@@ -28,28 +28,29 @@ from goe_tools.models.prism_bound import VX, VZ, bound_of
 from goe_tools.models.prism_offline import Track, fit
 
 X0, Z0, WIDTH, HEIGHT = 0, 1, 3, 5
-TOLD = [X0, Z0, WIDTH, HEIGHT]
-GAUSS = ErrorModel(box_px=0.5, box_share=0.0, ground_m=0.0, disc=True)
-WHITE = BoxOptions(box_px=0.5, box_share=0.0)
+ESTIMATED = [X0, Z0, WIDTH, HEIGHT]
+GAUSS = ErrorModel(box_noise_px=0.5, box_noise_rel=0.0, terrain_height_sd_m=0.0, disc=True)
+WHITE = BoxOptions(box_noise_px=0.5, box_noise_rel=0.0)
 LENS = {"k1": -0.1, "k2": 0.02, "p1": 0.001, "p2": 0.0005, "k3": -0.003}
 OTHER_CAMERA = {"offset_x_m": 1.0, "offset_z_m": 0.2, "mount_pitch_deg": 2.0, "mount_roll_deg": 3.0, "fy": 900.0}
 
 
-def framed(flight: Flight, told: ErrorModel, state: np.ndarray) -> Flight:
-    """With the boxes of a prism, of which the state is told in the track's axes, at full accuracy."""
-    track, boxes = Track(flight, told), flight.box_px.copy()
+def framed(flight: Flight, configured: ErrorModel, state: np.ndarray) -> Flight:
+    """Replaces the boxes by those of a prism with this state in the track's axes, at full accuracy."""
+    track, boxes = Track(flight, configured), flight.box_px.copy()
     unknowns = np.append(state[: len(STATES)], np.zeros(UNKNOWNS - len(STATES)))
-    centre = np.array([flight.camera.cx, flight.camera.cy])[AXIS]
-    for k, sight in enumerate(sights(flight, told)):
+    center = np.array([flight.camera.cx, flight.camera.cy])[AXIS]
+    for k, sight in enumerate(sights(flight, configured)):
         turned = sight.turned(track.turn, track.origin_m)
         for side in np.flatnonzero(np.isfinite(boxes[k])):
-            guess = (boxes[k, side] - centre[side]) / focal_px(flight.camera)[side]
-            boxes[k, side] = exact_side(turned, unknowns, side, guess) * focal_px(flight.camera)[side] + centre[side]
+            guess = (boxes[k, side] - center[side]) / focal_px(flight.camera)[side]
+            boxes[k, side] = exact_side(turned, unknowns, side, guess) * focal_px(flight.camera)[side] + center[side]
     return replace(flight, box_px=boxes)
 
 
 def true_place(flight: Flight, track: Track) -> np.ndarray:
-    """The truth as a state of the track, as deep as wide; errors of attitude, height and velocity are not known."""
+    """The truth as a state of the track, as deep as wide. Errors of attitude, height and velocity are unknown, thus
+    0."""
     x, _, z = track.turn @ (np.array([flight.truth.x0_m, 0.0, flight.truth.z0_m]) - track.origin_m)
     state = np.zeros(len(STATES) + 2)
     state[[A, Q, W, E]] = np.array([x, 1.0, flight.truth.width_m / 2, flight.truth.height_m]) / z
@@ -65,7 +66,8 @@ def true_place(flight: Flight, track: Track) -> np.ndarray:
     ids=["pinhole", "lens", "all"],
 )
 def test_sides_are_those_of_one_image(change: dict[str, float], most: float, slope_most: float) -> None:
-    """Coordinates and derivatives: ``prism`` takes one side after the other, and with a lens stops a step sooner."""
+    """Coordinates and derivatives. ``prism`` computes one side after the other, and with a lens stops an iteration
+    earlier."""
     flight = box_flight(MAST, BoxOptions(roll_deg=25.0), 3)
     track = Track(replace(flight, camera=replace(flight.camera, **change)), ErrorModel())
     state = track.start()
@@ -92,17 +94,19 @@ def test_a_velocity_error_moves_the_camera() -> None:
     assert track.predicted(state)[0] == pytest.approx(shifted.predicted(still)[0], abs=1e-12)
 
 
-@pytest.mark.parametrize("told", [GAUSS, ErrorModel(attitude_drift_deg=0.1, position_white_m=0.5)], ids=["disc", "any"])
-def test_derivatives_of_all_that_counts(told: ErrorModel) -> None:
-    """By central differences: sides and what is known beforehand."""
-    track = Track(box_flight(MAST, BoxOptions(roll_deg=25.0), 2), told)
+@pytest.mark.parametrize(
+    "configured", [GAUSS, ErrorModel(attitude_walk_sd_deg=0.1, position_white_sd_m=0.5)], ids=["disc", "any"]
+)
+def test_derivatives_of_all_that_counts(configured: ErrorModel) -> None:
+    """By central differences, for sides and prior rows."""
+    track = Track(box_flight(MAST, BoxOptions(roll_deg=25.0), 2), configured)
     state = track.start()
     state[:3], state[[VX, VZ]], state[3] = [0.01, -0.005, 0.008], [0.1, -0.2], 0.003
     whitening = np.eye(len(track.side))
     slope = track.residuals(state, whitening)[1]
     step = np.full(len(state), 1e-5)
     step[Q] = 1e-7
-    for i in np.flatnonzero(np.arange(len(state)) != len(STATES) - 1):  # c is held
+    for i in np.flatnonzero(np.arange(len(state)) != len(STATES) - 1):  # c is kept constant
         move = np.eye(len(state))[i] * step[i]
         after, before = (track.residuals(state + m, whitening)[0] for m in (move, -move))
         size = max(1.0, np.abs(slope[:, i]).max())
@@ -113,55 +117,55 @@ def test_derivatives_of_all_that_counts(told: ErrorModel) -> None:
 
 
 @pytest.mark.parametrize(
-    "told", [GAUSS, replace(GAUSS, disc=False), ErrorModel()], ids=["disc", "any depth", "defaults"]
+    "configured", [GAUSS, replace(GAUSS, disc=False), ErrorModel()], ids=["disc", "any depth", "defaults"]
 )
 @pytest.mark.parametrize("roll", [0.0, 10.0, 25.0])
-def test_exact_boxes_give_the_truth(roll: float, told: ErrorModel) -> None:
-    """Of a mast that is as deep as wide, so that the first guess of the depth is right, too."""
+def test_exact_boxes_give_the_truth(roll: float, configured: ErrorModel) -> None:
+    """A mast is as deep as wide, so the initial guess of the depth is right, too."""
     flight = box_flight(MAST, replace(EXACT, roll_deg=roll), 2)
-    state = true_place(flight, Track(flight, told))
-    found = fit(framed(flight, told, state), told)
-    assert found.values[TOLD] == pytest.approx(flight.truth.values[TOLD], abs=1e-3)
+    state = true_place(flight, Track(flight, configured))
+    found = fit(framed(flight, configured, state), configured)
+    assert found.values[ESTIMATED] == pytest.approx(flight.truth.values[ESTIMATED], abs=1e-3)
     assert found.cost < 1e-6 and np.isnan(found.values[[2, 4]]).all()
 
 
 def test_a_depth_that_roll_shows() -> None:
-    """An ellipse three times as deep as wide, of which the first guess is wrong by 3.7 sigma."""
-    told = replace(GAUSS, disc=False, box_px=0.05)
+    """An ellipse three times as deep as wide; the initial guess is wrong by 3.7 sigma."""
+    configured = replace(GAUSS, disc=False, box_noise_px=0.05)
     flight = box_flight(MAST, replace(EXACT, roll_deg=25.0), 2)
-    track = Track(flight, told)
+    track = Track(flight, configured)
     state = true_place(flight, track)
     state[S] = np.log(3.0)
-    found = fit(framed(flight, told, state), told)
+    found = fit(framed(flight, configured, state), configured)
     wanted = quantities(state[: len(STATES)], track.turn)
     assert found.state[S] == pytest.approx(state[S], abs=0.02)
-    assert found.values[TOLD] == pytest.approx(wanted, abs=0.1)
+    assert found.values[ESTIMATED] == pytest.approx(wanted, abs=0.1)
 
 
-@pytest.mark.parametrize(("solid", "told"), [(MAST, GAUSS), (BUILDING, ErrorModel())], ids=["mast", "building"])
-def test_the_optimum_is_one_whatever_the_start(solid: Solid, told: ErrorModel) -> None:
+@pytest.mark.parametrize(("solid", "configured"), [(MAST, GAUSS), (BUILDING, ErrorModel())], ids=["mast", "building"])
+def test_the_optimum_is_one_whatever_the_start(solid: Solid, configured: ErrorModel) -> None:
     for seed in (1, 3):
         flight = box_flight(solid, replace(WHITE, roll_deg=10.0), seed)
-        once, again = fit(flight, told), fit(flight, told, true_place(flight, Track(flight, told)))
-        assert again.values[TOLD] == pytest.approx(once.values[TOLD], abs=2e-3)
+        once, again = fit(flight, configured), fit(flight, configured, true_place(flight, Track(flight, configured)))
+        assert again.values[ESTIMATED] == pytest.approx(once.values[ESTIMATED], abs=2e-3)
         assert again.cost == pytest.approx(once.cost, rel=1e-6)
 
 
 @pytest.mark.parametrize("roll", [0.0, 10.0])
 def test_errors_are_near_the_bound_and_the_cost_is_the_least(roll: float) -> None:
-    """Without an error of the path, of which the bound knows nothing. 40 flights tell an RMSE to 11 %."""
-    options = replace(WHITE, roll_deg=roll, position_walk_m=0.0, image_rate_hz=4.0)
-    told = replace(GAUSS, position_walk_m=0.0)
+    """Without path errors, which the bound does not model. 40 flights determine an RMSE to 11 %."""
+    options = replace(WHITE, roll_deg=roll, position_walk_sd_m=0.0, image_rate_hz=4.0)
+    configured = replace(GAUSS, position_walk_sd_m=0.0)
     ratio, cost_share, sigma_share = [], [], []
     for seed in range(1, 41):
         flight = box_flight(MAST, options, seed)
-        found, bound = fit(flight, told), bound_of(flight, told)
-        track = Track(flight, told)
+        found, bound = fit(flight, configured), bound_of(flight, configured)
+        track = Track(flight, configured)
         whitening = track.whitening(found.state)
         assert track.cost(found.state, whitening) <= track.cost(true_place(flight, track), whitening)
-        ratio.append((found.values - flight.truth.values)[TOLD] / bound[TOLD])
+        ratio.append((found.values - flight.truth.values)[ESTIMATED] / bound[ESTIMATED])
         sigma_share.append(found.sigma[[X0, Z0, HEIGHT]] / bound[[X0, Z0, HEIGHT]])
-        cost_share.append(found.cost / sum(not sight.cut for sight in track.sight))  # cut ones count for nothing
+        cost_share.append(found.cost / sum(not sight.cut for sight in track.sight))  # cut sides do not count
     rmse = dict(zip(("X0", "Z0", "W", "H"), np.sqrt(np.mean(np.square(ratio), 0))))
     for name in ("X0", "Z0", "H"):
         assert 0.75 < rmse[name] < 1.25, rmse

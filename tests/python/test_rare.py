@@ -1,4 +1,4 @@
-"""Rare events: counts, intervals, a record that is gone on with, and the one in the repository flown again in part."""
+"""Rare events: counts, intervals, a record that runs continue, and the repository's record, partly flown again."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ goe_avoid = pytest.mark.skipif(not PROGRAM.exists(), reason=f"{PROGRAM} is not b
 
 
 def test_events_are_counted(tmp_path: Path) -> None:
-    """Of the synthetic runs: a late order that ends in a collision, a false order; and what is set here."""
+    """Synthetic runs with a late order that ends in a collision, a false order, and the events set here."""
     rows = avoid_rows(20)
     for row in rows:
         if row["course"] == "collision" and row["kind"] == "mast" and row["seed"] in (3, 4):
@@ -39,8 +39,8 @@ def test_events_are_counted(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("times", "runs"), [(0, 1000), (3, 1000), (50, 1000), (1000, 1000)])
-def test_the_interval_holds(times: int, runs: int) -> None:
-    """At its ends what was seen, or more of it, has 2.5 % of the probability."""
+def test_the_interval_has_its_probability(times: int, runs: int) -> None:
+    """At each end of the interval, the observed count or a more extreme one has a probability of 2.5 %."""
     low, high = interval(times, runs)
     assert 0.0 <= low <= times / runs <= high <= 1.0
     if times > 0:
@@ -50,7 +50,7 @@ def test_the_interval_holds(times: int, runs: int) -> None:
 
 
 @goe_avoid
-def test_a_record_is_gone_on_with(tmp_path: Path, capsys) -> None:
+def test_a_record_is_continued(tmp_path: Path, capsys) -> None:
     file = tmp_path / "record.json"
     command = ["rare", "--out", str(file), "--jobs", "1", "--flights"]
     assert main([*command, "1"]) == 0
@@ -63,8 +63,8 @@ def test_a_record_is_gone_on_with(tmp_path: Path, capsys) -> None:
     assert both.counts == added(first.counts, fly(PROGRAM, FIRST_SEED + CHUNK_RUNS))
     before = file.read_bytes()
     assert main([*command, "1"]) == 0 and file.read_bytes() == before
-    told = capsys.readouterr().out
-    assert f"{flights(both.counts)} flights, all of it simulation" in told
+    output = capsys.readouterr().out
+    assert f"{flights(both.counts)} flights, all of it simulation" in output
 
 
 @goe_avoid
@@ -100,7 +100,7 @@ def test_the_record_s_first_flights_are_these() -> None:
     assert record.first == fly(PROGRAM, FIRST_SEED)
 
 
-def test_the_record_is_told() -> None:
+def test_the_record_is_reported() -> None:
     record = read_record(RECORD)
     assert f"In {flights(record.counts):,} simulated flights" in sentence(record)
     rows = table(record)

@@ -1,4 +1,4 @@
-"""Every command that a README names is run: here, with small arguments, or by the test or step that a table names."""
+"""Every command in a README is run: here with small arguments, or by the test or step that a table names."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ from synthetic_campaign import write_campaign
 ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = ("lib", "port", "sim_host", "tests", "tools")
 PROGRAMS = ("goe_replay", "goe_sim", "goe_campaign", "goe_avoid", "goe_companion", "cmake", "ctest")
-SECONDS = 1800  # only a guard against what hangs
+SECONDS = 1800  # guard against a hang
 
 # ------------------------------------------------------------------------------------------------ what the READMEs say
 
 
 def pages() -> list[Path]:
-    """README.md of all folders, and what lies beside the tests' one."""
+    """README.md of all folders, and the other pages of tests/."""
     return [ROOT / "README.md", *sorted(page for folder in FOLDERS for page in (ROOT / folder).rglob("*.md"))]
 
 
@@ -42,7 +42,7 @@ def is_command(text: str) -> bool:
 
 
 def commands_of(text: str) -> list[str]:
-    """All commands of a page, as they stand there: in blocks of sh, in indented blocks, in code within a line."""
+    """All commands of a page, verbatim: in sh blocks, in indented blocks, in code within a line."""
     found: list[str] = []
     text = text.replace("\\\n", " ")
     for block in re.findall(r"^```sh\n(.*?)^```$", text, re.MULTILINE | re.DOTALL):
@@ -55,13 +55,14 @@ def commands_of(text: str) -> list[str]:
 
 
 def named(command: str) -> str:
-    """A command without what its user fills in: options in brackets, words such as DIR, FILE.html or <preset>."""
+    """A command without the parts that its user fills in: options in brackets, words such as DIR, FILE.html or
+    <preset>."""
     words = re.sub(r"\[[^\]]*\]", "", command).split()
     return " ".join(word for word in words if not re.fullmatch(r"[A-Z]+(\.[a-z]+)?|<[^>]*>", word))
 
 
 def all_commands() -> dict[str, str]:
-    """Where each command is named first, by its name."""
+    """The first page that names each command, by the command's name."""
     places: dict[str, str] = {}
     for page in pages():
         for command in commands_of(page.read_text(encoding="utf-8")):
@@ -74,13 +75,13 @@ def all_commands() -> dict[str, str]:
 
 @dataclass(frozen=True)
 class By:
-    """The test or step that runs a command. ``words``: how the command is called there."""
+    """The test or step that runs a command. ``words``: the text of the call there."""
 
     file: str
     words: str
 
 
-# A key that ends in "..." stands for all that begins so.
+# A key that ends in "..." covers all commands that begin with it.
 RUN_BY = {
     "tools/test.sh": By(".ci/run", "tools/test.sh"),
     "tools/test.sh --quick": By("tests/python/test_test_run.py", '"tools/test.sh", "--quick"'),
@@ -96,8 +97,8 @@ RUN_BY = {
         "tests/python/test_packages_hosts.py", 'passed("cc", source, *flags'
     ),
     "conan create .": By("tests/python/test_packages_hosts.py", "conan create ."),
-    'conan create . -o "&:with_movers=False"': By(
-        "tests/python/test_packages_hosts.py", "conan create . -o '&:with_movers=False'"
+    'conan create . -o "&:with_target_motion=False"': By(
+        "tests/python/test_packages_hosts.py", "conan create . -o '&:with_target_motion=False'"
     ),
     "python -m ci packages --check": By("tests/python/test_packages.py", '"packages", "--check"'),
     "python -m ci packages --sbom": By("tests/python/test_sbom.py", '"packages", "--sbom"'),
@@ -171,9 +172,9 @@ RUN_BY = {
     "python -m ci settings --write lib/README.md": By("tests/python/test_settings_table.py", '"settings", "--write"'),
 }
 
-# Commands in a tree that no machine of the tests has.
-IN_A_TREE_OF_ZEPHYR = "needs a workspace of Zephyr: tests/rtos builds the same sources among what stands in for it"
-IN_A_TREE_OF_NUTTX = "needs NuttX and its apps: tests/rtos builds the same sources among what stands in for them"
+# Commands in a foreign source tree that no test machine has.
+IN_A_TREE_OF_ZEPHYR = "needs a workspace of Zephyr: tests/rtos builds the same sources with stand-ins"
+IN_A_TREE_OF_NUTTX = "needs NuttX and its apps: tests/rtos builds the same sources with stand-ins"
 IN_A_TREE_OF_ARDUPILOT = "needs ArduPilot: tests/ardupilot builds the same sources over headers of its own"
 NOT_RUN = {
     "west ...": IN_A_TREE_OF_ZEPHYR,
@@ -225,14 +226,14 @@ def few_flights(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_demo(built: Path, set_up: None) -> None:
     """[D1]"""
     text = output_of("tools/demo.sh")
-    assert "refined, the default method: better than the paper in" in text
+    assert "filter, the default method: better than the paper in" in text
     (page,) = re.findall(r"^The report: +(.*)$", text, re.MULTILINE)
     assert Path(page) == built / "report.html"
     written = Path(page).read_text(encoding="utf-8")
     assert written.rstrip().endswith("</html>") and "of 60 collision courses" in written
 
 
-def test_the_example_prints_what_the_readme_says(built: Path) -> None:
+def test_the_example_prints_the_readme_s_figures(built: Path) -> None:
     """[D4]"""
     lines = output_of(built / "tests" / "readme_example").splitlines()
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -258,7 +259,7 @@ def test_sizes() -> None:
 def test_bench(built: Path, set_up: None) -> None:
     text = output_of("tools/bench.sh", "1000")
     rates = re.findall(r"^goe_replay --method (\w+): +(\d+) rows/s", text, re.MULTILINE)
-    assert [method for method, _ in rates] == ["refined", "window"]
+    assert [method for method, _ in rates] == ["filter", "window"]
     rates += re.findall(r"^goe_replay, (every column) filled.*: (\d+) rows/s", text, re.MULTILINE)
     assert len(rates) == 3 and all(int(rate) > 0 for _, rate in rates)
     if (built / "port" / "companion" / "goe_companion").exists():
@@ -273,16 +274,16 @@ def test_bench_campaign(built: Path) -> None:
 
 
 def test_set_up_with_rivals(tmp_path: Path, set_up: None) -> None:
-    """In a copy whose list of rivals is empty: nothing is fetched, and the missing GTSAM is told."""
+    """In a copy whose list of rivals is empty: nothing is fetched, and the missing GTSAM is reported."""
     shutil.copytree(ROOT / "tools", tmp_path / "tools", ignore=shutil.ignore_patterns("__pycache__", "*.egg-info"))
     (tmp_path / "tools" / "requirements-rivals.txt").write_text("# none\n")
     bin_folder = tmp_path / ".venv" / "bin"
     bin_folder.mkdir(parents=True)
     (bin_folder / "python").write_text(f'#!/bin/sh\nexec {ROOT}/.venv/bin/python "$@"\n')
     (bin_folder / "python").chmod(0o755)
-    # What tools/setup.sh leaves in .venv to tell that it is as wanted.
+    # Files by which tools/setup.sh recognizes a complete .venv.
     wanted = [(tmp_path / "tools" / name).read_text() for name in ("requirements.txt", "pyproject.toml")]
-    for name in ("lib", "port/flight", "port/cmake", "port/python"):  # what the installed package goe is made of
+    for name in ("lib", "port/flight", "port/cmake", "port/python"):  # the sources of the installed package goe
         shutil.copytree(ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__"))
     version = output_of("python3", "--version")
     (tmp_path / ".venv" / "installed").write_text(f"{version}{''.join(wanted)}{tmp_path}\n")
@@ -326,7 +327,7 @@ def test_goals(group: str, few_flights: None, built: Path, capsys: pytest.Captur
 
 
 def test_goals_of_the_settling_half(few_flights: None, built: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Other tracks, other figures."""
+    """These tracks differ, and so do the figures."""
     texts = []
     for half in ("settle", "judge"):
         assert bench_main(["goals", "--only", "attack", "--half", half]) == 0
@@ -358,7 +359,7 @@ RUN_HERE: dict[str, Callable[..., None]] = {
 
 
 def own_name(command: str) -> str:
-    """What a command is called: compare, demo.sh, --install."""
+    """The name of a command: compare, demo.sh, --install."""
     tool = re.match(r"python -m (?:goe_tools|bench|ci) (\w+)", command)
     words = command.split()
     if tool:

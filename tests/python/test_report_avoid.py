@@ -38,7 +38,7 @@ def kept(course: str, *kinds: str) -> list[dict[str, Any]]:
 # ---------------------------------------------------------------------------------------------------------- the reader
 
 
-def test_what_was_written_is_read(tmp_path: Path) -> None:
+def test_written_runs_are_read(tmp_path: Path) -> None:
     avoid = runs_of(tmp_path, avoid_rows())
     assert len(avoid) == 120
     assert (len(avoid.flown("collision")), len(avoid.flown("pass", "truck"))) == (60, 20)
@@ -67,7 +67,7 @@ def test_what_was_written_is_read(tmp_path: Path) -> None:
         (13, "ahead_s", "", "ahead_s: empty, but there was an order"),
         (73, "ahead_s", "3", "ahead_s: 3, but there was no order"),
         (74, "late", "1", "late: 1, but there was no order"),
-        (75, "false_order", "1", "false_order: 1, but the action tells otherwise"),
+        (75, "false_order", "1", "false_order: 1, but the action contradicts it"),
         (14, "suspect", "91", "suspect: 91, more than were assessed"),
         (15, "seed", "13", "seed: 13 was flown before"),
     ],
@@ -108,14 +108,14 @@ def test_a_file_that_is_none_of_it_is_named(
 def test_the_sentence_follows_from_the_runs(tmp_path: Path) -> None:
     rows = avoid_rows()
     assert av.sentence(runs_of(tmp_path, rows)) == (
-        "If nobody reacts, 57 of 60 collision courses end in a collision; if the orders are carried out, 1 does "
+        "Without goe, 57 of 60 collision courses end in a collision; with goe's orders followed, 1 does "
         f"(truck 1; 1 after a late order); 1 of 60 passes at 30{NBSP}m (1.7{NBSP}%) gets a false order."
     )
     least = min(row["closest_with_m"] for row in kept("collision", "mast", "building"))
     rows = kept("collision", "mast", "building") + kept("pass", "mast")
     assert av.sentence(runs_of(tmp_path, rows)) == (
-        "If nobody reacts, 38 of 40 collision courses end in a collision; if the orders are carried out, none does, "
-        f"and the closest stays {least:.1f}{NBSP}m away; none of 20 passes at 30{NBSP}m gets a false order."
+        "Without goe, 38 of 40 collision courses end in a collision; with goe's orders followed, none does, "
+        f"and the closest aircraft stays {least:.1f}{NBSP}m away; none of 20 passes at 30{NBSP}m gets a false order."
     )
 
 
@@ -124,7 +124,7 @@ def test_the_sentence_of_half_of_the_runs(tmp_path: Path) -> None:
     (course,) = [row for row in kept("collision", "mast") if row["seed"] == 2]
     course |= {"collided_with": 1, "closest_with_m": 0.5}
     assert av.sentence(runs_of(tmp_path, [course])) == (
-        "If nobody reacts, 1 of 1 collision course ends in a collision; if the orders are carried out, 1 does (mast 1)."
+        "Without goe, 1 of 1 collision course ends in a collision; with goe's orders followed, 1 does (mast 1)."
     )
 
 
@@ -137,8 +137,8 @@ def test_the_table_follows_from_the_runs(campaign: Campaign) -> None:
     assert list(rows) == ["Mast", "Building", "Truck, on approach"]
     closest = sorted(row["closest_with_m"] for row in kept("collision", "mast"))
     ahead = sorted(row["ahead_s"] for row in kept("collision", "mast"))
-    told = [cell["text"] for cell in rows["Mast"]]  # type: ignore[attr-defined]
-    assert told == [
+    cells = [cell["text"] for cell in rows["Mast"]]  # type: ignore[attr-defined]
+    assert cells == [
         "20", "19", "0", f"{closest[0]:.1f} / {closest[1]:.1f} / {closest[10]:.1f}",
         f"{ahead[0]:.1f} / {ahead[10]:.1f}", "0", "0", "20", f"0 (0.0{NBSP}%)",
     ]  # fmt: skip
@@ -181,19 +181,19 @@ def test_the_axis_is_not_stretched_by_a_run_that_passes_far_off(tmp_path: Path, 
     figure = draw_avoid(far, False)
     assert figure is not None
     assert figure.axes[0].get_xlim()[1] < 60.0
-    assert "1 of 20 pass further off" in [text.get_text() for text in figure.axes[0].texts]
+    assert "1 of 20 pass farther away" in [text.get_text() for text in figure.axes[0].texts]
 
 
 def test_the_page_has_the_section_where_runs_are_given(campaign: Campaign) -> None:
     assert campaign.avoid is not None
-    text = page.render_page(campaign, [])
+    text = page.render_pages(campaign, [])[page.ANSWERS]
     assert '<a href="#avoid">' in text
     section = unescape(text.split('<section id="avoid">')[1].split("</section>")[0])
     assert av.sentence(campaign.avoid) in section
     assert "100 ms late" in section and "passes at 30 m" in section and "margin is 15 m" in section
     assert section.count('<th scope="row">') == 3
     assert re.search(r'class="n miss" data-label="collisions with">1<', section)
-    without = page.render_page(read_campaign(campaign.folder), [])
+    without = "".join(page.render_pages(read_campaign(campaign.folder), []).values())
     assert 'id="avoid"' not in without and "#avoid" not in without
 
 
@@ -201,6 +201,6 @@ def test_the_page_of_passes_alone_and_of_courses_alone(campaign: Campaign, tmp_p
     for course, other in (("pass", "late orders"), ("collision", "false orders")):
         file = write_avoid(tmp_path / "avoid.csv", kept(course, "mast"))
         alone = read_campaign(campaign.folder, avoid=file)
-        section = page.render_page(alone, []).split('<section id="avoid">')[1].split("</section>")[0]
+        section = page.render_pages(alone, [])[page.ANSWERS].split('<section id="avoid">')[1].split("</section>")[0]
         assert section.count('<th scope="row">') == 1 and other not in section
         assert (draw_avoid(alone, False) is None) == (course == "pass")

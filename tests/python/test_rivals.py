@@ -1,4 +1,5 @@
-"""The rival estimators: right where their mathematics says so, silent where they cannot know."""
+"""The rival estimators: correct where their mathematics says so, and without an answer where the data do not determine
+one."""
 
 from __future__ import annotations
 
@@ -42,7 +43,7 @@ def runnable(name: str) -> str:
 
 
 def blank(dx: np.ndarray) -> Track:
-    """Level flight along Z with displacement dx (K,) to the right, nothing seen."""
+    """Level flight along Z with displacement dx (K,) to the right; no feature is visible."""
     count = len(dx)
     time = np.arange(count) / 8.0
     nothing = np.zeros((count, 6, 2)), np.zeros((count, 6), bool)
@@ -50,7 +51,7 @@ def blank(dx: np.ndarray) -> Track:
 
 
 def see(track: Track, image: int, feature: int, x: float, height: float, z: float) -> None:
-    """Marks a feature at place (x, z) from the camera and ``height`` over the ground."""
+    """Marks a feature as visible at place (x, z) from the camera and ``height`` over the ground."""
     track.points[image, feature] = x / z, (HEIGHT_M - height) / z
     track.seen[image, feature] = True
 
@@ -69,7 +70,7 @@ def past_cylinder(dx: np.ndarray) -> Track:
 
 
 def past_box(dx: np.ndarray, orientation: float = BOX["orientation_rad"]) -> Track:
-    """All corners in view; which ones are seen follows from the sides that face the camera."""
+    """All corners are in view. The sides that face the camera determine the visible ones."""
     track = blank(dx)
     across, along = (
         np.array([math.cos(orientation), -math.sin(orientation)]),
@@ -91,7 +92,7 @@ def past_box(dx: np.ndarray, orientation: float = BOX["orientation_rad"]) -> Tra
 
 
 def faces_camera(a: np.ndarray, b: np.ndarray) -> bool:
-    """Whether the side from a to b, clockwise around the box, shows its outside to the origin."""
+    """Whether the outside of the side from a to b, clockwise around the box, faces the origin."""
     return a[0] * (b[1] - a[1]) - a[1] * (b[0] - a[0]) > 0
 
 
@@ -110,61 +111,61 @@ def test_everyone_has_a_strength() -> None:
 
 
 def test_cylinder_without_noise(rival: str) -> None:
-    told = RIVALS[rival](past_cylinder(straight()))
-    assert told["box"] == 0
-    assert told["z0_m"] == pytest.approx(CYLINDER["z0_m"], rel=1e-3)
-    assert told["x0_m"] == pytest.approx(CYLINDER["x0_m"], rel=1e-3)
-    assert told["width_m"] == pytest.approx(CYLINDER["width_m"], rel=2e-3)
-    assert ("height_m" in told) == (rival in BY_POINTS)
-    assert told.get("height_m", CYLINDER["height_m"]) == pytest.approx(CYLINDER["height_m"], rel=1e-3)
-    assert "orientation_rad" not in told
-    assert "length_m" not in told
+    answer = RIVALS[rival](past_cylinder(straight()))
+    assert answer["box"] == 0
+    assert answer["z0_m"] == pytest.approx(CYLINDER["z0_m"], rel=1e-3)
+    assert answer["x0_m"] == pytest.approx(CYLINDER["x0_m"], rel=1e-3)
+    assert answer["width_m"] == pytest.approx(CYLINDER["width_m"], rel=2e-3)
+    assert ("height_m" in answer) == (rival in BY_POINTS)
+    assert answer.get("height_m", CYLINDER["height_m"]) == pytest.approx(CYLINDER["height_m"], rel=1e-3)
+    assert "orientation_rad" not in answer
+    assert "length_m" not in answer
 
 
 def test_cylinder_straight_ahead(rival: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The bisector has no parallax there; the outlines taken as points lie up to an eighth of the width off."""
+    """The bisector has no parallax there; the outlines taken as points are off by up to an eighth of the width."""
     monkeypatch.setitem(CYLINDER, "x0_m", 0.0)
-    told = RIVALS[rival](past_cylinder(straight()))
-    assert told["z0_m"] == pytest.approx(CYLINDER["z0_m"], rel=0.01)
-    assert told["x0_m"] == pytest.approx(0.0, abs=0.01)
-    assert told["width_m"] == pytest.approx(CYLINDER["width_m"], rel=0.02)
+    answer = RIVALS[rival](past_cylinder(straight()))
+    assert answer["z0_m"] == pytest.approx(CYLINDER["z0_m"], rel=0.01)
+    assert answer["x0_m"] == pytest.approx(0.0, abs=0.01)
+    assert answer["width_m"] == pytest.approx(CYLINDER["width_m"], rel=0.02)
 
 
 @pytest.mark.parametrize("orientation", [-0.6, 0.0, 0.3, 0.7])
 def test_box_without_noise(by_points: str, orientation: float) -> None:
-    told = RIVALS[by_points](past_box(straight(), orientation))
+    answer = RIVALS[by_points](past_box(straight(), orientation))
     truth = {**BOX, "orientation_rad": orientation}
-    assert told["box"] == 1
-    assert {name: told[name] for name in truth} == pytest.approx(truth, rel=5e-3, abs=2e-3)
-    assert all(told[name] > 0 for name in told if "_sd_" in name)
+    assert answer["box"] == 1
+    assert {name: answer[name] for name in truth} == pytest.approx(truth, rel=5e-3, abs=2e-3)
+    assert all(answer[name] > 0 for name in answer if "_sd_" in name)
 
 
 @pytest.mark.parametrize("name", BY_SIZE)
 def test_box_as_disc_is_only_roughly_right(name: str) -> None:
-    """The documented bias: the outline of a box is not a disc's, its width changes as the box turns."""
-    told = RIVALS[name](past_box(straight()))
-    assert told["box"] == 0
-    assert "orientation_rad" not in told
-    assert told["z0_m"] == pytest.approx(BOX["z0_m"] + 0.5 * BOX["length_m"] * math.cos(0.3), rel=0.05)
+    """The documented bias: the outline of a box is not a disc's, and its width changes as the box turns."""
+    answer = RIVALS[name](past_box(straight()))
+    assert answer["box"] == 0
+    assert "orientation_rad" not in answer
+    assert answer["z0_m"] == pytest.approx(BOX["z0_m"] + 0.5 * BOX["length_m"] * math.cos(0.3), rel=0.05)
 
 
 def test_corners_keep_their_identity(by_points: str) -> None:
-    """First only the front is seen, later a side as well: base_right then is another corner."""
+    """At first only the front is visible, later a side, too: base_right then is another corner."""
     dx = np.linspace(-24.0, 12.0, IMAGES)
     track = past_box(dx, 0.0)
     two_faces = track.seen[:, 4]
     assert 20 < two_faces.sum() < IMAGES - 5
-    told = RIVALS[by_points](track)
-    assert told["z0_m"] == pytest.approx(BOX["z0_m"], rel=2e-3)
-    assert told["length_m"] == pytest.approx(BOX["length_m"], rel=0.02)
+    answer = RIVALS[by_points](track)
+    assert answer["z0_m"] == pytest.approx(BOX["z0_m"], rel=2e-3)
+    assert answer["length_m"] == pytest.approx(BOX["length_m"], rel=0.02)
 
 
 def test_one_face_has_no_length(by_points: str) -> None:
     track = past_box(BOX["x0_m"] + np.linspace(-2.0, 2.0, IMAGES), 0.0)
     assert not track.seen[:, 4].any()
-    told = RIVALS[by_points](track)
-    assert "length_m" not in told
-    assert told["width_m"] == pytest.approx(BOX["width_m"], rel=0.01)
+    answer = RIVALS[by_points](track)
+    assert "length_m" not in answer
+    assert answer["width_m"] == pytest.approx(BOX["width_m"], rel=0.01)
 
 
 @pytest.mark.parametrize("past", [past_cylinder, past_box])
@@ -184,19 +185,19 @@ def test_no_parallax_gives_nothing(rival: str, past) -> None:
 @pytest.mark.parametrize("past", [past_cylinder, past_box])
 def test_mirrored_scene(rival: str, past) -> None:
     track = noisy(past(np.linspace(0.0, 20.0, IMAGES)), 3)
-    told, mirrored = RIVALS[rival](track), RIVALS[rival](track.mirrored())
+    answer, mirrored = RIVALS[rival](track), RIVALS[rival](track.mirrored())
     for name in ("x0_m", "orientation_rad"):
         if name in mirrored:
             mirrored[name] *= -1.0
-    assert mirrored == pytest.approx(told, rel=1e-4, abs=1e-6)
+    assert mirrored == pytest.approx(answer, rel=1e-4, abs=1e-6)
 
 
 def test_own_sigma_is_honest(rival: str) -> None:
-    """White noise and a cylinder, for which all models hold: squared errors of Z0 over their own variances."""
+    """White noise and a cylinder, for which all models are exact: squared errors of Z0 over their own variances."""
     squares = []
     for seed in range(40):
-        told = RIVALS[rival](noisy(past_cylinder(straight()), seed))
-        squares.append(((told["z0_m"] - CYLINDER["z0_m"]) / told["z0_sd_m"]) ** 2)
+        answer = RIVALS[rival](noisy(past_cylinder(straight()), seed))
+        squares.append(((answer["z0_m"] - CYLINDER["z0_m"]) / answer["z0_sd_m"]) ** 2)
     assert 0.5 < np.mean(squares) < 1.7  # chi squared of 40: 99 % within 0.52 and 1.67
 
 
@@ -210,9 +211,9 @@ def test_outliers_are_not_followed(rival: str) -> None:
 
 
 def test_history_grows_with_the_images() -> None:
-    told = history("bearing_angle", noisy(past_cylinder(straight()), 7), 10)
-    assert len(told) == IMAGES // 10
-    sigmas = [t["z0_sd_m"] for t in told if t]
+    answer = history("bearing_angle", noisy(past_cylinder(straight()), 7), 10)
+    assert len(answer) == IMAGES // 10
+    sigmas = [t["z0_sd_m"] for t in answer if t]
     assert len(sigmas) >= 8
     assert sigmas[-1] < 0.2 * sigmas[0]
 
@@ -227,11 +228,11 @@ def test_gtsam_absent_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.parametrize("group", ["cylinder", "truck"])
 def test_simulated_flights_are_read(rival: str, group: str) -> None:
-    """Lens, mounting and attitude of a simulated flight are taken off: the place comes out right."""
+    """Removes lens, mounting and attitude of a simulated flight: the position is right."""
     scene = next(s for s in paper_scenes() if s.group == group and abs(s.truth.x0_m) > 10)
     track = Track.of_flight(measure(scene, Noise(pixel_px=0.0, outliers=0.0)))
-    told = RIVALS[rival](track)
+    answer = RIVALS[rival](track)
     truth = scene.truth
-    middle = 0.0 if told["box"] or truth.kind == "disc" else 0.5 * truth.length_m * math.cos(truth.orientation_rad)
-    within = 0.01 if truth.kind == "disc" or told["box"] else 0.05
-    assert told["z0_m"] == pytest.approx(truth.z0_m + middle, rel=within)
+    middle = 0.0 if answer["box"] or truth.kind == "disc" else 0.5 * truth.length_m * math.cos(truth.orientation_rad)
+    within = 0.01 if truth.kind == "disc" or answer["box"] else 0.05
+    assert answer["z0_m"] == pytest.approx(truth.z0_m + middle, rel=within)

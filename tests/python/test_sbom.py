@@ -1,4 +1,4 @@
-"""The bill of materials: complete by the files that install things, in CycloneDX's form, with licences as installed."""
+"""The bill of materials: complete by the files that install things, in CycloneDX's form, with licenses as installed."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def named(bom: Json, prefix: str) -> dict[str, list[Json]]:
 
 
 def test_every_package_of_the_set_up_is_there(bom: Json) -> None:
-    """Words of tools/setup.sh, read here in another way than the bill's writer does."""
+    """Package names of tools/setup.sh, extracted by a method independent of the bill's writer."""
     text = (ROOT / "tools" / "setup.sh").read_text(encoding="utf-8")
     lines = [line.split() for line in text.splitlines() if line.strip().startswith("want ")]
     wanted = [words[2] for words in lines]
@@ -50,10 +50,10 @@ def test_every_pinned_package_is_there(bom: Json) -> None:
             if "==" in line and not line.startswith("#"):
                 package, version = line.split(";")[0].strip().split("==")
                 pinned.add((canonical(package), version))
-    told = {
+    stated = {
         (name, one["version"]) for name, all_ in named(bom, "pkg:pypi/").items() for one in all_ if "version" in one
     }
-    assert len(pinned) > 70 and told == pinned
+    assert len(pinned) > 70 and stated == pinned
     assert [one for one in named(bom, "pkg:pypi/")["setuptools"] if "version" in one] == []  # pip chooses
 
 
@@ -61,13 +61,13 @@ def test_unity_and_plotly_js_with_their_hashes(bom: Json) -> None:
     script = (ROOT / "tools" / "fetch_unity.sh").read_text(encoding="utf-8")
     digests = set(re.findall(r"\b[0-9a-f]{64}\b", script))
     unity = named(bom, "pkg:github/")["unity"]
-    told = [
+    stated = [
         one["hashes"][0]["content"]
         for whole in unity
         for one in (whole, *whole.get("components", ()))
         if "hashes" in one
     ]
-    assert len(digests) == 4 and sorted(told) == sorted(digests)
+    assert len(digests) == 4 and sorted(stated) == sorted(digests)
     assert {whole["version"] for whole in unity} == {"2.6.1", "2.5.1"}
     (plotly,) = named(bom, "pkg:npm/")["plotly.js"]
     if importlib.util.find_spec("plotly") is not None:
@@ -76,7 +76,7 @@ def test_unity_and_plotly_js_with_their_hashes(bom: Json) -> None:
         assert plotly["version"] == get_plotlyjs_version() and len(plotly["hashes"]) == 1
 
 
-def test_the_library_holds_nothing_but_itself(bom: Json) -> None:
+def test_the_library_contains_no_other_package(bom: Json) -> None:
     needs = {entry["ref"]: entry["dependsOn"] for entry in bom["dependencies"]}
     assert bom["metadata"]["component"]["bom-ref"] == "goe:goe"
     assert needs["goe:goe"] == [] and needs["goe:goe-flight"] == ["goe:goe"]
@@ -86,7 +86,7 @@ def test_the_library_holds_nothing_but_itself(bom: Json) -> None:
     assert required == ["goe-flight"]
 
 
-def test_what_the_programs_link(bom: Json) -> None:
+def test_libraries_that_the_programs_link(bom: Json) -> None:
     needs = {entry["ref"]: set(entry["dependsOn"]) for entry in bom["dependencies"]}
     usual = {f"pkg:deb/debian/{name}" for name in ("libpopt-dev", "libcsv-dev", "libinih-dev")}
     for program in ("replay", "sim", "campaign", "avoid"):
@@ -99,7 +99,7 @@ def test_what_the_programs_link(bom: Json) -> None:
 
 
 def test_the_form(bom: Json) -> None:
-    """By the rules here, and by the schema itself where its library is at hand."""
+    """By the rules here, and by the schema itself where its library is available."""
     assert faults(bom) == []
     if importlib.util.find_spec("cyclonedx") is not None:
         from cyclonedx.schema import SchemaVersion
@@ -118,8 +118,8 @@ def broken(bom: Json, how: str) -> Json:
         "a scope": lambda: component.update(scope="never"),
         "a hash": lambda: component.update(hashes=[{"alg": "SHA-256", "content": "12"}]),
         "a package URL": lambda: component.update(purl="npm/plotly"),
-        "licences": lambda: component.update(licenses=[{"license": {"id": "MIT"}}, {"expression": "MIT OR ISC"}]),
-        "a licence": lambda: component.update(licenses=[{"license": {"id": "do what you like"}}]),
+        "licenses": lambda: component.update(licenses=[{"license": {"id": "MIT"}}, {"expression": "MIT OR ISC"}]),
+        "a license": lambda: component.update(licenses=[{"license": {"id": "do what you like"}}]),
         "twice": lambda: bad["components"].append(component),
         "nowhere": lambda: bad["dependencies"][0]["dependsOn"].append("pkg:deb/debian/none"),
         "a version": lambda: bad.update(version="1"),
@@ -132,11 +132,11 @@ def broken(bom: Json, how: str) -> Json:
 @pytest.mark.parametrize(
     "how",
     [
-        "a key", "a type", "no name", "a scope", "a hash", "a package URL", "licences", "a licence", "twice", "nowhere",
+        "a key", "a type", "no name", "a scope", "a hash", "a package URL", "licenses", "a license", "twice", "nowhere",
         "a version", "another form",
     ],
 )  # fmt: skip
-def test_what_breaks_the_rules_is_found(bom: Json, how: str) -> None:
+def test_conflicts_of_the_rules_are_found(bom: Json, how: str) -> None:
     assert len(faults(broken(bom, how))) >= 1
 
 
@@ -144,12 +144,12 @@ def test_licences_are_those_that_the_installed_packages_state() -> None:
     checked = 0
     for name, licence in PYTHON.items():
         try:
-            told = importlib.metadata.metadata(name).get("License-Expression")
+            stated = importlib.metadata.metadata(name).get("License-Expression")
         except importlib.metadata.PackageNotFoundError:
             continue
-        if told:
+        if stated:
             checked += 1
-            assert set(re.split(r" OR | AND ", told)) & set(re.split(r" OR | AND ", licence)), (name, told)
+            assert set(re.split(r" OR | AND ", stated)) & set(re.split(r" OR | AND ", licence)), (name, stated)
     assert checked > 5 or importlib.util.find_spec("urllib3") is None
 
 

@@ -1,4 +1,4 @@
-"""Synthetic logs: the geometry against an independent projection formula."""
+"""Synthetic logs: their geometry against an independent projection formula."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def pixel_of(camera: Camera, frame: Frame, point: np.ndarray) -> tuple[float, fl
 
 
 def box_corners(log: ObservationLog) -> dict[str, np.ndarray]:
-    """The base corners of the only obstacle, from its truth, seen along its length axis: near/far, left/right."""
+    """The base corners of the only obstacle by its truth, in the view along its length axis: near/far, left/right."""
     (truth,) = log.truth.values()
     heading = math.radians(truth.heading_deg)
     along, across = np.array([math.cos(heading), math.sin(heading)]), np.array([-math.sin(heading), math.cos(heading)])
@@ -125,7 +125,8 @@ def test_head_on_one_face_is_visible() -> None:
 def test_truth_is_where_x0_z0_say() -> None:
     scene = Scene(x0_m=-12.0, z0_m=100.0, alpha_deg=30.0, length_m=8.0, course_deg=90.0, start_ne_m=(10.0, 20.0))
     (truth,) = make_log(scene).truth.values()
-    # T: Z east, X south. Middle of the front edge at east 120, north 22; the centre 4 m on along the length axis.
+    # T: Z east, X south. Middle of the front edge at east 120, north 22; the center is 4 m farther along the length
+    # axis.
     assert truth.center_e_m == pytest.approx(20.0 + 100.0 + 4.0 * math.cos(math.radians(30.0)))
     assert truth.center_n_m == pytest.approx(10.0 + 12.0 - 4.0 * math.sin(math.radians(30.0)))
     assert truth.heading_deg == pytest.approx(120.0)
@@ -138,7 +139,7 @@ def test_cylinder_tangents_are_exact(x0_m: float) -> None:
     for k, frame in enumerate(make_log(scene).frames):
         x, z = x0_m, 150.0 - 17.0 * k / 8.0
         left, right = (math.atan((pixel[0] - 640.0) / 914.0) for pixel in (frame.left, frame.right))
-        # the bearing of the centre halves the tangents, and the sine of half their angle is r/d
+        # the bearing of the center bisects the tangents, and the sine of half their angle is r/d
         assert 0.5 * (left + right) == pytest.approx(math.atan2(x, z), abs=1e-12)
         assert math.sin(0.5 * (right - left)) == pytest.approx(3.0 / math.hypot(x, z), rel=1e-11)
         assert frame.base_left is None
@@ -160,7 +161,7 @@ def test_cylinder_top_is_the_highest_point_of_the_rim(altitude_m: float, real_ca
             point = np.array([truth.center_n_m, truth.center_e_m, truth.ground_d_m]) + offset
             rim.append(pixel_of(camera, frame, point)[1])
         assert frame.top[1] <= min(rim) + 1e-9
-        assert frame.top[1] == pytest.approx(min(rim), abs=2e-3)  # the finest the samples can tell
+        assert frame.top[1] == pytest.approx(min(rim), abs=2e-3)  # the finest resolution of the samples
 
 
 def test_rounding_is_to_whole_pixels_and_no_more() -> None:
@@ -174,7 +175,7 @@ def test_rounding_is_to_whole_pixels_and_no_more() -> None:
             assert np.max(np.abs(np.subtract(getattr(a, name), getattr(b, name)))) <= 0.5
 
 
-def test_pixel_noise_is_reproducible_and_of_the_size_asked_for() -> None:
+def test_pixel_noise_is_reproducible_and_of_the_configured_size() -> None:
     scene = {"run_s": 25.0, "speed_mps": 1.0, "alpha_deg": 20.0}
     exact, first, again = (make_log(Scene(**scene, pixel_sigma_px=sigma, seed=3)) for sigma in (0.0, 2.0, 2.0))
     assert first.frames == again.frames
@@ -195,15 +196,15 @@ def test_clipping_and_points_behind() -> None:
     assert sum(frame.left is not None for frame in unclipped.frames) > len(inside)
 
 
-def test_points_where_the_lens_model_bends_back_are_not_seen() -> None:
+def test_points_where_the_lens_model_bends_back_are_not_visible() -> None:
     camera = Camera(1280.0, 1280.0, 914.0, 914.0, 640.0, 640.0, k1=-0.3)
     turning = 1.0 / math.sqrt(0.9)  # r (1 - 0.3 r^2) is steepest up to here
-    seen = []
+    in_view = []
     for z in np.linspace(10.0, 60.0, 200):
         log = make_log(Scene("cylinder", 2.0, 2.0, 2.0, x0_m=-30.0, z0_m=float(z), run_s=0.0, camera=camera))
         if log.frames[0].left:
-            seen.append(30.0 / z)
-    assert 0.7 * turning < max(seen) < turning
+            in_view.append(30.0 / z)
+    assert 0.7 * turning < max(in_view) < turning
     assert distort(camera, turning, 0.0)[0] > distort(camera, 1.2 * turning, 0.0)[0]
 
 
@@ -219,7 +220,7 @@ def test_quaternion_is_the_rotation() -> None:
 
 @pytest.mark.parametrize("shape", ["cylinder", "box"])
 def test_the_track_begins_with_the_first_image_that_shows_a_feature(shape: str, tmp_path: Path) -> None:
-    """A camera that looks aside, on an arc: what truth and flight say of T is what an estimator finds."""
+    """On an arc, with a camera that looks aside: truth and flight use the same T as an estimator."""
     scene = Scene(
         shape, 8.0, 14.0, 15.0, x0_m=60.0, z0_m=200.0, alpha_deg=40.0, path="arc", arc_radius_m=-900.0, run_s=10.0,
         clip=True, camera=replace(PINHOLE, mount_yaw_deg=60.0),
@@ -227,18 +228,18 @@ def test_the_track_begins_with_the_first_image_that_shows_a_feature(shape: str, 
     log = make_log(scene)
     shown = [any(getattr(frame, name) is not None for name in FEATURES) for frame in log.frames]
     assert 5 < shown.index(True) < 40
-    told = {name: float(log.truth[1].extra[name]) for name in ("x0_m", "z0_m", "track_heading_deg")}
-    assert told["track_heading_deg"] < -2.0
+    of_log = {name: float(log.truth[1].extra[name]) for name in ("x0_m", "z0_m", "track_heading_deg")}
+    assert of_log["track_heading_deg"] < -2.0
     settings = SettingsOfWindow(model="disc" if shape == "cylinder" else "line")
     method = WindowMethod(log.camera, settings, np.float32)
     values = [method.update(frame).estimate.values for frame in log.frames][-20]
-    assert values["x0_m"] == pytest.approx(told["x0_m"], abs=0.5)
-    assert values["z0_m"] == pytest.approx(told["z0_m"], abs=1.0)
+    assert values["x0_m"] == pytest.approx(of_log["x0_m"], abs=0.5)
+    assert values["z0_m"] == pytest.approx(of_log["z0_m"], abs=1.0)
     if shape == "box":
         assert values["orientation_deg"] == pytest.approx(float(log.truth[1].extra["orientation_deg"]), abs=1.0)
     write_log(tmp_path, log)
     (flight,) = from_log(tmp_path)
-    assert (flight.truth.x0_m, flight.truth.z0_m) == (told["x0_m"], told["z0_m"])
+    assert (flight.truth.x0_m, flight.truth.z0_m) == (of_log["x0_m"], of_log["z0_m"])
     assert len(flight.time_s) == len(log.frames) - shown.index(True) and flight.seen[0].any()
 
 
@@ -280,8 +281,8 @@ def test_bad_scene_writes_nothing(tmp_path, capsys) -> None:
     assert not (tmp_path / "log").exists()
 
 
-def test_the_committed_log_is_made_by_the_command_beside_it(tmp_path, capsys) -> None:
-    """Pixels are whole and so must be the same; poses may differ in the last bits of another machine's sine."""
+def test_the_committed_log_is_made_by_its_documented_command(tmp_path, capsys) -> None:
+    """Pixels are whole and must be equal. Poses may differ in the last bits by another machine's sine."""
     text = (ROOT / "tests" / "data" / "README.md").read_text()
     (command,) = [part for part in text.split("\n\n") if part.strip().startswith("python -m goe_tools scene")]
     words = shlex.split(command.replace("\\\n", " "))

@@ -1,4 +1,4 @@
-"""The settings are said once: the manual, the header and the programs agree with the library's list."""
+"""The settings have one source: the manual, the header and the programs agree with the library's list."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ STRUCTS = {  # group of settings: its structure in goe.h
     "navigation": "goe_navigation_t",
     "detector": "goe_detector_t",
     "window": "goe_window_settings_t",
-    "refined": "goe_refined_settings_t",
+    "filter": "goe_filter_settings_t",
     "": "goe_settings_t",
 }
 NUMBER = r"(-?\d+(?:\.\d+)?(?:e-?\d+)?|GOE_WINDOW_MAX)"
@@ -58,7 +58,7 @@ def test_the_header_documents_every_setting(rows: list[Setting]) -> None:
     assert set(documented()) == {row.name for row in rows}
 
 
-def test_the_header_tells_range_and_default(rows: list[Setting]) -> None:
+def test_the_header_documents_range_and_default(rows: list[Setting]) -> None:
     """[A26]"""
     comments = documented()
     checked = 0
@@ -82,7 +82,7 @@ def test_the_header_tells_range_and_default(rows: list[Setting]) -> None:
 def test_help_shows_the_defaults(rows: list[Setting]) -> None:
     assert REPLAY
     shown = subprocess.run([REPLAY, "--help"], capture_output=True, text=True, check=True).stdout
-    tuned = [row for row in rows if row.name.split(".")[0] in ("navigation", "detector", "refined", "window")]
+    tuned = [row for row in rows if row.name.split(".")[0] in ("navigation", "detector", "filter", "window")]
     for row in tuned:
         assert f"{row.name}={row.value}" in shown.split(), row.name
 

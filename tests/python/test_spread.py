@@ -24,11 +24,11 @@ from goe_tools.flights.noise import NOISES
 from goe_tools.flights.simulated import random_scenes
 from goe_tools.spread import Workers, _client, each, spread
 
-cloudpickle.register_pickle_by_value(sys.modules[__name__])  # no worker could import it
+cloudpickle.register_pickle_by_value(sys.modules[__name__])  # no worker can import it
 ROOT = Path(__file__).resolve().parents[2]
-HANG_S = 600  # only a guard against what hangs
+HANG_S = 600  # guard against a hang
 KILLED = "killed"
-CAMPAIGN = "conditioning"  # the quickest of its studies with all obstacles in it
+CAMPAIGN = "conditioning"  # the fastest study with all obstacles
 
 
 def cube(number: int) -> int:
@@ -36,20 +36,20 @@ def cube(number: int) -> int:
 
 
 def late_cube(folder: Path, number: int) -> int:
-    """Marks that it was asked, and by whom. All but the first wait until somebody was killed."""
+    """Marks the call and its process. All but the first wait until a process was killed."""
     (folder / f"{number}-{os.getpid()}").touch()
     while number > 0 and not (folder / KILLED).exists():
         time.sleep(0.01)
     return cube(number)
 
 
-def asked(folder: Path) -> set[str]:
-    """The processes that were."""
+def marked_by(folder: Path) -> set[str]:
+    """The processes that took a call."""
     return {path.name.split("-")[1] for path in folder.iterdir() if "-" in path.name}
 
 
 def wait_for(what: Callable[[], bool]) -> None:
-    """What does not come within HANG_S never comes."""
+    """Raises TimeoutError after HANG_S."""
     end_s = time.monotonic() + HANG_S
     while not what():
         if time.monotonic() > end_s:
@@ -64,14 +64,14 @@ def flights(count: int) -> list[Task]:
 def assert_same(some: list[Outcome], others: list[Outcome]) -> None:
     assert len(some) == len(others) > 0
     for one, other in zip(some, others):
-        assert one.name == other.name and one.nis == other.nis and one.misfit == other.misfit
+        assert one.name == other.name and one.nis == other.nis and one.nis_ratio == other.nis_ratio
         assert np.array_equal(one.covariance, other.covariance, equal_nan=True)
         assert np.array_equal(one.refined.error, other.refined.error, equal_nan=True)
 
 
 @pytest.fixture(scope="module")
 def conditioning(built: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """What goe_campaign itself writes."""
+    """A campaign written by goe_campaign itself."""
     folder = tmp_path_factory.mktemp("whole") / "campaign"
     command = [str(ROOT / "build/sim_host/goe_campaign"), "--quiet", "--studies", CAMPAIGN, "--out", str(folder)]
     subprocess.run(command, check=True)
@@ -79,15 +79,15 @@ def conditioning(built: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def assert_same_campaign(one: Path, other: Path) -> None:
-    """But for how it was flown."""
+    """Equal except for the record of how it was flown."""
     files = [{path.relative_to(folder) for path in folder.rglob("*")} for folder in (one, other)]
     assert files[0] == files[1]
     for name in files[0] - {Path("campaign.json")}:
         if (one / name).is_file():
             assert (one / name).read_bytes() == (other / name).read_bytes(), name
     facts = [json.loads((folder / "campaign.json").read_text(encoding="utf-8")) for folder in (one, other)]
-    for told in facts:
-        del told["jobs"], told["wall_s"]
+    for reported in facts:
+        del reported["jobs"], reported["wall_s"]
     assert facts[0] == facts[1]
 
 
@@ -103,13 +103,13 @@ def test_a_campaign_in_parts_is_the_whole(conditioning: Path, tmp_path: Path) ->
 
 def test_a_campaign_that_cannot_be(tmp_path: Path, built: None, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "file").touch()
-    for words, told in (
+    for words, reported in (
         (["--studies", "winds", "--out", str(tmp_path / "c")], "--studies: 'winds' is not paper"),
         (["--seeds", "0", "--out", str(tmp_path / "c")], "--seeds: must be 1 to 1000, not 0"),
         (["--out", str(tmp_path / "file" / "c")], "file/c: cannot be written"),
     ):
         assert main(["campaign", *words, "--jobs", "1"]) == 2
-        assert told in capsys.readouterr().err
+        assert reported in capsys.readouterr().err
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
 
 
@@ -121,7 +121,7 @@ def test_the_order_is_that_of_the_tasks() -> None:
     assert list(spread(cube, range(200), Workers(2))) == [number**3 for number in range(200)]
 
 
-def test_a_killed_process_is_told() -> None:
+def test_a_killed_process_is_reported() -> None:
     def die(number: int) -> int:
         if number == 3:
             os.kill(os.getpid(), signal.SIGKILL)
@@ -132,8 +132,7 @@ def test_a_killed_process_is_told() -> None:
 
 
 def test_a_cluster_that_loses_a_worker(conditioning: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Two workers; one of them dies in the middle, and the other one does its work again. Flights come back as they are
-    here."""
+    """One of two workers dies in the middle, and the other one repeats its work. The flights equal local ones."""
     distributed, dask = pytest.importorskip("distributed"), pytest.importorskip("dask")
     monkeypatch.setattr("goe_tools.spread.CONNECT_S", HANG_S)
     with (
@@ -144,7 +143,7 @@ def test_a_cluster_that_loses_a_worker(conditioning: Path, tmp_path: Path, monke
     ):
         results = spread(partial(late_cube, tmp_path), range(40), Workers(scheduler=cluster.scheduler_address))
         first = next(results)
-        wait_for(lambda: len(asked(tmp_path)) == 2)
+        wait_for(lambda: len(marked_by(tmp_path)) == 2)
         worker = next(iter(cluster.workers.values()))
         os.kill(worker.process.pid, signal.SIGKILL)
         (tmp_path / KILLED).touch()
@@ -156,7 +155,7 @@ def test_a_cluster_that_loses_a_worker(conditioning: Path, tmp_path: Path, monke
         _client(cluster.scheduler_address).close()
     assert_same_campaign(tmp_path / "campaign", conditioning)
     shutil.rmtree(tmp_path / "campaign")
-    assert len(asked(tmp_path)) >= 2
+    assert len(marked_by(tmp_path)) >= 2
 
 
 def test_no_scheduler_there(built: None, capsys) -> None:
@@ -171,7 +170,7 @@ def children(parent: int) -> list[int]:
 
 
 def catches_ctrl_c(process: int) -> bool:
-    """Which it ignores while processes are born."""
+    """The program ignores Ctrl-C while it starts processes."""
     (caught,) = re.findall(r"^SigCgt:\s+(\w+)$", Path(f"/proc/{process}/status").read_text(), re.MULTILINE)
     return int(caught, 16) >> (signal.SIGINT - 1) & 1 == 1
 
@@ -182,8 +181,8 @@ def test_ctrl_c_ends_all_processes(built: None) -> None:
         wait_for(lambda: len(children(program.pid)) >= 2 and catches_ctrl_c(program.pid))
         born = children(program.pid)
         os.killpg(program.pid, signal.SIGINT)
-        _, told = program.communicate(timeout=HANG_S)
+        _, reported = program.communicate(timeout=HANG_S)
         assert program.returncode == 130
-        assert told.strip().splitlines()[-1] == "bench goals: interrupted" and "Traceback" not in told
+        assert reported.strip().splitlines()[-1] == "bench goals: interrupted" and "Traceback" not in reported
     assert len(born) >= 2
     wait_for(lambda: not any(Path(f"/proc/{pid}").exists() for pid in born))

@@ -1,4 +1,4 @@
-"""The pilot's table."""
+"""The table for pilots."""
 
 from __future__ import annotations
 
@@ -32,34 +32,34 @@ LINE = {
 
 @pytest.fixture
 def estimates(tmp_path: Path) -> Path:
-    lines = [HEADER, row(0.0, 1, "collecting", "none"), row(1.0, 1, "ok", "line", **LINE)]
-    lines += [row(1.0, 2, "collecting", "none"), row(2.0, 1, "held", "line", **LINE)]
+    lines = [HEADER, row(0.0, 1, "converging", "none"), row(1.0, 1, "ok", "line", **LINE)]
+    lines += [row(1.0, 2, "converging", "none"), row(2.0, 1, "stale", "line", **LINE)]
     path = tmp_path / "estimates.csv"
     path.write_text("\n".join(lines) + "\n")
     return path
 
 
-def test_what_it_says(estimates: Path, tmp_path: Path, capsys) -> None:
+def test_text_of_the_table(estimates: Path, tmp_path: Path, capsys) -> None:
     truth = tmp_path / "truth.csv"
     truth.write_text(
         "id,static,center_n_m,center_e_m,ground_d_m,width_m,length_m,height_m,heading_deg,x0_m,z0_m,orientation_deg\n"
         "1,1,1,2,3,12,20,5,7,-29,201,19\n"
     )
     assert main(["table", str(estimates), "--truth", str(truth)]) == 0
-    told = capsys.readouterr().out
-    assert "120.0 ±2.0 m" in told
-    assert "30.00 ±0.50 m left" in told
-    assert "* held" in told
-    assert "12.10 ±0.21 m" in told and "12.00 m" in told and "+0.10 m" in told
-    assert "20.20 ±0.25°" in told and "+1.20°" in told
-    assert "obstacle 2: no estimate in 1 images (last: collecting)" in told
+    output = capsys.readouterr().out
+    assert "120.0 ±2.0 m" in output
+    assert "30.00 ±0.50 m left" in output
+    assert "* stale" in output
+    assert "12.10 ±0.21 m" in output and "12.00 m" in output and "+0.10 m" in output
+    assert "20.20 ±0.25°" in output and "+1.20°" in output
+    assert "obstacle 2: no estimate in 1 images (last: converging)" in output
 
 
 @pytest.mark.parametrize(
     ("doubt", "words"),
     [("1,moves", "suspect: moves"), ("1,convention", "suspect: convention"), ("0,late", "poses late")],
 )
-def test_a_doubt_is_told(doubt: str, words: str, tmp_path: Path, capsys) -> None:
+def test_a_suspect_estimate_is_marked(doubt: str, words: str, tmp_path: Path, capsys) -> None:
     path = tmp_path / "estimates.csv"
     path.write_text(f"{HEADER},suspect,reason\n{row(1.0, 1, 'ok', 'line', **LINE)},{doubt}\n")
     assert main(["table", str(path)]) == 0
@@ -73,8 +73,8 @@ def test_the_width_across_the_line_of_sight_has_no_truth(estimates: Path, tmp_pa
     )
     estimates.write_text(estimates.read_text().replace(",line,", ",prism,"))
     assert main(["table", str(estimates), "--truth", str(truth)]) == 0
-    told = capsys.readouterr().out
-    assert re.search(r"width across the line of sight +12\.10 ±0\.21 m +- +- *$", told, re.MULTILINE)
+    output = capsys.readouterr().out
+    assert re.search(r"width across the line of sight +12\.10 ±0\.21 m +- +- *$", output, re.MULTILINE)
 
 
 def test_without_truth(estimates: Path, capsys) -> None:
@@ -139,9 +139,9 @@ def test_the_demo(replay: Path, tmp_path: Path, capsys) -> None:
     out, folder = tmp_path / "out.csv", ROOT / "tests" / "data" / "corner"
     subprocess.run([replay, "--out", out, folder], check=True)
     assert main(["table", str(out), "--truth", str(folder / "truth.csv")]) == 0
-    told = capsys.readouterr().out
-    assert "suspect:" not in told
-    assert re.search(r" disc +$", told, re.MULTILINE) and re.search(r" box +$", told, re.MULTILINE)
-    errors = [line.split()[-2] for line in told.splitlines() if line.startswith(("width of", "length of", "height "))]
+    output = capsys.readouterr().out
+    assert "suspect:" not in output
+    assert re.search(r" disc +$", output, re.MULTILINE) and re.search(r" box +$", output, re.MULTILINE)
+    errors = [line.split()[-2] for line in output.splitlines() if line.startswith(("width of", "length of", "height "))]
     assert len(errors) == 3
     assert all(abs(float(error)) < 1.0 for error in errors)

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 
 import pytest
 from ci import embed_logs
 
-TARGETS = Path(__file__).resolve().parents[1] / "targets"
+ROOT = Path(__file__).resolve().parents[2]
+TARGETS = ROOT / "tests" / "targets"
 
 
-def test_embedded_logs_are_what_the_generator_writes() -> None:
+def test_embedded_logs_are_those_of_the_generator() -> None:
     committed = (TARGETS / "embedded_logs.c").read_text(encoding="utf-8")
     assert embed_logs.agrees(committed, embed_logs.c_text(embed_logs.make_book()))
 
@@ -35,3 +37,22 @@ def test_logs_may_differ_in_last_bits_only() -> None:
 )
 def test_bits_of_singles(number: float, bits: str) -> None:
     assert embed_logs.bits(number) == bits
+
+
+def test_a_usual_run_has_every_pair_of_processor_compiler_and_level() -> None:
+    text = (TARGETS / "host.cmake").read_text(encoding="utf-8")
+    listed = re.search(r"set\(targets_of_every_run\s+([^)]*)\)", text)
+    processors = re.search(r"foreach\(processor ([^)]*)\)", text)
+    assert listed and processors
+    chosen = [re.fullmatch(r"(.+)-(gcc|clang)-(os|o2)", name) for name in listed[1].split()]
+    kinds = {match.groups() for match in chosen if match}
+    assert len(kinds) == len(chosen)
+    for processor in processors[1].split():
+        here = [(compiler, level) for name, compiler, level in kinds if name == processor]
+        assert {compiler for compiler, _ in here} == ({"gcc"} if "rv32" in processor else {"gcc", "clang"})
+        assert "rv32" in processor or {level for _, level in here} == {"os", "o2"}
+    both = {(compiler, level) for compiler in ("gcc", "clang") for level in ("os", "o2")}
+    assert {(compiler, level) for _, compiler, level in kinds} == both
+    script = (ROOT / "tools" / "test.sh").read_text(encoding="utf-8")
+    measured = re.search(r"ci ledger --check (.*)", script)
+    assert measured and set(measured[1].split()) <= set(listed[1].split())

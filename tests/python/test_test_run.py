@@ -1,4 +1,4 @@
-"""The test run itself: tools/test.sh among programs that only say that they were run."""
+"""The test run itself: tools/test.sh with stand-ins for all programs that only record their calls."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-SECONDS = 120  # only a guard against what hangs
+SECONDS = 120  # guard against a hang
 OWN = [
     "bash",
     "sh",
@@ -38,7 +38,7 @@ STEPS = {"build", "ruff", "unit tests", "golden hashes", "affected Python tests"
 
 
 class Checkout:
-    """A repository with the script alone; set-up, CMake, CTest and Python succeed, but for what `failing` names."""
+    """A repository with the script alone. Set-up, CMake, CTest and Python succeed unless named in `failing`."""
 
     def __init__(self, folder: Path) -> None:
         self.folder, self.programs = folder / "checkout", folder / "programs"
@@ -121,7 +121,7 @@ def test_a_subject_of_72_characters_is_taken(checkout: Checkout) -> None:
 
 @pytest.mark.parametrize("ci", [{}, {"CI": "true"}])
 def test_a_missing_tool_is_counted_and_fails_ci(checkout: Checkout, ci: dict[str, str]) -> None:
-    """A path with the shell's own programs alone lacks compilers, formatters and the emulators."""
+    """A PATH with the shell's own programs alone lacks compilers, formatters and the emulators."""
     for name in OWN:
         program = shutil.which(name)
         assert program

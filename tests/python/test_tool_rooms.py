@@ -1,4 +1,4 @@
-"""The packages in tools/ and their rooms: imports go down, never round in circles, and a long file holds one idea.
+"""The packages in tools/ and their folders: imports go down, never in circles, and a long file has one idea.
 
 ``ci`` may use ``bench`` and ``goe_tools``, ``bench`` may use ``goe_tools``, and ``goe_tools`` neither."""
 
@@ -18,10 +18,11 @@ from goe_tools.cli import PACKAGES
 TOOLS = Path(__file__).resolve().parents[2] / "tools"
 COMMANDS_OF = {"goe_tools": COMMANDS, "bench": BENCH_COMMANDS, "ci": CI_COMMANDS}
 
-# From the ground up. A room knows the floors below its own, and no other room of its own floor.
+# From the ground up. A file or folder imports from lower floors only, not from others on its own floor.
 FLOORS = {
     "goe_tools": (
         ("__init__", "places", "spread"),
+        ("renamed",),
         ("logs",),
         ("flights", "double_precision"),
         ("library",),
@@ -40,21 +41,21 @@ FLOORS = {
     ),
     "ci": (
         ("__init__",),
-        ("affected", "cost", "embed_logs", "packages", "settings_table"),
+        ("affected", "cost", "embed_logs", "packages", "settings_table", "tidy_commands"),
         ("evidence",),
         ("__main__",),
     ),
 }
 
 MOST_LINES = 500
-LONG: dict[str, str] = {}  # file, its one idea
+LONG: dict[str, str] = {}  # file and its one idea
 
 Module = tuple[str, ...]  # ("logs", "obslog"); of a folder's __init__.py: ("logs", "__init__")
 Graph = dict[str, set[str]]
 
 
 def imported_names(tree: ast.AST) -> Iterator[str]:
-    """Of absolute imports, also those inside functions."""
+    """Names of absolute imports, also of those inside functions."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
@@ -75,7 +76,7 @@ def against_the_direction(tools: Path) -> list[str]:
 
 
 def folders_of(modules: Iterable[Module]) -> set[Module]:
-    """Every folder that holds any of the modules, however deep below it."""
+    """Every folder that contains one of the modules at any depth."""
     return {module[:depth] for module in modules for depth in range(len(module))}
 
 
@@ -88,7 +89,7 @@ def imported(module: Module, path: Path, known: dict[Module, Path], package_name
     folders = folders_of(known)
 
     def found(name: Module) -> Module:
-        """The module of that name, the folder's __init__.py, or, of a name that a module defines, that module."""
+        """The module of that name, the folder's __init__.py, or the module that defines the name."""
         if name in known:
             return name
         return (*name, "__init__") if name in folders else found(name[:-1])
@@ -117,7 +118,7 @@ def imports(package: Path) -> set[tuple[Module, Module]]:
 
 
 def side_by_side(edges: set[tuple[Module, Module]], folder: Module) -> Graph:
-    """What lies directly in a folder, files and folders, and which of it imports which."""
+    """The files and folders directly in a folder, and the imports between them."""
     graph: Graph = {}
     depth = len(folder)
     for source, target in edges:
@@ -137,15 +138,15 @@ def circles(package: Path) -> list[str]:
 
 
 def upwards(edges: set[tuple[Module, Module]], floors: tuple[tuple[str, ...], ...]) -> list[str]:
-    """Imports that do not go to a lower floor, and rooms without one."""
-    floor = {room: number for number, rooms in enumerate(floors) for room in rooms}
+    """Imports that do not go to a lower floor, and files or folders without a floor."""
+    floor = {place: number for number, places in enumerate(floors) for place in places}
     found = []
     for source, target in sorted(edges):
-        rooms = [module[0] for module in (source, target)]
-        for room in rooms:
-            if room not in floor:
-                found.append(f"{room}: say in FLOORS on which floor it is")
-        if rooms[0] != rooms[1] and floor.get(rooms[0], 0) <= floor.get(rooms[1], 0):
+        places = [module[0] for module in (source, target)]
+        for place in places:
+            if place not in floor:
+                found.append(f"{place}: say in FLOORS on which floor it is")
+        if places[0] != places[1] and floor.get(places[0], 0) <= floor.get(places[1], 0):
             found.append(f"{'/'.join(source)} imports {'/'.join(target)}")
     return found
 
@@ -165,7 +166,7 @@ def test_imports_go_to_lower_floors(package: str) -> None:
 def test_imports_are_found() -> None:
     edges = imports(TOOLS / "goe_tools")
     assert (("report", "page"), ("report", "figures", "__init__")) in edges  # a folder's __init__.py
-    assert (("models", "model"), ("logs", "obslog")) in edges  # ... and what lies in another room
+    assert (("models", "model"), ("logs", "obslog")) in edges  # ... and a module of another folder
     text = (TOOLS / "bench" / "optimum" / "goals" / "boxes.py").read_text(encoding="utf-8")
     assert "goe_tools.flights.boxes" in imported_names(ast.parse(text))  # ... and in another package
 
@@ -184,15 +185,15 @@ def test_every_command_is_a_module(package: str) -> None:
 
 
 @pytest.mark.parametrize("package", PACKAGES)
-def test_what_lies_in_the_package_has_a_floor_and_a_line_in_the_readme(package: str) -> None:
-    told = (TOOLS / package / "README.md").read_text(encoding="utf-8")
-    for room in {module[0] for module in sources(TOOLS / package)}:
-        assert any(room in rooms for rooms in FLOORS[package]), room
-        if (TOOLS / package / room).is_dir():
-            assert f"`{room}/`" in told or f"`{room}.py`" in told, room
+def test_each_module_has_a_floor_and_a_line_in_the_readme(package: str) -> None:
+    text = (TOOLS / package / "README.md").read_text(encoding="utf-8")
+    for place in {module[0] for module in sources(TOOLS / package)}:
+        assert any(place in places for places in FLOORS[package]), place
+        if (TOOLS / package / place).is_dir():
+            assert f"`{place}/`" in text or f"`{place}.py`" in text, place
 
 
-def test_a_long_file_holds_one_idea() -> None:
+def test_a_long_file_has_one_idea() -> None:
     files = [path for package in PACKAGES for path in sources(TOOLS / package).values()]
     assert len(files) > 50
     long = [p for p in files if len(p.read_text(encoding="utf-8").splitlines()) > MOST_LINES and p.name not in LONG]
@@ -215,13 +216,13 @@ def write(folder: Path, files: dict[str, str]) -> Path:
     ["from ..logs.b import y", "from ..logs import b", "from .. import logs", "from house.logs import b",
      "import house.logs.b", "def f():\n    from ..logs.b import y"],
 )  # fmt: skip
-def test_a_circle_between_folders_is_seen(tmp_path: Path, back: str) -> None:
+def test_a_circle_between_folders_is_found(tmp_path: Path, back: str) -> None:
     files = {"logs/a.py": "", "logs/b.py": "from ..report import a", "report/a.py": "from logs import b"}
     house = write(tmp_path, files)
     assert circles(house) == []  # another package's logs
     write(tmp_path, {"report/a.py": back})
-    (told,) = circles(house)
-    assert told.startswith("house: ") and "logs" in told and "report" in told
+    (message,) = circles(house)
+    assert message.startswith("house: ") and "logs" in message and "report" in message
 
 
 @pytest.mark.parametrize(
@@ -232,7 +233,7 @@ def test_a_circle_between_folders_is_seen(tmp_path: Path, back: str) -> None:
         ("bench/attack/a.py", "from ci import cost", "ci"),
     ],
 )
-def test_an_import_against_the_direction_is_seen(tmp_path: Path, file: str, text: str, name: str) -> None:
+def test_an_import_against_the_direction_is_found(tmp_path: Path, file: str, text: str, name: str) -> None:
     files = {
         "goe_tools/places.py": "",
         "bench/b.py": "from goe_tools import places",
@@ -246,7 +247,7 @@ def test_an_import_against_the_direction_is_seen(tmp_path: Path, file: str, text
     assert against_the_direction(tmp_path) == [f"{file} imports {name}"]
 
 
-def test_an_import_upwards_is_seen(tmp_path: Path) -> None:
+def test_an_import_upwards_is_found(tmp_path: Path) -> None:
     files = {
         "logs/b.py": "from ..report.a import x",
         "report/a.py": "",
@@ -263,7 +264,7 @@ def test_an_import_upwards_is_seen(tmp_path: Path) -> None:
     ]
 
 
-def test_a_circle_of_files_is_seen(tmp_path: Path) -> None:
+def test_a_circle_of_files_is_found(tmp_path: Path) -> None:
     files = {"logs/a.py": "from .b import x", "logs/b.py": "from . import c", "logs/c.py": "from .a import y"}
-    (told,) = circles(write(tmp_path, files))
-    assert told.startswith("house/logs: ")
+    (message,) = circles(write(tmp_path, files))
+    assert message.startswith("house/logs: ")

@@ -1,4 +1,4 @@
-"""goe_tools view without a browser: it draws what goe_replay answers, in the right place, and no log breaks it."""
+"""goe_tools view without a browser: it draws the answers of goe_replay at the right place, and every log works."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from goe_tools.view.answers import Options
 from goe_tools.view.motion import motion_of
 from goe_tools.view.story import MOST_ROWS, Story, kept_moments, map_bounds, story_of
 
-COLUMNS = {  # of goe_replay: those of the page
-    **{name: name for name in ("x_m", "z_m", "width_m", "length_m", "height_m", "orientation_deg", "misfit")},
+COLUMNS = {  # goe_replay's columns that the page has
+    **{name: name for name in ("x_m", "z_m", "width_m", "length_m", "height_m", "orientation_deg", "nis_ratio")},
     **{name: name for name in ("x_sd_m", "z_sd_m", "width_sd_m", "length_sd_m", "height_sd_m", "orientation_sd_deg")},
 }
 
@@ -56,8 +56,9 @@ CASES: dict[str, tuple[Callable[[], ObservationLog], tuple[str, ...], dict[str, 
     "corner": (lambda: read_log(view_logs.CORNER), (), {}),
     "window": (lambda: read_log(view_logs.CORNER), ("--method", "window", "--window", "5"),
                {"method": "window", "window": 5}),
-    "set": (view_logs.several, ("--model", "disc", "--set", "detector.point_px=2", "--set", "refined.misfit_max=0.3"),
-            {"model": "disc", "settings": {"detector.point_px": 2.0, "refined.misfit_max": 0.3}}),
+    "set": (view_logs.several, ("--model", "disc", "--set", "detector.point_noise_px=2", "--set",
+                                "filter.nis_ratio_max=0.3"),
+            {"model": "disc", "settings": {"detector.point_noise_px": 2.0, "filter.nis_ratio_max": 0.3}}),
     "boxes": (view_logs.boxes, (), {}),
     "several": (view_logs.several, (), {}),
     "spoiled": (view_logs.spoiled, (), {}),
@@ -67,9 +68,9 @@ CASES: dict[str, tuple[Callable[[], ObservationLog], tuple[str, ...], dict[str, 
 }  # fmt: skip
 
 
-def assert_same(track_rows: dict[int, list[dict[str, str]]], told: Story) -> None:
-    assert [track.id for track in told.tracks] == list(track_rows)
-    for track in told.tracks:
+def assert_same(track_rows: dict[int, list[dict[str, str]]], shown: Story) -> None:
+    assert [track.id for track in shown.tracks] == list(track_rows)
+    for track in shown.tracks:
         rows, answers = track_rows[track.id], track.answers
         assert len(answers) == len(rows)
         assert answers.status == [row["status"] for row in rows]
@@ -90,39 +91,39 @@ def test_answers_are_those_of_goe_replay(name: str, replay: Path, tmp_path: Path
 
 
 def test_when_to_act_is_the_decision_rules() -> None:
-    """By its definition: from 10 % on, if it may be reached within 12 s."""
+    """By definition: from a probability of 10 % on, if the aircraft may reach it within 12 s."""
     seen = set()
     for make in (view_logs.boxes, view_logs.several, view_logs.spoiled):
         for track in story(make()).tracks:
             column = track.answers.column
             with np.errstate(invalid="ignore"):
-                soonest_s = column["time_s"] * np.divide(
-                    column["time_s"], column["time_s"] + 2.0 * column["time_sd_s"],
-                    out=np.zeros(len(track.answers)), where=column["time_s"] > 0.0,
+                earliest_tcpa_s = column["tcpa_s"] * np.divide(
+                    column["tcpa_s"], column["tcpa_s"] + 2.0 * column["tcpa_sd_s"],
+                    out=np.zeros(len(track.answers)), where=column["tcpa_s"] > 0.0,
                 )  # fmt: skip
-                sure = (np.abs(soonest_s - 12.0) > 1e-3) & (np.abs(column["violation"] - 0.1) > 1e-6)
-                acts = (column["violation"] >= 0.1) & (soonest_s <= 12.0)
+                sure = (np.abs(earliest_tcpa_s - 12.0) > 1e-3) & (np.abs(column["conflict_probability"] - 0.1) > 1e-6)
+                acts = (column["conflict_probability"] >= 0.1) & (earliest_tcpa_s <= 12.0)
             assert np.array_equal(track.answers.act[sure], acts[sure])
             seen |= set(track.answers.act[sure].tolist())
     assert seen == {False, True}
 
 
 def test_every_status_has_words() -> None:
-    told = {str(status) for status in library.package().Status}
-    assert told - set(words.STATUS) == {"ok", "partial", "corrupted"}
+    shown = {str(status) for status in library.package().Status}
+    assert shown - set(words.STATUS) == {"ok", "partial", "corrupted"}
 
 
 def test_two_cameras_with_lenses(replay: Path, tmp_path: Path, real_camera: Camera) -> None:
     folder = view_logs.written(view_logs.two_cameras(real_camera), tmp_path / "two")
-    told = story(read_log(folder))
-    assert_same(replayed(replay, folder), told)
-    assert len(np.unique(told.look_rad[:, 0].round(1))) > 1  # the wedge passes to the other camera
+    shown = story(read_log(folder))
+    assert_same(replayed(replay, folder), shown)
+    assert len(np.unique(shown.look_rad[:, 0].round(1))) > 1  # the view wedge changes to the other camera
 
 
-def test_the_logs_say_what_they_are_for() -> None:
+def test_each_log_contains_its_case() -> None:
     spoiled, moving = story(view_logs.spoiled()), story(view_logs.moving())
     statuses = set(spoiled.tracks[0].answers.status)
-    assert {"ok", "not_finite", "bad_time", "bad_attitude", "nothing_seen"} <= statuses
+    assert {"ok", "not_finite", "bad_time", "bad_attitude", "no_detection"} <= statuses
     assert spoiled.reset.sum() == 2 and spoiled.broken.sum() == 1
     assert "moves" in moving.tracks[0].answers.reason
     assert set(story(view_logs.boxes()).tracks[0].answers.model) == {"none", "prism"}
@@ -131,37 +132,37 @@ def test_the_logs_say_what_they_are_for() -> None:
 # ---------------------------------------------------------------------------------------------------------------- map
 
 
-def to_earth(told: Story, log: ObservationLog, points: np.ndarray) -> np.ndarray:
+def to_earth(shown: Story, log: ObservationLog, points: np.ndarray) -> np.ndarray:
     """North and east of points of the map."""
     origin = motion_of(log).camera_ne_m[0]
-    up, right = -told.north_rad, 0.5 * math.pi - told.north_rad
+    up, right = -shown.north_rad, 0.5 * math.pi - shown.north_rad
     axes = np.array([[math.cos(right), math.sin(right)], [math.cos(up), math.sin(up)]])
     return points @ axes + origin
 
 
 @pytest.mark.parametrize("make", [lambda: read_log(view_logs.CORNER), view_logs.boxes, view_logs.several])
-def test_outlines_stand_where_goe_replay_has_the_centre(
+def test_outlines_are_at_the_center_of_goe_replay(
     make: Callable[[], ObservationLog], replay: Path, tmp_path: Path
 ) -> None:
     log = make()
-    told = story(log)
+    shown = story(log)
     rows = replayed(replay, view_logs.written(log, tmp_path / "log"))
     compared = 0
-    for track in told.tracks:
+    for track in shown.tracks:
         for k, row in enumerate(rows[track.id]):
             if not row["center_n_m"]:
                 continue
             middle = track.circle[k, :2] if math.isfinite(track.circle[k, 0]) else track.corner[k].mean(0)
-            centre = np.array([float(row["center_n_m"]), float(row["center_e_m"])])
-            assert to_earth(told, log, middle) == pytest.approx(centre, abs=0.02), (track.id, row["t_s"])
+            center = np.array([float(row["center_n_m"]), float(row["center_e_m"])])
+            assert to_earth(shown, log, middle) == pytest.approx(center, abs=0.02), (track.id, row["t_s"])
             compared += 1
     assert compared > 40
 
 
-def test_truth_stands_where_the_log_has_it() -> None:
+def test_truth_is_drawn_where_the_log_has_it() -> None:
     log = read_log(view_logs.CORNER)
-    told = story(log)
-    truth, outline_ne = log.truth[1], to_earth(told, log, told.tracks[0].truth_outline)
+    shown = story(log)
+    truth, outline_ne = log.truth[1], to_earth(shown, log, shown.tracks[0].truth_outline)
     assert outline_ne.mean(0) == pytest.approx([truth.center_n_m, truth.center_e_m])
     sides = np.linalg.norm(np.roll(outline_ne, -1, 0) - outline_ne, axis=1)
     assert sides == pytest.approx([truth.width_m, truth.length_m] * 2)
@@ -170,32 +171,32 @@ def test_truth_stands_where_the_log_has_it() -> None:
 
 
 @pytest.mark.parametrize("make", [lambda: read_log(view_logs.CORNER), view_logs.several, view_logs.boxes])
-def test_true_values_are_what_good_answers_come_to(make: Callable[[], ObservationLog]) -> None:
-    told = story(make())
-    for track in told.tracks:
+def test_good_answers_converge_to_the_true_values(make: Callable[[], ObservationLog]) -> None:
+    shown = story(make())
+    for track in shown.tracks:
         answers, last = track.answers, len(track.answers) - 1
-        from_above = track.id == 7  # its highest point in the image is not the one that goe.h asks for
+        from_above = track.id == 7  # its highest point in the image is not the one that goe.h defines
         for name in ("z_m", "x_m", "width_m", *(() if from_above else ("height_m",))):
             stem, unit = name.split("_")
             error = answers.column[name][last] - track.truth[name][last]
             assert abs(error) < 4.0 * answers.column[f"{stem}_sd_{unit}"][last], (track.id, name)
 
 
-def test_the_miss_is_what_goe_hazard_says() -> None:
-    """The distance on the map between the predicted place and the outline, against the library's own."""
+def test_the_miss_is_that_of_goe_hazard() -> None:
+    """The distance on the map between the predicted position and the outline, against the library's own."""
     compared = 0
     for make in (view_logs.several, view_logs.boxes, view_logs.moving, lambda: read_log(view_logs.CORNER)):
         for track in story(make()).tracks:
             drawn = np.linalg.norm(track.closest - track.nearest, axis=1)
-            said = track.answers.column["miss_m"]
+            said = track.answers.column["dcpa_m"]
             good = np.isfinite(said) & (said > 0.0)
             np.testing.assert_allclose(drawn[good], said[good], atol=0.05, rtol=2e-3)
             compared += good.sum()
     assert compared > 150
 
 
-def test_a_told_jump_does_not_show() -> None:
-    """The path of the spoiled log is that of the good one up to the jump that is not told."""
+def test_a_reported_jump_does_not_show() -> None:
+    """Up to the unreported jump, the path of the spoiled log equals that of the good one."""
     good, spoiled = motion_of(view_logs.boxes()), motion_of(view_logs.spoiled())
     times = spoiled.time_s < 5.4
     there = np.isin(good.time_s.round(6), spoiled.time_s[times].round(6))
@@ -215,9 +216,9 @@ def test_region_of_one_point_is_its_ellipse() -> None:
     assert area > 0.99 * 4.0 * math.pi * math.sqrt(np.linalg.det(spread))
 
 
-def test_region_holds_the_outline_by_two_sigma() -> None:
-    """Of boxes drawn from the covariance: in any direction each corner reaches no farther in 97.7 %, and two together
-    in 95.4 % at least; turning by more than the first order takes a little."""
+def test_region_contains_the_outline_by_two_sigma() -> None:
+    """For boxes drawn from the covariance: in any direction each corner is inside in at least 97.7 %, and two corners
+    together in at least 95.4 %, less a little for the nonlinearity of rotation."""
     random = np.random.default_rng(5)
     root = random.normal(size=(5, 5)) * np.array([1.0, 3.0, 0.02, 0.5, 0.8])[:, None]
     mean = np.array([-20.0, 120.0, 0.4, 12.0, 25.0])
@@ -260,12 +261,14 @@ def test_words() -> None:
     said = words.place(track.answers, len(track.answers) - 1).replace("\u00a0", " ")
     number = r"[\d.]+ ± [\d.]+ m"
     assert re.fullmatch(f"{number} ahead, {number} left, {number} wide, {number} long, {number} high", said)
-    assert words.place(track.answers, 0) == "No answer yet: collecting images"
-    assert "away" in words.approach(track.answers, len(track.answers) - 1)
+    assert words.place(track.answers, 0) == "No estimate yet: collecting images"
+    assert "to the side" in words.approach(track.answers, len(track.answers) - 1)
     moving = story(view_logs.moving()).tracks[0].answers
     told = {words.doubt(moving, k) for k in range(len(moving))}
-    end = "m/s, and its velocity is estimated"
-    assert any(text.startswith("Suspect: it moves, ") and text.endswith(end) for text in told)
+    assert any(
+        text.startswith("Suspect: the obstacle moves at ") and text.endswith("m/s; the estimate follows it")
+        for text in told
+    )
 
 
 @pytest.mark.parametrize(
@@ -285,15 +288,15 @@ def test_digits_follow_the_sigma(value: float, sigma: float, figures: int, text:
 
 def test_a_long_log_is_thinned() -> None:
     log = view_logs.long()
-    told = story_of("long", log, Options())
-    (track,) = told.tracks
-    assert told.rows == len(log.frames) >= 10_000
+    shown = story_of("long", log, Options())
+    (track,) = shown.tracks
+    assert shown.rows == len(log.frames) >= 10_000
     assert 0.9 * MOST_ROWS < len(track.answers) <= MOST_ROWS
-    assert told.time_s[0] == 0.0 and told.time_s[-1] == pytest.approx(log.frames[-1].t_s)
-    assert np.diff(told.time_s).max() < 3.0 * 100.0 / MOST_ROWS
+    assert shown.time_s[0] == 0.0 and shown.time_s[-1] == pytest.approx(log.frames[-1].t_s)
+    assert np.diff(shown.time_s).max() < 3.0 * 100.0 / MOST_ROWS
 
 
-def test_thinning_keeps_what_changes() -> None:
+def test_thinning_keeps_the_changes() -> None:
     log = view_logs.spoiled()
     motion = motion_of(log)
     everything = story(log).tracks[0].answers
@@ -304,12 +307,13 @@ def test_thinning_keeps_what_changes() -> None:
     assert set(changed) | set(np.flatnonzero(motion.reset)) <= set(kept)
 
 
-def test_what_is_shown_first() -> None:
-    """The obstacle with the most answers, once it has a width; of one seen briefly, its own part of the map."""
-    told = story(view_logs.several())
-    assert [told.brief(track) for track in told.tracks] == [False, False, False] and told.chosen(None).id == 3
-    for track in told.tracks:
-        row = track.row_at[told.first_look(track)]
+def test_the_obstacle_that_is_shown_first() -> None:
+    """The obstacle with the most answers, once it has a width; for one that is visible briefly, its own part of the
+    map."""
+    shown = story(view_logs.several())
+    assert [shown.brief(track) for track in shown.tracks] == [False, False, False] and shown.chosen(None).id == 3
+    for track in shown.tracks:
+        row = track.row_at[shown.first_look(track)]
         assert math.isfinite(track.answers.column["width_m"][row])
     log = view_logs.several()
     frames = [f for f in log.frames if f.id != 11 or f.t_s > 6.0]
@@ -324,5 +328,5 @@ def test_an_obstacle_between_the_kept_moments_is_not_lost() -> None:
     log = view_logs.several()
     once = [f for f in log.frames if f.id == 7][1:2]
     frames = sorted([f for f in log.frames if f.id != 7] + once, key=lambda frame: frame.t_s)
-    told = story_of("log", dataclasses.replace(log, frames=frames), Options(), most_rows=20)
-    assert [len(track.answers) for track in told.tracks if track.id == 7] == [1]
+    shown = story_of("log", dataclasses.replace(log, frames=frames), Options(), most_rows=20)
+    assert [len(track.answers) for track in shown.tracks if track.id == 7] == [1]

@@ -1,5 +1,5 @@
-"""The page of goe_tools view in headless Chromium: what it says and draws at any moment is what goe_replay answers;
-hands, keys, light, dark, a phone."""
+"""The page of goe_tools view in headless Chromium: at any moment text and drawing show the answers of goe_replay;
+mouse, keys, light and dark scheme, a phone."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
 
 @pytest.fixture(scope="module")
 def make_page(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Path]:
-    """Writes the page of a log, once for each name; the log lies beside it."""
+    """Writes the page of a log, once for each name; the log is in the same folder."""
     try:
         library.ready()
     except FileNotFoundError as error:
@@ -60,14 +60,15 @@ def make_page(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Path]:
 
 
 def waited(browser: Any, script: str, *arguments: Any) -> Any:
-    """What a script answers, once that is true."""
+    """The result of a script, once it is true."""
     from selenium.webdriver.support.ui import WebDriverWait
 
     return WebDriverWait(browser, HANG_S, poll_frequency=0.02).until(lambda b: b.execute_script(script, *arguments))
 
 
 def opened(browser: Any, page: Path, size: tuple[int, int] = WIDE, dark: bool = False) -> None:
-    """Opens a page, or turns to it as a test before has left it: to load one takes a second. Nothing may be fetched."""
+    """Opens a page, or reuses it as the previous test left it, because loading takes a second. Nothing may be
+    fetched."""
     scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
     browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [scheme]})
     if browser.current_url == page.as_uri():
@@ -108,11 +109,11 @@ def shown(browser: Any) -> int:
 def said(browser: Any) -> dict[str, str]:
     """Text of sentence, clock and of each chart's head, by its key."""
     return browser.execute_script(
-        "const told = {}; for (const id of ['place', 'approach', 'state', 'clock', 'doubt', 'model'])"
-        " told[id] = document.getElementById(id).innerText;"
+        "const texts = {}; for (const id of ['place', 'approach', 'state', 'clock', 'doubt', 'model'])"
+        " texts[id] = document.getElementById(id).innerText;"
         " for (const c of document.querySelectorAll('.chart[data-key]'))"
-        " told[c.dataset.key] = c.querySelector('output').innerText;"
-        " for (const k in told) told[k] = told[k].replaceAll('\\u00a0', ' '); return told"
+        " texts[c.dataset.key] = c.querySelector('output').innerText;"
+        " for (const k in texts) texts[k] = texts[k].replaceAll('\\u00a0', ' '); return texts"
     )
 
 
@@ -131,9 +132,9 @@ def assert_says(text: str, value: str, sigma: str, where: str) -> None:
         assert text == "–", where
         return
     number, band = (re.fullmatch(r"−?([\d.]+) ± ([\d.]+)[ °].*", text) or pytest.fail(f"{where}: {text}")).groups()
-    for told, true in ((number, abs(float(value))), (band, float(sigma))):
-        half_digit = 0.5 * 10.0 ** -len(told.partition(".")[2])
-        assert abs(float(told) - true) <= half_digit + 1e-6, f"{where}: {text}, goe_replay: {value}, {sigma}"
+    for texts, true in ((number, abs(float(value))), (band, float(sigma))):
+        half_digit = 0.5 * 10.0 ** -len(texts.partition(".")[2])
+        assert abs(float(texts) - true) <= half_digit + 1e-6, f"{where}: {text}, goe_replay: {value}, {sigma}"
 
 
 QUANTITIES = {
@@ -142,25 +143,25 @@ QUANTITIES = {
 }  # fmt: skip
 
 
-def assert_is_row(told: dict[str, str], row: Row) -> None:
+def assert_is_row(texts: dict[str, str], row: Row) -> None:
     where = f"{row['t_s']} s"
-    assert told["clock"] == f"{float(row['t_s']):.2f} s"
+    assert texts["clock"] == f"{float(row['t_s']):.2f} s"
     for name, sigma in QUANTITIES.items():
-        if name in told:
-            assert_says(told[name], row[name], row[sigma], f"{where}: {name}")
-    assert told["misfit"] == (f"{float(row['misfit']):.2f}" if row["misfit"] else "–"), where
-    assert told["model"] == ("–" if row["model"] == "none" else row["model"]), where
-    assert told["doubt"].startswith("Suspect") == (row["suspect"] == "1"), where
+        if name in texts:
+            assert_says(texts[name], row[name], row[sigma], f"{where}: {name}")
+    assert texts["nis_ratio"] == (f"{float(row['nis_ratio']):.2f}" if row["nis_ratio"] else "–"), where
+    assert texts["model"] == ("–" if row["model"] == "none" else row["model"]), where
+    assert texts["doubt"].startswith("Suspect") == (row["suspect"] == "1"), where
     if not row["z_m"]:
-        assert told["place"].startswith("No answer yet"), where
+        assert texts["place"].startswith("No estimate yet"), where
         return
-    assert told["x_m"].endswith("left" if float(row["x_m"]) < 0.0 else "right")
+    assert texts["x_m"].endswith("left" if float(row["x_m"]) < 0.0 else "right")
     for part, name in (("ahead", "z_m"), ("left|right", "x_m"), ("wide", "width_m"), ("high", "height_m")):
-        (found,) = re.findall(rf"[\d.]+ ± [\d.]+ m (?:{part})", told["place"]) or [""]
+        (found,) = re.findall(rf"[\d.]+ ± [\d.]+ m (?:{part})", texts["place"]) or [""]
         assert_says(found or "–", row[name], row[QUANTITIES[name]], f"{where}: {part}")
 
 
-DRAWN_IN = (  # no plot is wider than the page, and colours are the page's
+DRAWN_IN = (  # no plot is wider than the page, and its colors are the page's
     "return [...document.querySelectorAll('.main-svg')].every(s => s.getBoundingClientRect().right <= arguments[0])"
     " && document.querySelector('#map .xtick text').style.fill"
     " === getComputedStyle(document.querySelector('figcaption')).color"
@@ -177,7 +178,7 @@ def corner() -> ObservationLog:
 @pytest.mark.parametrize(
     ("name", "log"), [("corner", corner), ("boxes", view_logs.boxes), ("moving", view_logs.moving)]
 )
-def test_what_it_says_is_goe_replays(
+def test_the_text_is_that_of_goe_replay(
     name: str, log: Callable[[], ObservationLog], make_page: Callable[..., Path], browser: Any, replay: Path
 ) -> None:
     page = make_page(name, log)
@@ -189,8 +190,9 @@ def test_what_it_says_is_goe_replays(
     assert_quiet(browser)
 
 
-def test_what_it_draws_is_goe_replays(make_page: Callable[..., Path], browser: Any, replay: Path) -> None:
-    """The charts hold the CSV's floats; the band is two sigma wide; the outline on the map has the width told."""
+def test_the_drawing_is_that_of_goe_replay(make_page: Callable[..., Path], browser: Any, replay: Path) -> None:
+    """The charts contain the CSV's floats; the band is two sigma wide; the outline on the map has the reported
+    width."""
     page = make_page("corner", corner)
     rows = replayed(page, replay, 1)
     opened(browser, page)
@@ -227,6 +229,28 @@ def test_when_to_act_is_shown(make_page: Callable[..., Path], browser: Any) -> N
         assert warned == ("act now" in said(browser)["approach"]) == bool(act[moment]), moment
     assert 0 < act.sum() < len(act)
     assert_quiet(browser)
+
+
+def test_the_maps_fill_their_card(make_page: Callable[..., Path], browser: Any) -> None:
+    """Of a straight flight: both maps next to each other, nothing cut by the player, a key for every kind of line."""
+    opened(browser, make_page("corner", corner))
+    card, whole, close, caption, player = browser.execute_script(
+        "return ['.map', '#map', '#close', '.map figcaption', '.player'].map(s => {"
+        " const r = document.querySelector(s).getBoundingClientRect(); return [r.left, r.top, r.right, r.bottom]; })"
+    )
+    assert whole[2] <= close[0] and abs(whole[1] - close[1]) < 2 and abs(whole[3] - close[3]) < 2
+    assert (whole[2] - whole[0]) + (close[2] - close[0]) > 0.9 * (card[2] - card[0])
+    assert (whole[3] - whole[1]) > 0.7 * (card[3] - card[1])
+    assert caption[3] <= player[1]
+    drawn = browser.execute_script(
+        "return document.getElementById('map').data.filter(t => t.x.length).map(t => t.name)"
+    )
+    keys = browser.execute_script("return [...document.querySelectorAll('.map .key')].map(e => e.classList[1])")
+    names = {
+        "wedge": "look", "region": "region", "outline": "estimate", "later": "later", "flown": "own",
+        "truths": "true", "course": "course", "miss": "course", "closest": "course",
+    }  # fmt: skip
+    assert {names[name] for name in drawn if name in names} == set(keys)
 
 
 def test_both_maps_have_one_scale(make_page: Callable[..., Path], browser: Any) -> None:
@@ -266,15 +290,15 @@ def test_several_obstacles(make_page: Callable[..., Path], browser: Any, replay:
         )
         assert drawn == {"names": ["3", "7", "11"], "own": 1, "others": 2, "truths": 3}
     moved(browser, 10)  # the chimney, chosen, comes later
-    assert said(browser)["place"] == "No detection yet"
-    for index in (0, 2):  # chosen anew it is shown when it is seen
+    assert said(browser)["place"] == "Not detected yet"
+    for index in (0, 2):  # selected again, it is shown once it is visible
         browser.execute_script(
             "const e = document.getElementById('obstacle'); e.value = arguments[0];"
             "e.dispatchEvent(new Event('change'))",
             index,
         )
     assert shown(browser) > 26 and " ahead" in said(browser)["place"].replace("\u00a0", " ")
-    moved(browser, 76)  # the truck is seen in every third image
+    moved(browser, 76)  # the truck is visible in every third image
     browser.execute_script(
         "const e = document.getElementById('obstacle'); e.value = 1; e.dispatchEvent(new Event('change'))"
     )
@@ -348,7 +372,7 @@ def test_everything_has_a_name(make_page: Callable[..., Path], browser: Any) -> 
 @pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
 @pytest.mark.parametrize("size", [WIDE, PHONE], ids=["wide", "phone"])
 def test_looks(make_page: Callable[..., Path], browser: Any, size: tuple[int, int], dark: bool, tmp_path: Path) -> None:
-    """As changed from another light or size, without loading anew."""
+    """When the color scheme or the size changes, without reloading."""
     opened(browser, make_page("several", view_logs.several), size, dark)
     waited(browser, DRAWN_IN, size[0])
     assert_fits(browser)
@@ -358,7 +382,7 @@ def test_looks(make_page: Callable[..., Path], browser: Any, size: tuple[int, in
         " g(document.querySelector('#map .xtick text'), 'fill')]"
     )
     assert (sum(ink) > 600 > 150 > sum(paper)) if dark else (sum(ink) < 150 < 600 < sum(paper))
-    assert abs(sum(tick) - sum(paper)) > 250  # the plots' own text stands out, too
+    assert abs(sum(tick) - sum(paper)) > 250  # the plots' own text has contrast, too
     plots = browser.execute_script(
         "return [...document.querySelectorAll('.js-plotly-plot')].map(p => p.getBoundingClientRect().width)"
     )
@@ -384,8 +408,8 @@ def with_nan_truth(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.parametrize(
     ("name", "log", "place"),
     [
-        ("one", view_logs.one_frame, "No answer yet: collecting images"),
-        ("nothing", view_logs.nothing_answered, "No answer yet: no detection"),
+        ("one", view_logs.one_frame, "No estimate yet: collecting images"),
+        ("nothing", view_logs.nothing_answered, "No estimate yet: no detection"),
         ("spoiled", view_logs.spoiled, ""), ("long", view_logs.long, ""), ("nan", view_logs.boxes, ""),
     ],
 )  # fmt: skip
@@ -404,8 +428,8 @@ def test_any_log(
     assert_quiet(browser)
 
 
-def test_spoiled_rows_are_told(make_page: Callable[..., Path], browser: Any, replay: Path) -> None:
-    """A refused image shows the older answer and why; resets stand over the slider."""
+def test_spoiled_rows_are_shown(make_page: Callable[..., Path], browser: Any, replay: Path) -> None:
+    """For a refused image the page shows the older answer and the reason. Resets are marked above the slider."""
     page = make_page("spoiled", view_logs.spoiled)
     opened(browser, page)
     rows = replayed(page, replay, 1)
@@ -416,12 +440,12 @@ def test_spoiled_rows_are_told(make_page: Callable[..., Path], browser: Any, rep
         moved(browser, moment)
         state, clock = said(browser)["state"], float(said(browser)["clock"].split()[0])
         row = next(r for r in rows if r["t_s"] not in ("nan",) and abs(float(r["t_s"]) - clock) < 1e-6)
-        if "the answer is" in state:
+        if "the estimate is" in state:
             seen.add(row["status"])
     assert "bad_attitude" in seen or "not_finite" in seen
 
 
-def test_an_old_browser_is_told(make_page: Callable[..., Path], browser: Any) -> None:
+def test_an_old_browser_shows_a_message(make_page: Callable[..., Path], browser: Any) -> None:
     page = make_page("one", view_logs.one_frame)
     script = browser.execute_cdp_cmd(
         "Page.addScriptToEvaluateOnNewDocument", {"source": "delete window.DecompressionStream"}

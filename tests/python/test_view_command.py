@@ -1,4 +1,4 @@
-"""The command goe_tools view: pages and pictures of any log, and what it says of bad input."""
+"""The command goe_tools view: pages and pictures of any log, and errors for bad input."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def test_truth_of_its_own_and_truth_that_is_not_there(tmp_path: Path) -> None:
         (["LOG", "--out", "LOG/frames.csv"], "the output would replace "),
         (["LOG", "--out", "LOG"], "is a folder"),
         (["LOG", "--set", "detector.nothing=1"], "detector.nothing: no such setting"),
-        (["LOG", "--set", "detector.point_px=-1"], "detector.point_px = -1: not within 0.05 to 100 px"),
+        (["LOG", "--set", "detector.point_noise_px=-1"], "detector.point_noise_px = -1: not within 0.05 to 100 px"),
         (["LOG", "--window", "999"], "window.points = 999: not within 3 to 64 images"),
     ],
 )  # fmt: skip
@@ -93,7 +93,9 @@ def test_bad_usage(change: list[str], said: str, tmp_path: Path, capsys: pytest.
 
 
 @pytest.mark.parametrize(
-    "words_", [["--set", "point_px=1"], ["--set", "detector.point_px=x"], ["--margin", "-1"], ["--theme", "red"]]
+    "words_", [
+        ["--set", "point_noise_px=1"], ["--set", "detector.point_noise_px=x"], ["--margin", "-1"], ["--theme", "red"]
+    ]
 )
 def test_bad_flags(words_: list[str], tmp_path: Path) -> None:
     with pytest.raises(SystemExit) as stopped:
@@ -162,10 +164,15 @@ def test_svg_follows_its_reader(tmp_path: Path) -> None:
     bare = re.findall(r"(?:fill|stroke): (#[0-9a-f]{6})(?!; (?:fill|stroke): var)", twice[0])
     assert not set(bare) & set(LIGHT.values())
     assert len(twice[0]) < 250_000
+    texts = re.findall(r"<!-- (.*?) -->", twice[0])
+    for name in ("flown path", "later path", "estimate", "camera's view", "truth", "this moment"):
+        assert name in texts, name  # the legend
+    assert any(text.startswith("2σ region") for text in texts) and any("closest approach" in text for text in texts)
+    assert any("± is 1σ" in text for text in texts)
 
 
 def test_the_first_picture_of_the_readme_is_drawn_by_the_command(tmp_path: Path) -> None:
-    """Its words and numbers; another version of the drawing library may place strokes otherwise."""
+    """Words and numbers are compared; another version of the drawing library may place strokes differently."""
     picture = view_logs.ROOT / "tools" / "goe_tools" / "view" / "approach.svg"
     assert f"]({picture.relative_to(view_logs.ROOT)})" in (view_logs.ROOT / "README.md").read_text(encoding="utf-8")
     assert main(["view", str(view_logs.CORNER), "--svg", str(tmp_path / "now.svg")]) == 0

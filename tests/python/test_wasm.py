@@ -19,7 +19,7 @@ from goe_tools.live import modules, page
 ROOT = Path(__file__).resolve().parents[2]
 TESTS = ROOT / "tests" / "wasm"
 NODE = shutil.which("node")
-MOST_BYTES = 65_536  # of the library: 60,000 held before the decision rule and the sigmas of what is no disc
+MOST_BYTES = 65_536  # of the library: 60,000 before the decision rule and the sigmas of obstacles that are no discs
 
 # kind, detector, roll, pixel, height offset, side, knows, seed: in the order of LIVE_CONTROLS
 FLIGHTS = (
@@ -41,7 +41,7 @@ def built() -> modules.Modules:
 
 
 def under_node(folder: Path, given: modules.Modules, flights: tuple[tuple[float, ...], ...] = ()) -> dict[str, Any]:
-    """What tests/wasm/fly.mjs tells of these modules."""
+    """Output of tests/wasm/fly.mjs for these modules."""
     if NODE is None:
         pytest.skip("needs node; tests/python/test_live_page.py tries the hash in Chromium")
     for name, content in asdict(given).items():
@@ -61,11 +61,11 @@ def test_size(built: modules.Modules) -> None:
     assert len(built.goe) <= MOST_BYTES
 
 
-def test_the_readme_tells_the_sizes(built: modules.Modules) -> None:
+def test_the_readme_states_the_sizes(built: modules.Modules) -> None:
     text = (ROOT / "port" / "wasm" / "README.md").read_text(encoding="utf-8")
-    told = dict(re.findall(r"^\| `(\w+)\.wasm` \| ([\d,]+) \|", text, re.MULTILINE))
-    assert set(told) == {"goe", "flight", "golden"}
-    for name, size in told.items():
+    printed = dict(re.findall(r"^\| `(\w+)\.wasm` \| ([\d,]+) \|", text, re.MULTILINE))
+    assert set(printed) == {"goe", "flight", "golden"}
+    for name, size in printed.items():
         assert abs(len(getattr(built, name)) / int(size.replace(",", "")) - 1.0) < 0.02, name
 
 
@@ -73,8 +73,8 @@ def numbers(text: str, form: str) -> dict[str, float]:
     return {name: float(value) for name, value in re.findall(form, text, re.MULTILINE)}
 
 
-def test_numbers_that_are_told_twice_agree() -> None:
-    """The plan of README.md, the rule of the library; the camera and the margin, which the page draws."""
+def test_numbers_that_are_stated_twice_agree() -> None:
+    """The intent in README.md and the rule of the library; camera and margin as the page draws them."""
     port = ROOT / "port" / "wasm"
     define, const = r"#define (\w+) ([\d.]+)f?\b", r"\b([A-Z_]+) = ([\d.]+)"
     rule = numbers((port / "live.c").read_text(encoding="utf-8"), define)
@@ -83,11 +83,13 @@ def test_numbers_that_are_told_twice_agree() -> None:
     assert plan in (ROOT / "README.md").read_text(encoding="utf-8")
     source = (ROOT / "lib" / "hazard" / "goe_decide.c").read_text(encoding="utf-8")
     (defaults,) = re.findall(r"by_default = \{(.*)f\};", source)
-    violation_max, act_s, doubt, drift_m_s = map(float, defaults.split("f, "))
+    conflict_probability_max, act_within_s, doubt, stale_growth_m_s = map(float, defaults.split("f, "))
     words = (
-        f"{rule['MARGIN_M']:g} m beside, {rule['CLEARANCE_M']:g} m over the top, from {100 * violation_max:g} % on, "
-        f"if it may be reached within {act_s:g} s; both distances count {doubt:g} times while the estimate is suspect, "
-        f"and grow by {drift_m_s:g} m"
+        f"{rule['MARGIN_M']:g} m to the side, {rule['CLEARANCE_M']:g} m over the top, "
+        f"from {100 * conflict_probability_max:g} % on, "
+        f"if it may be reached within {act_within_s:g} s; "
+        f"both distances count {doubt:g} times while the estimate is suspect, "
+        f"and grow by {stale_growth_m_s:g} m"
     )
     assert words in (port / "page" / "page.html.j2").read_text(encoding="utf-8")
     approach = numbers((port / "approach.h").read_text(encoding="utf-8"), define)
@@ -99,7 +101,7 @@ def test_numbers_that_are_told_twice_agree() -> None:
     assert drawn["MARGIN_M"] == rule["MARGIN_M"]
 
 
-def test_nothing_is_asked_of_the_host(flown: dict[str, Any]) -> None:
+def test_the_modules_import_nothing_from_the_host(flown: dict[str, Any]) -> None:
     assert flown["imports"] == []
     assert set(flown["flightImports"]) <= set(flown["exports"])
     assert {"memory", "goe_init", "goe_update", "goe_covariance", "goe_hazard", "goe_reset"} <= set(flown["exports"])
@@ -113,12 +115,12 @@ def test_golden_hash(flown: dict[str, Any]) -> None:
     assert flown["hash"] == page.golden_hash()
 
 
-def test_a_wrong_bit_is_told(built: modules.Modules, tmp_path: Path) -> None:
-    """One bit of degrees per radian, wherever the module has it as a constant; and bits of the logs."""
+def test_a_wrong_bit_is_reported(built: modules.Modules, tmp_path: Path) -> None:
+    """One bit of degrees per radian, wherever the module contains the constant; and bits of the logs."""
     constant = struct.pack("<f", 57.2957795)
     assert constant in built.goe
     wrong = [replace(built, goe=built.goe.replace(constant, bytes([constant[0] ^ 1]) + constant[1:]))]
-    logs = built.golden.index(struct.pack("<fff", 120.0, -75.0, -25.0))  # the first image's position, then its height
+    logs = built.golden.index(struct.pack("<fff", 120.0, -75.0, -25.0))  # position, then height of the first image
     for at in (logs, logs + 5, logs + 14):
         wrong.append(replace(built, golden=built.golden[:at] + bytes([built.golden[at] ^ 1]) + built.golden[at + 1 :]))
     hashes = {under_node(tmp_path, spoiled)["hash"] for spoiled in wrong}
@@ -132,8 +134,8 @@ def test_flights_are_those_of_c(flown: dict[str, Any], tmp_path: Path) -> None:
     flags = ["-std=c99", "-O0", "-ffp-contract=off", "-fno-math-errno", f"-I{ROOT / 'lib'}", f"-I{port}"]
     subprocess.run(["cc", *flags, *map(str, sources), "-o", str(program), "-lm"], check=True)
     for controls, lines in zip(FLIGHTS, flown["flights"]):
-        told = subprocess.run([program, *map(str, controls)], capture_output=True, text=True, check=True).stdout
-        assert told.splitlines() == lines, controls
+        printed = subprocess.run([program, *map(str, controls)], capture_output=True, text=True, check=True).stdout
+        assert printed.splitlines() == lines, controls
     assert len({line for lines in flown["flights"] for line in lines}) > 1000
 
 
@@ -144,22 +146,22 @@ def reports(lines: list[str]) -> list[dict[str, float]]:
     return [dict(zip(names, struct.unpack(f">{len(names)}f", bytes.fromhex(line.split()[0])))) for line in lines]
 
 
-NOTHING_KNOWN, CLEAR, IN_DOUBT, GO_AROUND, UNCERTAIN = range(5)  # live.h: order
+NOTHING_KNOWN, CLEAR, IN_DOUBT, GO_AROUND, UNCERTAIN = range(5)  # the order in live.h
 
 
 def order_after(before: float, r: dict[str, float]) -> float:
-    """By the definition of goe_decide, and of live.h; only "clear" ends an order to go around."""
+    """By the definitions of goe_decide and of live.h; only "clear" ends an order to go around."""
     if int(r["valid"]) & 1 == 0:
         return before
     uncertain = before if before == GO_AROUND else UNCERTAIN
     doubt = 1.5 if r["suspect"] else 1.0
-    if r["violation"] < 0.1:
-        aside = r["miss_m"] - r["miss_sd_m"] >= 15.0 * doubt + r["age_s"]
+    if r["conflict_probability"] < 0.1:
+        aside = r["dcpa_m"] - r["dcpa_sd_m"] >= 15.0 * doubt + r["age_s"]
         above = r["has_clearance"] and r["clearance_m"] - r["clearance_sd_m"] >= 10.0 * doubt + r["age_s"]
         return CLEAR if aside or above else uncertain
-    if r["hazard_s"] ** 2 <= 12.0 * (r["hazard_s"] + 2.0 * r["hazard_sd_s"]):
+    if r["tcpa_s"] ** 2 <= 12.0 * (r["tcpa_s"] + 2.0 * r["tcpa_sd_s"]):
         return GO_AROUND
-    return IN_DOUBT if r["hazard_s"] - 2.0 * r["hazard_sd_s"] > 12.0 else uncertain
+    return IN_DOUBT if r["tcpa_s"] - 2.0 * r["tcpa_sd_s"] > 12.0 else uncertain
 
 
 def test_orders_are_those_of_the_decision_rule(flown: dict[str, Any]) -> None:
@@ -187,7 +189,7 @@ def test_bad_command_lines(tmp_path: Path, capsys: pytest.CaptureFixture[str], m
     assert "needs cmake, ninja, clang-19, wasm-ld-19, wasm-opt" in capsys.readouterr().err
 
 
-def test_a_broken_build_is_told(tmp_path: Path) -> None:
+def test_a_broken_build_is_reported(tmp_path: Path) -> None:
     if modules.missing():
         pytest.skip("needs the compiler")
     (tmp_path / "CMakeCache.txt").write_text("broken")

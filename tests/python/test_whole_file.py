@@ -1,4 +1,4 @@
-"""Files that the tools write: whole or not at all, never in the place of an input; and output that nobody takes."""
+"""Output files are complete or not written at all, and never replace an input; failed standard output."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def test_a_file_is_replaced_when_all_is_written(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("end", [KeyboardInterrupt, RuntimeError])
-def test_what_is_not_finished_leaves_nothing(tmp_path: Path, end: type[BaseException]) -> None:
+def test_an_unfinished_file_leaves_nothing(tmp_path: Path, end: type[BaseException]) -> None:
     old = tmp_path / "old.txt"
     old.write_text("old")
     for path in (old, tmp_path / "new.txt"):
@@ -81,7 +81,7 @@ def test_an_input_is_not_replaced_by_whatever_link(tmp_path: Path) -> None:
 
 
 def test_a_log_is_written_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Ctrl-C in the midst of its last file: the log that was there stays."""
+    """Ctrl-C in the middle of its last file: the previous log remains."""
     folder = view_logs.written(view_logs.one_frame(), tmp_path / "log")
     before, other = {path: path.read_bytes() for path in folder.iterdir()}, view_logs.boxes()
 
@@ -125,7 +125,7 @@ def test_commands_refuse_their_inputs(words: list[str], tmp_path: Path, capsys: 
 
 
 def test_output_that_nobody_takes(tmp_path: Path) -> None:
-    """A full disk, a closed pipe: told in one line, whatever the command."""
+    """A full disk, a closed pipe: every command reports it in one line."""
     log = view_logs.written(view_logs.one_frame(), tmp_path / "log")
     words = [sys.executable, "-m", "goe_tools", "bound", str(log)]
     with open("/dev/full", "w") as full:

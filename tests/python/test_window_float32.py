@@ -1,4 +1,4 @@
-"""The window method in float32: single precision throughout, and near the one in float64."""
+"""The window method in float32: single precision throughout, and close to the one in float64."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def test_polynomials_are_those_of_the_library() -> None:
     in_c = {name: F(value) for name, value in re.findall(r"#define (\w+_\d) ([0-9.e-]+)f", source)}
     in_python = {"ATAN": ATAN, "SIN": SIN, "COS": COS}
     for problem in minimax.PROBLEMS:
-        if problem.name not in in_python:  # the window method has no use for it
+        if problem.name not in in_python:  # the window method does not use it
             continue
         for number, coefficient in enumerate(minimax.remez(problem).coefficients, start=1):
             name = f"{problem.name}_{number}"
@@ -84,24 +84,24 @@ def test_near_the_reference(rounding: str, model: str, real_camera: Camera) -> N
         compared = 0
         for frame in log.frames:
             answer = single.update(frame)
-            told = answer.estimate
+            result = answer.estimate
             report = double.update(frame, answer.gates.taken)
             exact = report.estimate
-            assert (told.status, told.model, told.n_used) == (exact.status, exact.model, exact.n_used)
-            assert told.values.keys() == exact.values.keys()
+            assert (result.status, result.model, result.images_used) == (exact.status, exact.model, exact.images_used)
+            assert result.values.keys() == exact.values.keys()
             assert not report.gates.disputed
             if report.conditioning["width_m"] < 0.5:
                 continue
-            for name, value in told.values.items():
+            for name, value in result.values.items():
                 assert type(value) is np.float32, name
-                if not name.startswith(("height", "length", "center")):  # these also hold older solutions
+                if not name.startswith(("height", "length", "center")):  # these also include older solutions
                     compared += 1
                     assert relative_difference(name, float(value), report) < MAX_RELATIVE, name
         assert compared > 200
 
 
 def test_decisions_are_noted_under_the_same_names(corner_log: ObservationLog) -> None:
-    """What one precision decides and the other does not could not be compared."""
+    """If only one precision noted a decision, the decisions could not be compared."""
     for model in ("auto", "disc", "line"):
         settings = Settings(model=model)
         camera = corner_log.camera
@@ -112,7 +112,7 @@ def test_decisions_are_noted_under_the_same_names(corner_log: ObservationLog) ->
             taken = double.update(frame, guide).gates.taken
             assert taken == guide
             names |= taken.keys()
-        assert {"baseline", "parallax", "passed"} <= names
+        assert {"baseline", "parallax", "abeam"} <= names
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, 1e38, -1e38, 0.0, 1e-45])

@@ -1,4 +1,5 @@
-"""The window method in float64: exact on exact data, right about its sigmas, wrong only by what the paper omits."""
+"""The window method in float64: exact on exact data, with correct sigmas, and wrong only by the terms that the paper
+omits."""
 
 from __future__ import annotations
 
@@ -44,7 +45,7 @@ def random_rows(generator: np.random.Generator, noise: float) -> list[Row]:
 
 
 def check_against_dense(rows: list[Row], fit: Fit, generator: np.random.Generator) -> None:
-    """The dense system sees each image turned by an orientation of its own, as the paper writes it."""
+    """In the dense system each image has its own orientation, as in the paper."""
     paper = []
     for item in rows:
         b = generator.uniform(-0.7, 0.7)
@@ -52,7 +53,7 @@ def check_against_dense(rows: list[Row], fit: Fit, generator: np.random.Generato
         forward, aside = c * item.zeta + s * item.xi, c * item.xi - s * item.zeta
         paper.append(dense.DenseRow(forward, aside, c, s, item.dx_m, item.dz_m))
     expected = dense.solve(paper)
-    noise = expected.residual * math.sqrt(2 * len(rows) / (2 * len(rows) - 3))  # of a row, as its residuals tell it
+    noise = expected.residual * math.sqrt(2 * len(rows) / (2 * len(rows) - 3))  # of a row, estimated from its residuals
     rounding = math.sqrt(np.mean([item.roundoff**2 + (item.roundoff_m / expected.width_m) ** 2 for item in rows]))
     for name in ("width_m", "x0_m", "z0_m"):
         assert getattr(fit, name) == pytest.approx(getattr(expected, name), rel=1e-9)
@@ -95,11 +96,11 @@ def test_sigmas_are_the_spread_of_the_solutions() -> None:
         assert math.sqrt(np.mean([fit.sigma[name] ** 2 for fit in fits])) == pytest.approx(spread, rel=0.1)
 
 
-def test_solution_refuses_what_has_no_solution() -> None:
+def test_a_system_without_a_solution_is_refused() -> None:
     assert solved([row(1.0, 20.0, 0.0, 0.0)] * 8)[0] == "no_baseline"
     assert solved([row(1.0, 20.0, 0.0, 2.0 * k) for k in range(8)])[0] == "no_parallax"
     assert solved([row(1.0, 20.0 + k, 0.0, 2.0 * k) for k in range(8)])[0] == "no_parallax"
-    assert solved([row(1.0, (5.0 - 2.0 * k) / 3.0, 0.0, 2.0 * k) for k in range(8)])[0] == "passed"
+    assert solved([row(1.0, (5.0 - 2.0 * k) / 3.0, 0.0, 2.0 * k) for k in range(8)])[0] == "abeam"
 
 
 @pytest.mark.parametrize("path", ["straight", "arc", "weave"])
@@ -186,20 +187,20 @@ def frame_at(t_s: float, **changes: object) -> Frame:
         (replace(frame_at(1.0), attitude=(0.0, 0.0, 0.0, 0.0)), "bad_attitude"),
         (replace(frame_at(1.0), attitude=(1.02, 0.0, 0.0, 0.0)), "bad_attitude"),
         (replace(frame_at(1.0), attitude=(5.0, 0.0, 0.0, 0.0)), "bad_attitude"),
-        (replace(frame_at(1.0), attitude=(1.005, 0.0, 0.0, 0.0)), "collecting"),
+        (replace(frame_at(1.0), attitude=(1.005, 0.0, 0.0, 0.0)), "converging"),
         (frame_at(1.0, left=(520.0, 600.0), right=(500.0, 600.0)), "swapped"),
         (frame_at(1.0, base_left=(520.0, 700.0), base_right=(500.0, 700.0)), "swapped"),
-        (frame_at(1.0, left=None, right=None), "nothing_seen"),
-        (frame_at(1.0, left=None), "collecting"),
-        (replace(frame_at(1.0), attitude=(0.0, 0.0, 0.0, 1.0)), "collecting"),
-        (replace(frame_at(1.0), attitude=(0.0, 0.0, 0.0, 1.0), left=None, right=None), "nothing_seen"),
+        (frame_at(1.0, left=None, right=None), "no_detection"),
+        (frame_at(1.0, left=None), "converging"),
+        (replace(frame_at(1.0), attitude=(0.0, 0.0, 0.0, 1.0)), "converging"),
+        (replace(frame_at(1.0), attitude=(0.0, 0.0, 0.0, 1.0), left=None, right=None), "no_detection"),
     ],
 )
 def test_statuses_of_one_image(frame: Frame, status: str) -> None:
     camera = Camera(1280.0, 1280.0, 914.0, 914.0, 640.0, 640.0)
     double, single = WindowMethod(camera), WindowMethod(camera, dtype=np.float32)
     for method in (double, single):
-        assert method.update(frame_at(0.0)).estimate.status == "collecting"
+        assert method.update(frame_at(0.0)).estimate.status == "converging"
         assert method.update(frame).estimate.status == status
 
 
@@ -208,7 +209,7 @@ def test_a_turn_begins_no_track_where_the_heading_is_set() -> None:
     double, single = WindowMethod(camera), WindowMethod(camera, dtype=np.float32)
     behind = replace(frame_at(1.0), attitude=(0.0, 0.0, 0.0, 1.0))
     for method in (double, single):
-        assert method.update(frame_at(0.0)).estimate.status == "collecting"
+        assert method.update(frame_at(0.0)).estimate.status == "converging"
         assert method.update(behind).estimate.status == "behind_camera"
 
 
@@ -226,7 +227,7 @@ def test_refused_images_change_nothing() -> None:
             assert refused.values == expected.values
 
 
-def test_disc_is_told_until_the_line_takes_over() -> None:
+def test_disc_is_reported_until_the_line_takes_over() -> None:
     log = make_log(Scene(width_m=12.0, length_m=20.0, alpha_deg=20.0, run_s=6.0))
     models = [report.estimate.model for report in fly(log)]
     assert models[:7] == ["none"] * 7

@@ -69,7 +69,7 @@ def aligned(x: float, y: float) -> Point:
 
 
 def test_heading_is_the_printed_equation() -> None:
-    """[(1)], its fraction the right way up."""
+    """[(1)] With its fraction the right way up."""
     generator = np.random.default_rng(5)
     for xa, ya, xb, yb in generator.uniform(-1.0, 1.0, (200, 4)):
         dx = xa - ya * (xb - xa) / (yb - ya)
@@ -122,7 +122,7 @@ def shown(*headings_deg: float) -> View:
 
 
 def test_low_pass_of_lines_about_90_degrees() -> None:
-    """The mean of the first 20, then each new one with a twentieth. 91 and -89 degrees are the same line."""
+    """The mean of the first 20, then each new one with weight 1/20. 91 and -89 degrees are the same line."""
     generator, orientation, steps = np.random.default_rng(9), Orientation(N, 20), [0.0]
     measured = generator.uniform(80.0, 100.0, 30)
     for k, deg in enumerate(measured):
@@ -145,7 +145,7 @@ def test_a_guide_chooses_the_end_near_90_degrees() -> None:
 
 
 @pytest.mark.parametrize(("headings", "side"), [((46.0, -44.0), 0), ((-44.0, 46.0), 1), ((70.0, -20.0), 1)])
-def test_the_low_pass_tells_the_sides_where_the_angle_does_not(headings: tuple[float, float], side: int) -> None:
+def test_the_low_pass_names_the_sides_where_the_angle_is_ambiguous(headings: tuple[float, float], side: int) -> None:
     orientation = Orientation(N, 20)
     for _ in range(5):
         orientation.update(shown(45.0))
@@ -161,38 +161,38 @@ def spread_by_complex_steps(function, values: tuple[float, ...], sigmas: tuple[f
     return math.sqrt(sum((function(*step).imag / 1e-30 * sigma) ** 2 for step, sigma in zip(steps, sigmas)))
 
 
-def test_sigmas_of_what_hangs_on_a_solution(corner_log: ObservationLog) -> None:
-    """[(6), (7), (8)] What a length or height of one image and the centre inherit from the solution."""
+def test_sigmas_of_quantities_derived_from_a_solution(corner_log: ObservationLog) -> None:
+    """[(6), (7), (8)] The contribution of the solution to a length or height of one image and to the center."""
     camera, found = corner_log.camera, {"length_m": 0, "height_m": 0, "center": 0}
     method = WindowMethod(camera, Settings(model="line"))
-    seen: list[tuple[str, float, float]] = []
+    recorded: list[tuple[str, float, float]] = []
     take = method._take_extent
 
     def watched(gates, name, value, variance, roundoff, size) -> None:
-        seen.append((name, value, variance))
+        recorded.append((name, value, variance))
         take(gates, name, value, variance, roundoff, size)
 
     method._take_extent = watched
     for frame in corner_log.frames:
-        seen.clear()
+        recorded.clear()
         report = method.update(frame)
-        fit, values, told = method.fit, report.estimate.values, {name: rest for name, *rest in seen}
+        fit, values, last = method.fit, report.estimate.values, {name: rest for name, *rest in recorded}
         if not report.fresh:
             continue
         solution = fit.x0_m, fit.z0_m, fit.width_m
         sigmas = fit.sigma["x0_m"], fit.sigma["z0_m"], fit.sigma["width_m"]
         b = math.radians(method.orientation.deg)
-        if "height_m" in told:
-            value, variance = told["height_m"]
+        if "height_m" in last:
+            value, variance = last["height_m"]
             found["height_m"] += 1
             z = fit.z0_m - method.dz_m
             y = (frame.height_m - value) / z
             height = lambda x0, z0, w: frame.height_m - y * (z0 - method.dz_m)  # noqa: B023, E731
             assert math.sqrt(variance) == pytest.approx(spread_by_complex_steps(height, solution, sigmas), rel=1e-9)
-        if "length_m" in told:
-            value, variance = told["length_m"]
+        if "length_m" in last:
+            value, variance = last["length_m"]
             found["length_m"] += 1
-            half = 0.5 if fit.x0_m < 0.0 else -0.5  # the visible side is the right one of what lies to the left
+            half = 0.5 if fit.x0_m < 0.0 else -0.5  # an obstacle to the left shows its right side
 
             def across(x0, z0, w):  # (4) and (7): X_C of the side
                 x, z = x0 - method.dx_m, z0 - method.dz_m
@@ -207,7 +207,7 @@ def test_sigmas_of_what_hangs_on_a_solution(corner_log: ObservationLog) -> None:
             inputs = fit.x0_m, fit.z0_m, values["length_m"], values["length_m"]
             off = sigmas[0], sigmas[1], values["length_sd_m"], values["length_sd_m"]
 
-            def place(x0, z0, length_in_x, length_in_z):  # the method takes X and Z of the centre as independent
+            def place(x0, z0, length_in_x, length_in_z):  # the method takes X and Z of the center as independent
                 x, z = x0 + 0.5 * length_in_x * math.sin(b), z0 + 0.5 * length_in_z * math.cos(b)  # noqa: B023
                 turn = complex(math.cos(heading), math.sin(heading))  # noqa: B023
                 return z * turn.real - x * turn.imag, z * turn.imag + x * turn.real

@@ -17,15 +17,15 @@ BUILDING = Scene(
     course_deg=140.0, start_ne_m=(5000.0, -3000.0), wobble_deg=1.0, run_s=8.0, fps_hz=10.0, speed_mps=20.0,
     pixel_sigma_px=0.5,
 )  # fmt: skip
-UNSEEN: dict[str, None] = dict.fromkeys(FEATURES)
+INVISIBLE: dict[str, None] = dict.fromkeys(FEATURES)
 SHIFT_M = (3.0, -2.0, 0.5)
 
 
 def boxed(frame: Frame) -> Frame:
-    """With the upright box about its points in their place."""
+    """The frame with the upright box around its points instead of the points."""
     points = [getattr(frame, name) for name in FEATURES]
     u, v = zip(*(point for point in points if point is not None))
-    return dataclasses.replace(frame, box_px=(min(u), min(v), max(u), max(v)), **UNSEEN)
+    return dataclasses.replace(frame, box_px=(min(u), min(v), max(u), max(v)), **INVISIBLE)
 
 
 def boxes() -> ObservationLog:
@@ -34,7 +34,7 @@ def boxes() -> ObservationLog:
 
 
 def several() -> ObservationLog:
-    """A building, a chimney that comes into view later, and a truck seen once in three images, in one flight."""
+    """A building, a chimney that comes into view later, and a truck visible in one of three images, in one flight."""
     building = make_log(dataclasses.replace(BUILDING, id=3))
     chimney = make_log(
         dataclasses.replace(BUILDING, id=11, shape="cylinder", width_m=6.0, x0_m=25.0, z0_m=260.0, seed=2)
@@ -48,8 +48,8 @@ def several() -> ObservationLog:
 
 
 def spoiled() -> ObservationLog:
-    """Rows without pose, time or sense; a jump of the filter that is told, and one that is not; sides of boxes that are
-    no numbers; nothing seen for a while."""
+    """Rows without pose, time or valid values; one reported jump of the filter and one unreported; sides of boxes that
+    are NaN; a time without detections."""
     log = make_log(BUILDING)
     frames = []
     for k, frame in enumerate(log.frames):
@@ -65,12 +65,12 @@ def spoiled() -> ObservationLog:
     frames[24] = dataclasses.replace(frames[24], box_px=(math.nan, 1.0, 2.0, 3.0))
     frames[26] = dataclasses.replace(frames[26], position_m=(1e300, 0.0, -20.0))
     for k in range(40, 46):
-        frames[k] = dataclasses.replace(frames[k], **UNSEEN)
+        frames[k] = dataclasses.replace(frames[k], **INVISIBLE)
     return dataclasses.replace(log, frames=frames)
 
 
 def moving() -> ObservationLog:
-    """The building moves along: the camera is told to fly sideways, too."""
+    """The building moves along, because the camera's logged positions include a sideways motion."""
     log = make_log(BUILDING)
     frames = [
         dataclasses.replace(frame, position_m=(n + 3.0 * frame.t_s, e + 4.0 * frame.t_s, d))
@@ -81,7 +81,8 @@ def moving() -> ObservationLog:
 
 
 def two_cameras(camera: Camera) -> ObservationLog:
-    """Every second half of a second the image is of another camera, which looks more to the left, by another lens."""
+    """Every second half of a second another camera takes the images. It looks more to the left, through another
+    lens."""
     first = make_log(dataclasses.replace(BUILDING, camera=camera))
     other = dataclasses.replace(camera, mount_yaw_deg=camera.mount_yaw_deg - 20.0, k1=0.0, k2=0.0, offset_y_m=-0.5)
     second = make_log(dataclasses.replace(BUILDING, camera=other))
@@ -92,9 +93,9 @@ def two_cameras(camera: Camera) -> ObservationLog:
 
 
 def nothing_answered() -> ObservationLog:
-    """The detector sees nothing."""
+    """The detector finds nothing."""
     log = make_log(BUILDING)
-    return dataclasses.replace(log, frames=[dataclasses.replace(frame, **UNSEEN) for frame in log.frames])
+    return dataclasses.replace(log, frames=[dataclasses.replace(frame, **INVISIBLE) for frame in log.frames])
 
 
 def one_frame() -> ObservationLog:
@@ -103,7 +104,7 @@ def one_frame() -> ObservationLog:
 
 
 def long(rows: int = 10_000) -> ObservationLog:
-    """A plate of 6 m by 30 m, 30 m to the left, met at 20 m/s from 2200 m away."""
+    """A plate of 6 m by 30 m, 30 m to the left, approached at 20 m/s from 2200 m."""
     camera, frames = Camera(1280.0, 1280.0, 914.0, 914.0, 640.0, 640.0), []
     for k in range(rows):
         t_s = 100.0 * k / rows

@@ -1,4 +1,4 @@
-"""Values of the Kconfig files of port/zephyr and port/nuttx, and what a build makes of them."""
+"""Values of the Kconfig files of port/zephyr and port/nuttx, and the files that a build derives from them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ ROOT = Path(__file__).resolve().parents[2]
 ZEPHYR = ROOT / "port" / "zephyr"
 NUTTX = ROOT / "port" / "nuttx"
 
-# What the trees' own Kconfig files define, of all that ours read or our samples set.
+# The symbols of the trees' own Kconfig files that ours read or our samples set.
 OF_THE_TREE = {
     ZEPHYR: (
         "MINIMAL_LIBC",
@@ -28,7 +28,7 @@ OF_THE_TREE = {
 
 
 def parse(port: Path, folder: Path) -> kconfiglib.Kconfig:
-    """The Kconfig of a port below one that defines what the tree does. A warning is an error."""
+    """Parses a port's Kconfig below one that defines the tree's symbols. A warning is an error."""
     top = folder / "Kconfig.top"
     symbols = "".join(f'config {name}\n\tbool "{name}"\n\n' for name in OF_THE_TREE[port])
     numbers = 'config MAIN_STACK_SIZE\n\tint "main"\n\tdefault 1024\n\n'
@@ -39,7 +39,7 @@ def parse(port: Path, folder: Path) -> kconfiglib.Kconfig:
 
 
 def apply(parsed: kconfiglib.Kconfig, assignments: Iterable[str]) -> None:
-    """Lines CONFIG_<name>=<value>, as in prj.conf; each must have its effect."""
+    """Applies lines CONFIG_<name>=<value>, as in prj.conf; each must have its effect."""
     for line in assignments:
         name, _, value = line.strip().partition("=")
         if not name or name.startswith("#"):
@@ -54,7 +54,7 @@ def apply(parsed: kconfiglib.Kconfig, assignments: Iterable[str]) -> None:
 
 
 def write(parsed: kconfiglib.Kconfig, folder: Path, extra_header: str = "") -> None:
-    """.config for make, config.cmake for CMake, autoconf.h for C."""
+    """Writes .config for make, config.cmake for CMake, autoconf.h for C."""
     parsed.write_config(str(folder / ".config"))
     parsed.write_autoconf(str(folder / "autoconf.h"))
     with (folder / "autoconf.h").open("a") as file:

@@ -1,4 +1,4 @@
-"""What the samples print: once, in port/examples/scripted_flight/README.md."""
+"""The expected output of the samples; its only copy is in port/examples/scripted_flight/README.md."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def version() -> str:
 
 
 def assert_flown(text: str) -> None:
-    """The first line, and all on the flight, to the letter."""
+    """Checks the first line, and all lines on the flight, verbatim."""
     (shown,) = re.findall(r"^```text\n(.*?)^```$", PAGE.read_text(), re.MULTILINE | re.DOTALL)
     wanted = shown.splitlines()
     lines = text.splitlines()

@@ -1,5 +1,5 @@
 /* goe_sqrtf() in integers against this machine's sqrtf: every float of two octaves, every 97th of all others, and the special ones.
- * With another SPARSE and DENSE as many fewer, for slow machines. SPDX-License-Identifier: MIT */
+ * Other values of SPARSE and DENSE make it fewer, for slow machines. SPDX-License-Identifier: MIT */
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
@@ -32,23 +32,23 @@ static uint32_t bits_of(float number) {
 
 #define FEWEST 50000ul
 
-static void tell_wrong(uint32_t bits, float own, float right) {
+static void report_wrong(uint32_t bits, float own, float right) {
     (void)bits;
     (void)own;
     (void)right;
 }
 
-static void tell_all(unsigned long tried, int wrong) {
+static void report_all(unsigned long tried, int wrong) {
     port_write_text(wrong == 0 && tried > FEWEST ? "every root is right\n" : "wrong roots, or too few\n");
 }
 
 #else
 
-static void tell_wrong(uint32_t bits, float own, float right) {
+static void report_wrong(uint32_t bits, float own, float right) {
     printf("%08x: %08x, not %08x\n", (unsigned)bits, (unsigned)bits_of(own), (unsigned)bits_of(right));
 }
 
-static void tell_all(unsigned long tried, int wrong) { printf("%lu tried, %d wrong\n", tried, wrong); }
+static void report_all(unsigned long tried, int wrong) { printf("%lu tried, %d wrong\n", tried, wrong); }
 
 #endif
 
@@ -60,11 +60,11 @@ static int differs(uint32_t bits) {
     if (bits_of(own) == bits_of(right) || (isnan(own) && isnan(right))) {
         return 0;
     }
-    tell_wrong(bits, own, right);
+    report_wrong(bits, own, right);
     return 1;
 }
 
-/* Never past the beginning of the octaves. */
+/* Never past the start of the octaves. */
 static uint64_t next_of(uint64_t bits) {
     const int dense = bits < SMALL_END || (bits >= OCTAVES_BEGIN && bits < OCTAVES_END);
     const uint64_t next = bits + (dense ? DENSE : SPARSE);
@@ -84,6 +84,6 @@ int main(void) {
         wrong += differs((uint32_t)bits);
         bits = next_of(bits);
     }
-    tell_all(tried, wrong);
+    report_all(tried, wrong);
     return wrong != 0;
 }

@@ -1,4 +1,4 @@
-"""port/nuttx without NuttX: its makefiles, CMake file, Kconfig and programs, among what stands in for the tree's."""
+"""port/nuttx without NuttX: its makefiles, CMake file, Kconfig and programs, with stand-ins for the tree's files."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from kconfig_of import NUTTX, ROOT, apply, parse, write
 from scripted import assert_flown
 
 STAND_IN = Path(__file__).resolve().parent / "nuttx"
-SECONDS = 1800  # only a guard against what hangs
+SECONDS = 1800  # guard against a hang
 BOTH = (
     "CONFIG_GOE=y", "CONFIG_GOE_SENSOR_LOOP=y", "CONFIG_GOE_GOLDEN_BITS=y", "CONFIG_GOE_MAVLINK=y", "CONFIG_LIBM=y",
 )  # fmt: skip
@@ -36,7 +36,7 @@ def config(folder: Path, *assignments: str) -> None:
 
 
 def checkout(folder: Path) -> Path:
-    """apps/ with a checkout linked into it. make leaves its objects in port/nuttx, so that is a copy."""
+    """apps/ with a checkout linked into it. make leaves its objects in port/nuttx, so that folder is a copy."""
     for part in ("lib", "port/flight", "port/mavlink", "port/sqrtf", "port/examples/scripted_flight", "tests/targets"):
         (folder / "goe" / part).parent.mkdir(parents=True, exist_ok=True)
         (folder / "goe" / part).symlink_to(ROOT / part)
@@ -49,7 +49,7 @@ def checkout(folder: Path) -> Path:
 
 @pytest.fixture(scope="module")
 def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Both, built by make."""
+    """Both programs, built by make."""
     folder = tmp_path_factory.mktemp("nuttx")
     apps = checkout(folder)
     config(apps, *BOTH)
@@ -79,14 +79,14 @@ def test_every_source_is_compiled(programs: Path) -> None:
 
 def test_make_leaves_out_parts(tmp_path: Path) -> None:
     apps = checkout(tmp_path)
-    off = ("GOE_WITH_REFINED", "GOE_WITH_HAZARD")
+    off = ("GOE_WITH_FILTER", "GOE_WITH_HAZARD")
     config(apps, "CONFIG_GOE=y", *(f"CONFIG_{name}=n" for name in off), "CONFIG_GOE_WINDOW_MAX=5")
     (tmp_path / "print.mk").write_text(
         "include $(APPDIR)/external/Makefile\nprint:\n\t@echo $(CSRCS)\n\t@echo $(CFLAGS)\n"
     )
     sources, flags = run("make", "-f", tmp_path / "print.mk", f"APPDIR={apps}", "print").splitlines()
     assert set(sources.split()) == {file.name for file in (ROOT / "lib").rglob("*.c")}
-    assert "-DGOE_WITH_WINDOW=1 -DGOE_WITH_REFINED=0 -DGOE_WITH_MOVERS=0 -DGOE_WITH_HAZARD=0" in flags
+    assert "-DGOE_WITH_WINDOW=1 -DGOE_WITH_FILTER=0 -DGOE_WITH_TARGET_MOTION=0 -DGOE_WITH_HAZARD=0" in flags
     assert "-DGOE_WINDOW_MAX=5" in flags and "GOE_FLIGHT_SLOTS" not in flags
 
 
@@ -116,7 +116,7 @@ def commands_of_make(apps: Path) -> dict[str, list[str]]:
 
 
 def meaning_of(words: list[str]) -> set[str]:
-    """Definitions, options and what is included first."""
+    """Definitions, options and forced includes of a command."""
     return {word for word in words if word.startswith(("-D", "-f"))} | {
         f"include {Path(word).resolve()}" for before, word in zip(words, words[1:]) if before == "-include"
     }
@@ -138,7 +138,7 @@ def test_cmake_agrees_with_make(helium: str, tmp_path: Path) -> None:
         assert {"-ffp-contract=off", "-DGOE_FLIGHT_SLOTS=4", "-Dsqrtf=goe_sqrtf"} <= meaning_of(words)
 
 
-def test_cmake_hands_on_what_programs_need(tmp_path: Path) -> None:
+def test_cmake_passes_the_needs_of_programs_on(tmp_path: Path) -> None:
     config(tmp_path, "CONFIG_GOE=y", "CONFIG_GOE_SENSOR_LOOP=y")
     tree = configured(tmp_path, tmp_path / "build")
     run("cmake", "--build", tree, "-j", "2", "--target", "goe_sensor_loop")

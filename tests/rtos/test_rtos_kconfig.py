@@ -12,7 +12,7 @@ from kconfig_of import NUTTX, ROOT, ZEPHYR, apply, parse
 
 HEADERS = (ROOT / "lib" / "goe.h").read_text() + (ROOT / "port" / "flight" / "goe_flight.h").read_text()
 NUMBERS = ("GOE_WINDOW_MAX", "GOE_CAMERAS_MAX", "GOE_FLIGHT_SLOTS")
-PARTS = ("GOE_WITH_WINDOW", "GOE_WITH_REFINED", "GOE_WITH_HAZARD", "GOE_WITH_MOVERS")
+PARTS = ("GOE_WITH_WINDOW", "GOE_WITH_FILTER", "GOE_WITH_HAZARD", "GOE_WITH_TARGET_MOTION")
 
 ports = pytest.mark.parametrize("port", [ZEPHYR, NUTTX], ids=["zephyr", "nuttx"])
 
@@ -22,7 +22,7 @@ def value(parsed: kconfiglib.Kconfig, name: str) -> str:
 
 
 @ports
-def test_nothing_is_built_unless_asked(port: Path, tmp_path: Path) -> None:
+def test_nothing_is_built_unless_enabled(port: Path, tmp_path: Path) -> None:
     parsed = parse(port, tmp_path)
     assert value(parsed, "GOE") == "n"
     assert all(value(parsed, part) == "n" for part in (*PARTS, "GOE_FLIGHT", "GOE_MAVLINK"))
@@ -58,21 +58,21 @@ def test_ranges_are_those_of_the_headers(port: Path, tmp_path: Path, name: str) 
 
 @ports
 def test_every_choice_of_parts_compiles(port: Path, tmp_path: Path) -> None:
-    """goe.h needs a method, the flight layer the hazard, late poses the refined method."""
+    """goe.h needs a method, the flight layer the hazard, late poses the filter method."""
     parsed = parse(port, tmp_path)
-    seen = set()
+    found = set()
     for chosen in product("yn", repeat=6):
         apply(parsed, ["CONFIG_GOE=y"])
         for name, wanted in zip((*PARTS, "GOE_FLIGHT", "GOE_MAVLINK"), chosen):
             parsed.syms[name].set_value(wanted)
-        window, refined, hazard, movers = (value(parsed, name) == "y" for name in PARTS)
+        window, filtered, hazard, target_motion = (value(parsed, name) == "y" for name in PARTS)
         flight, mavlink = (value(parsed, name) == "y" for name in ("GOE_FLIGHT", "GOE_MAVLINK"))
-        assert window or refined
-        assert refined or not movers
+        assert window or filtered
+        assert filtered or not target_motion
         assert hazard or not flight
         assert flight or not mavlink
-        seen.add((window, refined, hazard, movers, flight, mavlink))
-    assert len(seen) == 5 * 4, "a combination that would compile cannot be chosen"
+        found.add((window, filtered, hazard, target_motion, flight, mavlink))
+    assert len(found) == 5 * 4, "a combination that would compile cannot be chosen"
 
 
 @pytest.mark.parametrize(
@@ -87,7 +87,7 @@ def test_own_square_root_where_the_tree_has_a_poor_one_or_none(port: Path, poor:
     apply(parsed, ["CONFIG_GOE_OWN_SQRTF=n"])
 
 
-def test_programs_of_nuttx_are_built_only_if_asked_for(tmp_path: Path) -> None:
+def test_programs_of_nuttx_are_built_only_if_enabled(tmp_path: Path) -> None:
     parsed = parse(NUTTX, tmp_path)
     apply(parsed, ["CONFIG_GOE=y"])
     assert value(parsed, "GOE_SENSOR_LOOP") == value(parsed, "GOE_GOLDEN_BITS") == "n"
@@ -96,11 +96,11 @@ def test_programs_of_nuttx_are_built_only_if_asked_for(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     "other",
-    ["GOE_WITH_WINDOW=n", "GOE_WITH_REFINED=n", "GOE_WITH_MOVERS=n", "GOE_WITH_HAZARD=n", "GOE_WINDOW_MAX=9",
+    ["GOE_WITH_WINDOW=n", "GOE_WITH_FILTER=n", "GOE_WITH_TARGET_MOTION=n", "GOE_WITH_HAZARD=n", "GOE_WINDOW_MAX=9",
      "GOE_CAMERAS_MAX=2", "GOE_FLIGHT_SLOTS=3"],
 )  # fmt: skip
 def test_golden_bits_are_those_of_the_whole_with_its_defaults(other: str, tmp_path: Path) -> None:
-    """Another build has other hashes: the program would cry wolf."""
+    """Another build has other hashes, and the program would report a false failure."""
     parsed = parse(NUTTX, tmp_path)
     apply(parsed, ["CONFIG_GOE=y", "CONFIG_GOE_GOLDEN_BITS=y"])
     apply(parsed, [f"CONFIG_{other}"])

@@ -1,4 +1,4 @@
-/* What the samples' estimating thread does: port/examples/scripted_flight. SPDX-License-Identifier: MIT */
+/* The samples' estimating thread, port/examples/scripted_flight. SPDX-License-Identifier: MIT */
 #include <string.h>
 
 #include "scripted_estimator.h"
@@ -19,7 +19,7 @@ void setUp(void) {
 }
 void tearDown(void) {}
 
-/* Whether a line was told. */
+/* Whether a line was printed. */
 static bool give(uint32_t tick, scripted_kind_t kind) {
     scripted_message_t message;
     TEST_ASSERT_TRUE(scripted_message(tick, kind, &message));
@@ -60,24 +60,24 @@ static void test_an_image_that_is_refused_is_counted(void) {
     TEST_ASSERT_FALSE(estimator.image_waits);
 }
 
-/* Assessed and told, though no image ever comes. */
-static void test_a_silent_detector_is_told(void) {
+/* The assessment is made and reported although no image ever comes. */
+static void test_a_silent_detector_is_reported(void) {
     unsigned lines = 0;
-    bool seen = false;
+    bool alive = false;
     for (uint32_t tick = 0u; tick <= 100u; tick++) {
         (void)give(tick, SCRIPTED_POSE);
-        seen = seen || estimator.assessment.detector_alive;
+        alive = alive || estimator.assessment.detector_alive;
         if (tick % SCRIPTED_ASSESS_TICKS == 0u && give(tick, SCRIPTED_TIMER)) {
             lines++;
             TEST_ASSERT_NOT_NULL(strstr(line, ": nothing known; no detector;"));
         }
     }
     TEST_ASSERT_EQUAL_UINT(3u, lines);
-    TEST_ASSERT_FALSE(seen);
+    TEST_ASSERT_FALSE(alive);
     TEST_ASSERT_EQUAL_UINT32(21u, estimator.assess.calls);
 }
 
-/* The script as a whole: an order, a silence of the detector. */
+/* The whole script: an order, a silence of the detector. */
 static void test_the_flight(void) {
     unsigned silent = 0, back = 0, left = 0;
     for (uint32_t tick = 0u; tick < SCRIPTED_TICKS; tick++) {
@@ -113,7 +113,7 @@ int main(void) {
     RUN_TEST(test_an_image_waits_for_its_pose);
     RUN_TEST(test_an_image_that_is_overtaken_is_counted);
     RUN_TEST(test_an_image_that_is_refused_is_counted);
-    RUN_TEST(test_a_silent_detector_is_told);
+    RUN_TEST(test_a_silent_detector_is_reported);
     RUN_TEST(test_the_flight);
     RUN_TEST(test_the_end_is_no_message);
     return UNITY_END();

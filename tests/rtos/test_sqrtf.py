@@ -1,4 +1,4 @@
-"""The square root of port/sqrtf in integers rounds correctly. tests/targets tries it on a processor, too."""
+"""The square root of port/sqrtf in integers rounds correctly. tests/targets runs it on a processor, too."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def compile_root(folder: Path, *flags: str) -> Path:
 
 @pytest.mark.parametrize("flags", [["-O2"], ["-O2", "-ffast-math"]], ids=["O2", "fast-math"])
 def test_every_root_is_right(flags: list[str], tmp_path: Path) -> None:
-    """The other side, the host's own sqrtf, is compiled and linked without the flags."""
+    """The reference, the host's own sqrtf, is compiled and linked without the flags."""
     integers = "-DGOE_SQRTF_IN_INTEGERS"
     root, program = compile_root(tmp_path, *flags, integers), tmp_path / "sqrtf"
     other = ["-O2", "-fno-math-errno", integers, *WARNINGS, f"-I{SQRTF}", HERE / "sqrtf_main.c"]
@@ -37,13 +37,13 @@ def test_every_root_is_right(flags: list[str], tmp_path: Path) -> None:
     [["-fno-math-errno"], [], ["-fno-math-errno", "-DGOE_SQRTF_IN_INTEGERS"]],
     ids=["no-errno", "errno", "integers"],
 )
-@pytest.mark.parametrize("seen", [True, False], ids=["header", "no-header"])
-def test_no_root_calls_the_c_library(flags: list[str], seen: bool, tmp_path: Path) -> None:
-    """It replaces a poor one. Its own file takes all flags that the library's files are given."""
+@pytest.mark.parametrize("has_header", [True, False], ids=["header", "no-header"])
+def test_no_root_calls_the_c_library(flags: list[str], has_header: bool, tmp_path: Path) -> None:
+    """It replaces a slow one. Its own file accepts all flags of the library's files."""
     caller = tmp_path / "caller.c"
     caller.write_text("#include <math.h>\nfloat half(float x);\nfloat half(float x) { return 0.5f * sqrtf(x); }\n")
     common = ["-O2", *WARNINGS, *flags, "-Dsqrtf=goe_sqrtf", f"-I{SQRTF}"]
-    if seen:
+    if has_header:
         common += ["-include", "goe_sqrtf.h"]
     made = tmp_path / "caller.o"
     subprocess.run(["cc", "-c", *common, caller, "-o", made], check=True)

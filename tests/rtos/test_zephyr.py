@@ -1,4 +1,4 @@
-"""port/zephyr without Zephyr: its CMake files, Kconfig, sample and test, among what stands in for the tree's."""
+"""port/zephyr without Zephyr: its CMake files, Kconfig, sample and test, with stand-ins for the tree's files."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from scripted import assert_flown
 STAND_IN = Path(__file__).resolve().parent / "zephyr"
 SAMPLE = ZEPHYR / "samples" / "sensor_loop"
 GOLDEN_BITS = ZEPHYR / "tests" / "golden_bits"
-SECONDS = 1800  # only a guard against what hangs
+SECONDS = 1800  # guard against a hang
 
-# Keys of module.yml that Zephyr 3.4.0 knows, compared on 2026-11-22.
+# Keys of module.yml in Zephyr 3.4.0, compared on 2026-11-22.
 MODULE_KEYS = {"name", "build", "tests", "samples", "boards", "blobs"}
 BUILD_KEYS = {"cmake", "kconfig", "cmake-ext", "kconfig-ext", "depends", "settings"} | {
     f"sysbuild-{key}" for key in ("cmake", "kconfig", "cmake-ext", "kconfig-ext")
 }
-# ... and of sample.yaml and testcase.yaml, those that are used here.
+# ... and the used keys of sample.yaml and testcase.yaml.
 SCENARIO_KEYS = {
     "tags", "platform_allow", "timeout", "harness", "harness_config", "filter", "extra_configs", "min_flash", "min_ram",
 }  # fmt: skip
@@ -40,7 +40,7 @@ def run(*words: str | Path, **environment: str) -> str:
 
 
 def configure(application: Path, folder: Path, *assignments: str, flags: str = "-O0") -> Path:
-    """Its build folder. Kconfig's values are those of prj.conf and the assignments."""
+    """Configures, and returns the build folder. Kconfig's values are those of prj.conf and the assignments."""
     parsed = parse(ZEPHYR, folder)
     apply(parsed, [*(application / "prj.conf").read_text().splitlines(), *assignments])
     write(parsed, folder, '#define CONFIG_BOARD "host"\n#define CONFIG_KERNEL_INIT_PRIORITY_DEFAULT 40\n')
@@ -52,7 +52,7 @@ def configure(application: Path, folder: Path, *assignments: str, flags: str = "
 
 
 def build(application: Path, folder: Path, *assignments: str, flags: str = "-O0", link: str = "") -> Path:
-    """The program."""
+    """Builds, and returns the program."""
     tree = configure(application, folder, *assignments, flags=flags)
     run("cmake", f"-DCMAKE_EXE_LINKER_FLAGS={link}", tree)
     run("cmake", "--build", tree, "-j", "2")
@@ -67,7 +67,7 @@ def compiled(tree: Path) -> dict[str, str]:
 
 
 def scenarios(page: Path) -> dict[str, dict[str, Any]]:
-    """Of sample.yaml or testcase.yaml, each with what is common to all."""
+    """The scenarios of sample.yaml or testcase.yaml, each with the common part."""
     read = yaml.safe_load(page.read_text())
     common = read.get("common", {})
     return {
@@ -77,7 +77,7 @@ def scenarios(page: Path) -> dict[str, dict[str, Any]]:
 
 
 def said_by(page: Path) -> list[str]:
-    """Regular expressions of what a run prints; they are the same for every scenario."""
+    """Regular expressions of a run's output; they are the same for every scenario."""
     (expected,) = {json.dumps(scenario["harness_config"]) for scenario in scenarios(page).values()}
     config = json.loads(expected)
     assert config["type"] == "multi_line" and config["ordered"]
@@ -109,7 +109,7 @@ def test_module_file() -> None:
 
 
 @pytest.mark.parametrize("page", [SAMPLE / "sample.yaml", GOLDEN_BITS / "testcase.yaml"], ids=lambda page: page.name)
-def test_scenarios_set_what_kconfig_knows(page: Path, tmp_path: Path) -> None:
+def test_scenarios_set_known_options(page: Path, tmp_path: Path) -> None:
     libraries = set()
     for name, scenario in scenarios(page).items():
         assert name.startswith("goe.") and set(scenario) <= SCENARIO_KEYS
@@ -143,18 +143,18 @@ def test_floats_are_not_vectorised_where_helium_would_flush_them(tmp_path: Path)
 
 
 def test_parts_left_out(tmp_path: Path) -> None:
-    off = ("GOE_WITH_REFINED", "GOE_WITH_HAZARD", "GOE_SELF_CHECK")
+    off = ("GOE_WITH_FILTER", "GOE_WITH_HAZARD", "GOE_SELF_CHECK")
     found = compiled(configure(SAMPLE, tmp_path, *(f"CONFIG_{name}=n" for name in off), "CONFIG_GOE_WINDOW_MAX=5"))
     assert not any(file.startswith(("port/flight", "port/mavlink", "port/sqrtf")) for file in found)
     assert "port/zephyr/goe_start.c" not in found
     command = found["lib/goe_estimator.c"]
     assert "-DGOE_WINDOW_MAX=5" in command and "GOE_FLIGHT_SLOTS" not in command
-    parts = {"WINDOW": 1, "REFINED": 0, "MOVERS": 0, "HAZARD": 0}
+    parts = {"WINDOW": 1, "FILTER": 0, "TARGET_MOTION": 0, "HAZARD": 0}
     assert all(f"-DGOE_WITH_{part}={value} " in command for part, value in parts.items())
 
 
 def test_golden_bits(tmp_path: Path) -> None:
-    """With the square root that the minimal C library gets."""
+    """With the square root that a build with the minimal C library gets."""
     page = GOLDEN_BITS / "testcase.yaml"
     program = build(GOLDEN_BITS, tmp_path, "CONFIG_MINIMAL_LIBC=y", flags="-O1 -DGOE_SQRTF_IN_INTEGERS")
     assert_said(page, run(program))
@@ -163,7 +163,7 @@ def test_golden_bits(tmp_path: Path) -> None:
         assert any(golden in pattern for pattern in said_by(page))
 
 
-def test_wrong_arithmetic_is_told_at_start(tmp_path: Path) -> None:
+def test_wrong_arithmetic_is_reported_at_start(tmp_path: Path) -> None:
     text = run(build(SAMPLE, tmp_path, flags="-O1 -ffast-math"))
     assert re.match(r"goe: goe_self_check\(\) says 0x(?!00)..: ", text)
 
@@ -171,7 +171,7 @@ def test_wrong_arithmetic_is_told_at_start(tmp_path: Path) -> None:
 # ---------------------------------------------------------------------------------------------------------- the sample
 
 
-def test_sample_says_what_the_pages_promise(sample: Path) -> None:
+def test_sample_prints_the_lines_of_its_pages(sample: Path) -> None:
     text = run(sample)
     assert_said(SAMPLE / "sample.yaml", text)
     assert_flown(text)

@@ -1,6 +1,6 @@
 /*
- * campaign_probe CASE NOISE CYLINDER METHOD MODEL WINDOW - flies a case of the paper's with other sensors and runs the library over
- * it in-process, as goe_campaign does; writes what goe_replay would.
+ * campaign_probe CASE NOISE CYLINDER METHOD MODEL WINDOW - flies a case of the paper with other sensors, runs the library over
+ * it in-process, as goe_campaign does, and writes the output of goe_replay.
  *
  * Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT
  */
@@ -62,7 +62,7 @@ int main(int argc, char **argv) {
     if (fault != NULL) {
         return fail("fly", fault);
     }
-    const case_setting_t setting = {strcmp(argv[4], "refined") == 0 ? GOE_METHOD_REFINED : GOE_METHOD_WINDOW,
+    const case_setting_t setting = {strcmp(argv[4], "filter") == 0 ? GOE_METHOD_FILTER : GOE_METHOD_WINDOW,
                                     strcmp(argv[5], "disc") == 0 ? GOE_MODEL_DISC : GOE_MODEL_AUTO,
                                     (int)strtol(argv[6], NULL, 10)};
     const int status = run(&setup, &log, setting);

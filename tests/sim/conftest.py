@@ -1,4 +1,4 @@
-"""Where the programs are: GOE_SIM, GOE_CAMPAIGN and so on name them, otherwise they are looked for in build/."""
+"""Finds the programs: GOE_SIM, GOE_CAMPAIGN and so on name them; by default they are looked for in build/."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ PLACES = {
 
 
 def program(name: str) -> Path:
-    """The program's path; the test is skipped where it is not built, but fails where it was named wrongly."""
+    """The program's path. If it is not built, the test is skipped; if a variable names a wrong path, the test fails."""
     variable, folder = PLACES[name]
     named = os.environ.get(variable)
     path = Path(named) if named else folder / name

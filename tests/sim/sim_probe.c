@@ -1,5 +1,5 @@
 /*
- * Shows the tests what goe_sim's logs do not: raw series of the simulator's parts, one row of numbers per step.
+ * Prints data for the tests that are not in goe_sim's logs: raw series of the simulator's parts, one row of numbers per step.
  *
  *   sim_probe turbulence W20_MPS AIRSPEED HEIGHT STEP_S COUNT SEED     u v w p q r
  *   sim_probe trim AIRSPEED CLIMB_DEG                                  ok alpha_rad elevator_rad throttle

@@ -1,7 +1,7 @@
-"""Runs goe_sim, reads its logs, and projects by itself: nothing here shares code with the simulator.
+"""Runs goe_sim, reads its logs, and projects points with independent code, none of it shared with the simulator.
 
-Frames: NED in metres; attitude quaternions (w, x, y, z) body forward-right-down to
-NED; camera x right, y down, z ahead.
+Frames: NED in meters; attitude quaternions (w, x, y, z) body forward-right-down to NED; camera x right, y down, z
+ahead.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-HANG_S = 600  # only a guard against what hangs
+HANG_S = 600  # guard against a hang
 FEATURES = ("left", "right", "top", "base_left", "base_near", "base_right")
 
 
 @dataclass
 class Log:
-    """One log: camera.ini, the single row of truth.csv, and both frame tables as arrays of float (empty = NaN)."""
+    """One log: camera.ini, the single row of truth.csv, and both frame tables as float arrays (empty = NaN)."""
 
     camera: dict[str, float]
     truth: dict[str, float]
@@ -29,7 +29,7 @@ class Log:
     exact: dict[str, np.ndarray]
 
     def pixels(self, name: str, exact: bool = True) -> np.ndarray:
-        """Pixels of a feature, shape (frames, 2), NaN where it is not seen."""
+        """Pixels of a feature, shape (frames, 2), NaN where it is not visible."""
         table = self.exact if exact else self.frames
         return np.column_stack([table[f"{name}_u"], table[f"{name}_v"]])
 
@@ -103,7 +103,8 @@ class Camera:
         return np.column_stack([u, v]), depth
 
     def inside(self, pixels: np.ndarray, depth: np.ndarray, margin: float = 0.0) -> np.ndarray:
-        """In the image, by more than the margin (pixels; negative: or almost)."""
+        """Whether pixels are inside the image by more than the margin (px); a negative margin allows pixels slightly
+        outside."""
         u, v = pixels[:, 0], pixels[:, 1]
         width, height = self.ini["width"], self.ini["height"]
         return (
@@ -127,7 +128,7 @@ def box_corners(truth: dict[str, float]) -> np.ndarray:
 
 
 def passes_through_box(truth: dict[str, float], eye: np.ndarray, target: np.ndarray) -> bool:
-    """Does the straight way from the eye to the target cross the inside of the box? Slab method, box shrunk by 1e-7."""
+    """Whether the line from the eye to the target crosses the inside of the box. Slab method, box shrunk by 1e-7."""
     heading = np.radians(truth["heading_deg"])
     axes = np.array(
         [[np.cos(heading), np.sin(heading), 0.0], [-np.sin(heading), np.cos(heading), 0.0], [0.0, 0.0, -1.0]]

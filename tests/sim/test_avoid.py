@@ -1,4 +1,4 @@
-"""The flight layer flown by goe_avoid: its orders avoid collisions, and a pass at twice the margin is left alone."""
+"""The flight layer, flown by goe_avoid: its orders avoid collisions, and a pass at twice the margin causes no order."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def test_orders_avoid_every_collision_and_passes_are_left_alone(goe_avoid: Path)
     assert [row[0] for row in courses] == [row[0] for row in passes] == ["mast", "building", "truck"]
     for _, runs, without, collisions, late in courses:
         assert int(runs) == RUNS
-        assert int(without) >= 0.95 * RUNS  # otherwise there was nothing to avoid
+        assert int(without) >= 0.95 * RUNS  # without it there is no collision to avoid
         assert int(collisions) == int(late) == 0
     assert sum(int(row[2]) for row in passes) <= FALSE_SHARE_MAX * RUNS * len(passes)
 
@@ -46,7 +46,7 @@ def test_help(goe_avoid: Path, word: str) -> None:
     assert "--several" in done.stdout and done.stderr == ""
 
 
-def test_bad_usage_is_told(goe_avoid: Path) -> None:
+def test_bad_usage_is_reported(goe_avoid: Path) -> None:
     for wrong in (["--runs", "0"], ["--delay", "-1"], ["--csv"], ["--nonsense"], ["word"]):
         done = subprocess.run([str(goe_avoid), *wrong], capture_output=True, text=True)
         assert done.returncode == 2
@@ -54,7 +54,7 @@ def test_bad_usage_is_told(goe_avoid: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "error"),
     [
         (["--runs", "0"], "--runs: must be 1 to 100000, not 0"),
         (["--seed", "-1"], "--seed: must be 0 or more"),
@@ -64,12 +64,12 @@ def test_bad_usage_is_told(goe_avoid: Path) -> None:
         (["--sede", "3"], "--sede: unknown option; did you mean --seed?"),
     ],
 )
-def test_bad_values_name_their_option(goe_avoid: Path, words: list[str], told: str) -> None:
+def test_bad_values_name_their_option(goe_avoid: Path, words: list[str], error: str) -> None:
     done = subprocess.run([str(goe_avoid), *words], capture_output=True, text=True)
-    assert (done.returncode, done.stdout, done.stderr) == (2, "", f"goe_avoid: {told}\n")
+    assert (done.returncode, done.stdout, done.stderr) == (2, "", f"goe_avoid: {error}\n")
 
 
-def test_what_cannot_be_printed_is_told(goe_avoid: Path, tmp_path: Path) -> None:
+def test_output_that_cannot_be_printed_is_reported(goe_avoid: Path, tmp_path: Path) -> None:
     for words in (["-n", "1"], ["--help"], ["-n", "1", "--csv", str(tmp_path / "runs.csv")]):
         with open("/dev/full", "w") as full:
             done = subprocess.run([str(goe_avoid), *words], stdout=full, stderr=subprocess.PIPE, text=True)
@@ -140,7 +140,7 @@ def test_the_file_appears_whole_or_not_at_all(goe_avoid: Path, tmp_path: Path) -
 
 
 @pytest.mark.parametrize("place", ["file/runs.csv", "."])
-def test_a_place_that_cannot_be_written_is_told_before_anything_is_flown(
+def test_a_place_that_cannot_be_written_is_reported_before_anything_is_flown(
     goe_avoid: Path, tmp_path: Path, place: str
 ) -> None:
     (tmp_path / "file").touch()
@@ -150,7 +150,7 @@ def test_a_place_that_cannot_be_written_is_told_before_anything_is_flown(
     assert done.stderr.startswith(f"goe_avoid: {tmp_path / place}: ")
 
 
-# Flights, some 10 s of one core. Even seeds: on these the thresholds were settled. Of 3,000 flights of other seeds some
+# Flights, some 10 s of one core. Even seeds: the thresholds were tuned on these. Of 3,000 flights of other seeds some
 # still miss a goal: port/flight/README.md has the table.
 SEVERAL = 630
 SEVERAL_SEED = 2
@@ -210,12 +210,12 @@ def test_a_flight_among_several_can_be_traced(goe_avoid: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "error"),
     [
         (["--several", "-1"], "--several: must be 1 to 100000, not -1"),
         (["--several", "3", "--step", "0"], "--step: must be 1 to 100000, not 0"),
     ],
 )
-def test_bad_numbers_of_flights_name_their_option(goe_avoid: Path, words: list[str], told: str) -> None:
+def test_bad_numbers_of_flights_name_their_option(goe_avoid: Path, words: list[str], error: str) -> None:
     done = subprocess.run([str(goe_avoid), *words], capture_output=True, text=True)
-    assert (done.returncode, done.stdout, done.stderr) == (2, "", f"goe_avoid: {told}\n")
+    assert (done.returncode, done.stdout, done.stderr) == (2, "", f"goe_avoid: {error}\n")

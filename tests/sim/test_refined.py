@@ -1,4 +1,5 @@
-"""goe_replay's default, the refined method, on goe_sim's logs: smaller errors than the window's, honest sigmas."""
+"""goe_replay's default, the filter method, on goe_sim's logs: smaller errors than the window method's, correct
+sigmas."""
 
 from __future__ import annotations
 
@@ -13,7 +14,7 @@ import pytest
 from sim_support import Log, fly
 
 SEEDS = (1, 2, 3, 4, 5)
-# turned by -20 degrees or not at all: at 45 either side may be called the front
+# turned by -20 degrees or not at all: at 45 degrees either side may be called the front
 CASES = {"cylinder": 2, "building": 18, "truck": 58, "long-truck": 118}
 FOLD_DEG = 180.0
 
@@ -31,7 +32,7 @@ def solved(rows: list[Row]) -> list[Row]:
 
 
 def truth_of(log: Log, model: str) -> dict[str, float]:
-    """The truth under the names of goe_replay's columns: of the centre for the disc, else of the front edge."""
+    """The truth under the names of goe_replay's columns: of the center for the disc, otherwise of the front edge."""
     truth = log.truth
     prefix = "" if model == "disc" else "front_"
     wanted = {"x0_m": truth[f"{prefix}x0_m"], "z0_m": truth[f"{prefix}z0_m"], "height_m": truth["height_m"]}
@@ -42,7 +43,7 @@ def truth_of(log: Log, model: str) -> dict[str, float]:
 
 
 def errors(row: Row, log: Log) -> dict[str, float]:
-    """Estimate minus truth of what the row holds."""
+    """Estimate minus truth for the columns of the row."""
     found = {}
     for name, true in truth_of(log, row["model"]).items():
         if row[name]:
@@ -61,7 +62,7 @@ def rms_error(rows: list[Row], log: Log, quantity: str) -> float:
 
 @pytest.mark.parametrize("name", list(CASES))
 def test_better_than_the_window(programs: dict[str, Path], goe_sim: Path, tmp_path: Path, name: str) -> None:
-    """Errors of all sensors: a third of the window's or less, in range and width, in every run."""
+    """Errors of all sensors: at most a third of the window's in range and width, in every run."""
     for seed in SEEDS:
         folder = tmp_path / str(seed)
         log = fly(goe_sim, folder, "--case", CASES[name], "--noise", "field", "--seed", seed)
@@ -73,8 +74,8 @@ def test_better_than_the_window(programs: dict[str, Path], goe_sim: Path, tmp_pa
 
 def test_sigmas_are_of_the_true_error(programs: dict[str, Path], goe_sim: Path, tmp_path: Path) -> None:
     """[A2]
-    Errors of all sensors, as the settings' defaults tell them: at the end the truth lies within two sigma in 90 % of
-    runs and quantities, and never outside four; the sigmas are not idle either."""
+    Errors of all sensors, as the default settings configure them: at the end the truth is within two sigma in 90 %
+    of runs and quantities, and never outside four; the sigmas are not too large either."""
     ratios = []
     for name, seed in itertools.product(CASES, SEEDS):
         folder = tmp_path / f"{name}{seed}"
@@ -91,10 +92,10 @@ def test_sigmas_are_of_the_true_error(programs: dict[str, Path], goe_sim: Path, 
 
 @pytest.mark.parametrize("name", list(CASES))
 def test_answers_sooner_than_the_window(programs: dict[str, Path], goe_sim: Path, tmp_path: Path, name: str) -> None:
-    """The range known to 10 % (two sigma, and in truth) from an earlier image on."""
+    """The range is known to 10 % (two sigma, and in truth) from an earlier image on."""
     log = fly(goe_sim, tmp_path / "log", "--case", CASES[name], "--noise", "field", "--seed", "1")
     since = {}
-    for method in ("refined", "window"):
+    for method in ("filter", "window"):
         rows = replay(programs, tmp_path / "log", "--method", method)
         good = []
         for row in rows:
@@ -103,15 +104,16 @@ def test_answers_sooner_than_the_window(programs: dict[str, Path], goe_sim: Path
             good.append(abs(error - z0_m) < 0.1 * z0_m and 2.0 * sigma < 0.1 * z0_m)
         bad = np.flatnonzero(~np.array(good))
         since[method] = int(bad[-1]) + 1 if len(bad) else 0
-    assert since["refined"] < since["window"]
-    assert since["refined"] < 0.7 * len(rows)
+    assert since["filter"] < since["window"]
+    assert since["filter"] < 0.7 * len(rows)
 
 
 def test_bounding_boxes_alone_are_a_disc(programs: dict[str, Path], goe_sim: Path, tmp_path: Path) -> None:
-    """A detector's boxes, without base corners: the disc. Its noise told, the truth within three sigma of the range."""
+    """Boxes of a detector without base corners give a disc. With the noise configured, the truth is within three
+    sigma of the range."""
     log = fly(goe_sim, tmp_path / "log", "--case", CASES["cylinder"], "--noise", "detector")
-    told = {"detector.point_px": 0.7, "detector.point_share": 0.025, "detector.point_correlation": 0.5}
-    options = [f"--set={name}={value}" for name, value in told.items()]
+    configured = {"detector.point_noise_px": 0.7, "detector.point_noise_rel": 0.025, "detector.point_correlation": 0.5}
+    options = [f"--set={name}={value}" for name, value in configured.items()]
     rows = replay(programs, tmp_path / "log", *options)
     row = solved(rows)[-1]
     assert {one["model"] for one in rows} == {"none", "disc"}

@@ -1,4 +1,4 @@
-"""The aircraft: trim, step responses of its autopilot, limits; and the paths it is to fly."""
+"""The aircraft: trim, step responses of its autopilot, limits; and its commanded paths."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def respond(
 
 
 def step_figures(t: np.ndarray, error: np.ndarray) -> tuple[float, float, float]:
-    """Rise time 10 to 90 % (s), overshoot and error at the end (shares of the step) of an error that starts at 1."""
+    """Rise time 10 to 90 % (s), overshoot and final error (fractions of the step) of an error that starts at 1."""
     after = t >= STEP_AT_S
     t, error = t[after] - STEP_AT_S, error[after]
     rise = t[np.argmax(error < 0.1)] - t[np.argmax(error < 0.9)]
@@ -46,7 +46,7 @@ def step_figures(t: np.ndarray, error: np.ndarray) -> tuple[float, float, float]
 
 @pytest.mark.parametrize(("airspeed", "climb"), [(17.0, 0.0), (17.0, -6.0), (17.0, 4.0), (13.0, 0.0), (26.0, -3.0)])
 def test_trim_is_an_equilibrium(sim_probe: Path, airspeed: float, climb: float) -> None:
-    """Lift, drag and moment of the trim balance: 20 s of flight change nothing; and they balance by hand."""
+    """Lift, drag and moment of the trim balance: 20 s of flight change nothing, and so does the balance by hand."""
     flown = respond(sim_probe, airspeed, climb, 20.0, "none", 0.0)
     assert np.ptp(flown["airspeed"]) < 1e-9 and np.abs(flown["height_error"]).max() < 1e-9
     assert np.ptp(flown["pitch"]) < 1e-9 and np.abs(flown["roll"]).max() < 1e-12
@@ -64,7 +64,7 @@ def test_trim_is_an_equilibrium(sim_probe: Path, airspeed: float, climb: float) 
 
 
 @pytest.mark.parametrize(("airspeed", "climb"), [(17.0, -20.0), (28.0, 30.0), (8.0, 0.0)])
-def test_what_cannot_be_flown_has_no_trim(sim_probe: Path, airspeed: float, climb: float) -> None:
+def test_impossible_flight_has_no_trim(sim_probe: Path, airspeed: float, climb: float) -> None:
     assert run(sim_probe, "trim", airspeed, climb).stdout.startswith("0 ")
 
 
@@ -88,7 +88,7 @@ def test_cross_track_step(sim_probe: Path, airspeed: float, climb: float, size: 
 
 @pytest.mark.parametrize(("airspeed", "size"), [(17.0, 30.0), (17.0, -60.0), (25.0, 30.0)])
 def test_course_step(sim_probe: Path, airspeed: float, size: float) -> None:
-    """The path turns where the aircraft is: it swings wide, comes back to the path, and settles on the new course."""
+    """The path turns at the aircraft's position: the aircraft overshoots, comes back, and settles on the new course."""
     flown = respond(sim_probe, airspeed, 0.0, 62.0, "course", size)
     rise, overshoot, rest = step_figures(flown["t"], 1 - flown["course"] / size)
     assert 0.5 < rise < 5.0 and overshoot < 0.55 and rest < 1e-3
@@ -105,7 +105,7 @@ def test_speed_step(sim_probe: Path, airspeed: float, size: float) -> None:
 
 @pytest.mark.parametrize("what", ["height", "cross", "course", "speed"])
 @pytest.mark.parametrize("size", [-120.0, 120.0])
-def test_limits_hold_whatever_is_asked(sim_probe: Path, what: str, size: float) -> None:
+def test_limits_are_kept_for_any_command(sim_probe: Path, what: str, size: float) -> None:
     flown = respond(sim_probe, 17.0, 0.0, 40.0, what, size if what != "speed" else size / 12)
     assert np.abs(flown["bank_command"]).max() <= 40.0 + 1e-9 and np.abs(flown["roll"]).max() < 45.0
     assert np.abs(flown["pitch_command"]).max() <= 25.0 + 1e-9 and np.abs(flown["pitch"]).max() < 30.0
@@ -114,7 +114,7 @@ def test_limits_hold_whatever_is_asked(sim_probe: Path, what: str, size: float) 
     assert flown["throttle"].min() >= 0.0 and flown["throttle"].max() <= 1.0
     assert flown["airspeed"].min() > 9.0 and flown["airspeed"].max() < 32.0
     if what in ("cross", "course"):
-        assert np.abs(flown["bank_command"]).max() > 35.0  # the limit was really met
+        assert np.abs(flown["bank_command"]).max() > 35.0  # the limit was reached
 
 
 @pytest.mark.parametrize(("glide", "altitude"), [(0.0, 15.0), (6.0, 15.0), (-3.0, 30.0)])
@@ -142,7 +142,8 @@ def test_slope_arrives_at_reach_time(goe_sim: Path, tmp_path: Path, glide: float
 
 
 def test_arc_weave_and_ramp_are_flown(goe_sim: Path, tmp_path: Path) -> None:
-    """At most 0.5 m (arc) and 1.5 m (weave) from the path, coordinated banks, the obstacle where reach time ends."""
+    """At most 0.5 m (arc) and 1.5 m (weave) from the path, coordinated banks, the obstacle at the end of the reach
+    time."""
     arc = fly(goe_sim, tmp_path / "arc", "--obstacle", "truck", "--altitude", "20", "--path", "arc:-300")
     position, attitude = poses(arc.exact)
     assert np.abs(np.hypot(position[:, 0], position[:, 1] + 300.0) - 300.0).max() < 0.5
@@ -194,7 +195,7 @@ def test_wind_drifts_the_nose_not_the_path(goe_sim: Path, tmp_path: Path) -> Non
 
 @pytest.mark.parametrize(("wind", "height", "airspeed"), [("dryden:light", 1.5, 1.0), ("dryden:moderate", 3.0, 2.2)])
 def test_turbulence_is_ridden_out(goe_sim: Path, tmp_path: Path, wind: str, height: float, airspeed: float) -> None:
-    """RMS over ten flights of 30 s: height error, airspeed error; the attitude moves as it does in rough air."""
+    """RMS over ten flights of 30 s: height error, airspeed error; the attitude moves as in rough air."""
     errors, speeds, rolls = [], [], []
     for seed in range(10):
         log = fly(

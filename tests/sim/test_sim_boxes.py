@@ -15,9 +15,9 @@ BOXES = ("--features", "boxes")
 EXACT = (*BOXES, "--noise", "none")
 TOLERANCE_PX = 1e-3
 RIM_POINTS, RINGS, EDGE_POINTS = 2000, 25, 2001
-LEAST_PX = 2.0  # nothing smaller is detected
+LEAST_PX = 2.0  # no smaller box is detected
 
-# all of it stays in the image, for many frames: the noise is not cut
+# all of it stays in the image, for many frames: the noise is not clipped
 LONG = ("--obstacle", "building", "--x0", "-150", "--reach", "80", "--run", "40", "--fps", "20")
 ROLLING = ("--roll-amplitude-deg", "25")
 # past a building until it is out of sight; it stays in front of the camera
@@ -40,7 +40,7 @@ def boxes(log: Log, exact: bool = False) -> np.ndarray:
 
 
 def surface(truth: dict[str, float], cylinder: bool) -> np.ndarray:
-    """Points of all edges of a box; of a cylinder of its wall, with both rims."""
+    """Points of all edges of a box; of a cylinder's wall, with both rims."""
     if cylinder:
         angle = np.linspace(0.0, 2.0 * np.pi, RIM_POINTS, endpoint=False)
         radius = truth["width_m"] / 2
@@ -86,7 +86,7 @@ def test_a_box_frames_the_whole_obstacle_and_ends_at_the_border(goe_sim: Path, t
     assert np.isfinite(found).all(axis=1).sum() > 100
 
 
-def test_cut_sides_stand_at_the_border_and_lost_boxes_are_empty(goe_sim: Path, tmp_path: Path) -> None:
+def test_cut_sides_are_at_the_border_and_lost_boxes_are_empty(goe_sim: Path, tmp_path: Path) -> None:
     """Past a building far higher than the image, until it is out of sight."""
     log = fly(goe_sim, tmp_path / "log", *EXACT, *PASSING, *ROLLING)
     whole, found = framed(log, cylinder=False), boxes(log)
@@ -105,8 +105,8 @@ def test_noise_does_not_carry_a_side_over_the_border(goe_sim: Path, tmp_path: Pa
     assert (found[:, 0] == 0.0).any() and (found[:, 3] == 1279.0).any()
 
 
-def test_a_building_beside_the_camera_keeps_its_box(goe_sim: Path, tmp_path: Path) -> None:
-    """A part of it lies behind the camera: the rest still reaches beyond the border on that side."""
+def test_a_building_next_to_the_camera_keeps_its_box(goe_sim: Path, tmp_path: Path) -> None:
+    """A part of it is behind the camera: the rest still reaches beyond the border on that side."""
     wall = ("--obstacle", "box:6,200,12", "--x0", "-20", "--altitude", "6", "--z0", "150", "--run", "6")
     log = fly(goe_sim, tmp_path / "log", *EXACT, *wall)
     camera, corners = Camera(log.camera), box_corners(log.truth)
@@ -119,8 +119,9 @@ def test_a_building_beside_the_camera_keeps_its_box(goe_sim: Path, tmp_path: Pat
 # ---------------------------------------------------------------------------------------------------- what the log says
 
 
-def test_what_is_logged(goe_sim: Path, tmp_path: Path) -> None:
-    """Corners: what is logged without the option, byte for byte. The flight is the same whatever is logged."""
+def test_logged_columns(goe_sim: Path, tmp_path: Path) -> None:
+    """With corners, the log equals the one without the option, byte for byte. The flight is the same with any
+    features."""
     options = ("--obstacle", "building", "--alpha", "20", "--noise", "field", "--seed", "4")
     logs = {
         name: fly(goe_sim, tmp_path / name, *options, *(("--features", name) if name != "usual" else ()))
@@ -167,7 +168,7 @@ def test_white_noise_of_the_sides(goe_sim: Path, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("rate", [5, 20])
 def test_the_detector_s_noise_keeps_for_its_time_constant_at_any_rate(goe_sim: Path, tmp_path: Path, rate: int) -> None:
-    """The usual noise of boxes: 0.04 of the width or height, of which 1/e is left after a second."""
+    """The default noise of boxes: 0.04 of the width or height, of which 1/e remains after a second."""
     error = []
     for seed in range(25):
         log = fly(goe_sim, tmp_path / "log", *LONG, *BOXES, "--box-px", "0", "--seed", seed, "--fps", rate)
@@ -182,11 +183,11 @@ def test_the_detector_s_noise_keeps_for_its_time_constant_at_any_rate(goe_sim: P
 
 def test_the_usual_noise_of_boxes_is_the_detector_s(goe_sim: Path, tmp_path: Path) -> None:
     figures = ("--box-px", "0.5", "--box-share", "0.04", "--box-correlation", "1")
-    usual, named, told = (
+    usual, named, at_end = (
         boxes(fly(goe_sim, tmp_path / name, *BOXES, *options))
         for name, options in (("a", ()), ("b", ("--noise", "detector")), ("c", ("--noise", "none", *figures)))
     )
-    assert np.array_equal(usual, named, equal_nan=True) and np.array_equal(usual, told, equal_nan=True)
+    assert np.array_equal(usual, named, equal_nan=True) and np.array_equal(usual, at_end, equal_nan=True)
 
 
 def test_rounding_and_outliers_of_sides(goe_sim: Path, tmp_path: Path) -> None:
@@ -222,7 +223,7 @@ def test_bad_options_are_named(goe_sim: Path, tmp_path: Path, options: tuple[str
 def test_goe_replay_answers_a_prism_within_two_sigma(
     programs: dict[str, Path], goe_sim: Path, tmp_path: Path, roll: int
 ) -> None:
-    """[GOE_MODEL_PRISM, (R33)] The library's default settings, which allow for more than these boxes' errors."""
+    """[GOE_MODEL_PRISM, (R33)] With the library's default settings, which allow larger errors than these boxes have."""
     replay, errors = programs["goe_replay"], []
     for seed in range(1, 9):
         options = ("--roll-amplitude-deg", roll, "--seed", seed, "--run", "17")

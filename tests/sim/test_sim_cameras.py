@@ -1,4 +1,5 @@
-"""Two cameras: whose image is logged, that it is its own, and that a track goes on from one camera to the other."""
+"""Two cameras: the camera of each logged image, its correct projection, and a track that continues from one camera
+to the other."""
 
 from __future__ import annotations
 
@@ -13,8 +14,8 @@ from test_sim_boxes import boxes, cut
 from test_sim_projection import LENS
 
 TOLERANCE_PX = 1e-3
-BORDER_PX = 0.01  # nearer to the border it is a matter of rounding whether the obstacle is seen whole
-ALL_SEEN = {"ok", "partial"}
+BORDER_PX = 0.01  # nearer to the border it depends on rounding whether the whole obstacle is visible
+SOLVED = {"ok", "partial"}
 EXACT = ("--features", "boxes", "--noise", "none")
 PASSING = ("--x0", "-40", "--reach", "12", "--yaw-camera", "-25", "--second-camera", "-75,0", "--run", "11.5")
 
@@ -23,9 +24,9 @@ def cameras(log: Log) -> tuple[Camera, Camera]:
     return Camera(log.camera), Camera(log.camera, "camera2")
 
 
-def seen_by(log: Log, camera: Camera) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Boxes (frames, 4) of an obstacle with corners, uncut; whether all of it is ahead of the camera; the angle of its
-    middle from the axis, rad."""
+def projected(log: Log, camera: Camera) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Boxes (frames, 4) of an obstacle with corners, uncut; whether all of it is ahead of the camera; the angle
+    between its middle and the axis, rad."""
     corners = box_corners(log.truth)
     position, attitude = poses(log.exact)
     framed, ahead, angle = [], [], []
@@ -57,7 +58,7 @@ def test_the_row_is_of_the_camera_that_sees_it_whole_or_nearer_to_its_axis(
     log = fly(goe_sim, tmp_path / "log", *EXACT, *shape, *SCENES[scene])
     number = log.frames["camera"].astype(int)
     assert np.array_equal(number, log.exact["camera"]) and set(number) == {0, 1}
-    framed, ahead, angle = (np.stack(of_both) for of_both in zip(*(seen_by(log, camera) for camera in cameras(log))))
+    framed, ahead, angle = (np.stack(of_both) for of_both in zip(*(projected(log, camera) for camera in cameras(log))))
     border = np.array([log.camera["camera.width"] - 1.0, log.camera["camera.height"] - 1.0])
     margin = np.minimum(framed[..., :2], border - framed[..., 2:]).min(axis=-1)
     whole = ahead & (margin > 0.0)
@@ -67,9 +68,9 @@ def test_the_row_is_of_the_camera_that_sees_it_whole_or_nearer_to_its_axis(
     against_the_axis = expected != (angle[1] < angle[0])
     assert against_the_axis.any() == (scene == "one above the other")
     rows = np.arange(len(number))
-    told = ahead[number, rows]
+    logged = ahead[number, rows]
     assert np.allclose(
-        boxes(log)[told], cut(log, framed[number, rows])[told], atol=TOLERANCE_PX, rtol=0, equal_nan=True
+        boxes(log)[logged], cut(log, framed[number, rows])[logged], atol=TOLERANCE_PX, rtol=0, equal_nan=True
     )
 
 
@@ -115,8 +116,8 @@ PASSAGES = {
 SEEDS = range(1, 7)
 
 
-def centre_off(row: dict[str, str], truth: dict[str, float]) -> float:
-    """The larger error of the two coordinates, in their sigmas."""
+def center_error(row: dict[str, str], truth: dict[str, float]) -> float:
+    """The larger error of the two coordinates, in its sigmas."""
     return max(abs(float(row[f"center_{a}_m"]) - truth[f"center_{a}_m"]) / float(row[f"center_{a}_sd_m"]) for a in "ne")
 
 
@@ -124,20 +125,20 @@ def centre_off(row: dict[str, str], truth: dict[str, float]) -> float:
 def test_a_track_goes_on_from_one_camera_to_the_other(
     programs: dict[str, Path], goe_sim: Path, tmp_path: Path, passage: str
 ) -> None:
-    """Out of the one that looks ahead, into the one that looks aside, with the library's default settings."""
+    """From the camera that looks ahead to the one that looks aside, with the library's default settings."""
     for seed in SEEDS:
         log = fly(goe_sim, tmp_path / "log", *PASSAGES[passage], *PASSING, "--noise", "field", "--seed", seed)
         rows = list(csv.DictReader(run(programs["goe_replay"], tmp_path / "log").stdout.splitlines()))
         number = log.frames["camera"].astype(int)
         change = int(np.argmax(number))
         assert change > 40 and (number[change:] == 1).all() and len(rows) - change > 8
-        solved = [row["status"] in ALL_SEEN for row in rows]
+        solved = [row["status"] in SOLVED for row in rows]
         assert all(solved[change - 3 : change + 3]) and all(solved[change:])
-        used = [int(row["n_used"]) for row in rows[change - 1 :]]
-        assert (np.diff(used) == 1).all()  # nothing begins anew
+        used = [int(row["images_used"]) for row in rows[change - 1 :]]
+        assert (np.diff(used) == 1).all()  # no track restarts
         assert len({row["model"] for row in rows[change - 1 : change + 1]}) == 1
-        assert max(centre_off(row, log.truth) for row in rows[change:]) < 3.0
+        assert max(center_error(row, log.truth) for row in rows[change:]) < 3.0
         before, last = (float(rows[k]["center_n_sd_m"]) for k in (change - 1, -1))
         assert last < before * (
             0.6 if "boxes" in passage else 1.01
-        )  # of points: as small as drift of the position allows
+        )  # by points: as small as the drift of the position allows

@@ -1,4 +1,4 @@
-"""Logs and command line of goe_sim: sensors' statistics, determinism, recorded flights, errors that lose nothing."""
+"""Logs and command line of goe_sim: sensor statistics, determinism, recorded flights, errors without data loss."""
 
 from __future__ import annotations
 
@@ -39,8 +39,8 @@ def test_defaults_are_the_paper_s_camera_and_rounded_pixels(goe_sim: Path, tmp_p
     assert ini["trajectory.heading_deg"] == pytest.approx(12.5, abs=1e-12)
     assert log.frames["t_s"] == pytest.approx(np.arange(145) / 8, abs=0)
     for name in FEATURES:
-        seen = log.pixels(name, exact=False)
-        assert np.array_equal(seen, np.floor(log.pixels(name) + 0.5), equal_nan=True)
+        visible = log.pixels(name, exact=False)
+        assert np.array_equal(visible, np.floor(log.pixels(name) + 0.5), equal_nan=True)
     assert np.array_equal(log.frames["n_m"], log.exact["n_m"]) and np.array_equal(log.frames["qw"], log.exact["qw"])
     assert {key: log.truth[key] for key in ("width_m", "length_m", "height_m", "static")} == {
         "width_m": 2.5,
@@ -59,7 +59,8 @@ def test_height_above_ground_is_the_camera_s(goe_sim: Path, tmp_path: Path) -> N
 
 
 def test_every_number_reads_back_as_it_was(goe_sim: Path, tmp_path: Path) -> None:
-    """Noise-free frames and exact frames are printed from the same doubles; quaternions keep their norm to rounding."""
+    """Noise-free frames and exact frames are printed from the same doubles; quaternions keep their norm up to
+    rounding."""
     log = fly(goe_sim, tmp_path / "log", *TRUCK, "--noise", "none", "--wind", "dryden:light")
     norm = np.sqrt(sum(log.frames[key] ** 2 for key in ("qw", "qx", "qy", "qz")))
     assert norm == pytest.approx(np.ones(len(norm)), abs=4e-16)
@@ -103,7 +104,7 @@ def test_outliers(goe_sim: Path, tmp_path: Path) -> None:
 
 
 def test_attitude_position_and_altimeter_errors(goe_sim: Path, tmp_path: Path) -> None:
-    """Over 200 seeds: what is constant over a run, what is white, what walks; each with its sigma."""
+    """Over 200 seeds: the sigma of each constant, white and random walk error."""
     options = (*TRUCK, "--noise", "none", "--run", "18", "--fps", "4")
     bias, white, position, agl = [], [], [], []
     quantities = (
@@ -120,11 +121,11 @@ def test_attitude_position_and_altimeter_errors(goe_sim: Path, tmp_path: Path) -
     )
     for seed in range(200):
         log = fly(goe_sim, tmp_path / "log", *options, *quantities, "--seed", seed)
-        (true_position, true_attitude), (told_position, told_attitude) = poses(log.exact), poses(log.frames)
-        turn = np.degrees((true_attitude.inv() * told_attitude).as_rotvec())
+        (true_position, true_attitude), (logged_position, logged_attitude) = poses(log.exact), poses(log.frames)
+        turn = np.degrees((true_attitude.inv() * logged_attitude).as_rotvec())
         bias.append(turn.mean(axis=0))
         white.append(turn - turn.mean(axis=0))
-        position.append(told_position - true_position)
+        position.append(logged_position - true_position)
         agl.append(log.frames["agl_m"] - log.exact["agl_m"])
     assert np.std(bias, axis=0) == pytest.approx([0.5, 0.5, 0.5], rel=0.15)
     assert np.concatenate(white).std(axis=0) == pytest.approx([0.1, 0.1, 0.1], rel=0.03)
@@ -138,20 +139,20 @@ def test_attitude_position_and_altimeter_errors(goe_sim: Path, tmp_path: Path) -
 
 
 def test_attitude_bias_is_fixed_to_the_body(goe_sim: Path, tmp_path: Path) -> None:
-    """On an arc the same misalignment stays with the aircraft's axes while they turn over the ground."""
+    """On an arc the misalignment stays constant in the aircraft's axes, which turn over the ground."""
     options = ("--path", "arc:300", "--altitude", "20", "--noise", "none", "--attitude-bias", "2")
     log = fly(goe_sim, tmp_path / "log", "--obstacle", "truck", *options)
-    (_, true_attitude), (_, told_attitude) = poses(log.exact), poses(log.frames)
-    in_body = (true_attitude.inv() * told_attitude).as_rotvec()
-    in_ned = (told_attitude * true_attitude.inv()).as_rotvec()
+    (_, true_attitude), (_, logged_attitude) = poses(log.exact), poses(log.frames)
+    in_body = (true_attitude.inv() * logged_attitude).as_rotvec()
+    in_ned = (logged_attitude * true_attitude.inv()).as_rotvec()
     assert np.ptp(in_body, axis=0).max() < 1e-12 and np.ptp(in_ned, axis=0).max() > 0.01
 
 
 def test_field_is_the_sum_of_its_figures(goe_sim: Path, tmp_path: Path) -> None:
     field = fly(goe_sim, tmp_path / "field", *TRUCK, "--noise", "field", "--seed", "3")
-    told = fly(
+    rotated = fly(
         goe_sim,
-        tmp_path / "told",
+        tmp_path / "rotated",
         *TRUCK,
         "--noise",
         "none",
@@ -175,11 +176,11 @@ def test_field_is_the_sum_of_its_figures(goe_sim: Path, tmp_path: Path) -> None:
         "0.5",
     )
     for name in field.frames:
-        assert np.array_equal(field.frames[name], told.frames[name], equal_nan=True)
+        assert np.array_equal(field.frames[name], rotated.frames[name], equal_nan=True)
 
 
 def test_one_source_of_noise_does_not_disturb_another(goe_sim: Path, tmp_path: Path) -> None:
-    """The attitude errors of a seed stay the same when pixels get noise, frames are lost and the air moves."""
+    """The attitude errors of a seed stay the same with pixel noise, lost frames and turbulence."""
     calm = fly(goe_sim, tmp_path / "a", *TRUCK, "--noise", "none", "--attitude-bias", "0.5")
     rough = fly(
         goe_sim,
@@ -260,7 +261,7 @@ def test_the_truth_counts_from_the_first_image_that_shows_a_feature(goe_sim: Pat
 
 
 def test_paper_s_cases(goe_sim: Path, tmp_path: Path) -> None:
-    """156 cases, as Table 2 multiplies out; each flies and begins with its obstacle in view or x0 = 0."""
+    """156 cases, the product of Table 2; each flight begins with its obstacle in view or has x0 = 0."""
     lines = run(goe_sim, "--list-cases").stdout.splitlines()
     names = [line.split()[1] for line in lines[1:]]
     assert {name: names.count(name) for name in set(names)} == {
@@ -289,7 +290,7 @@ RECORDED_COLUMNS = ["t_s"] + [
 
 
 def write_recording(path: Path, swap: bool = False) -> tuple[Rotation, np.ndarray]:
-    """A level turn, 20 s at 10 Hz, from t = 3 s; the estimate is 1 m too far north and 2 degrees off in yaw, and its
+    """A level turn, 20 s at 10 Hz, from t = 3 s. The estimate is 1 m too far north and 2 degrees off in yaw, and its
     quaternion changes sign in every other row."""
     t = np.arange(0, 20.05, 0.1)
     heading = 0.3 + 0.02 * t
@@ -303,9 +304,9 @@ def write_recording(path: Path, swap: bool = False) -> tuple[Rotation, np.ndarra
         q = rotation.as_quat()[:, [3, 0, 1, 2]]
         return q * np.where(np.arange(len(q)) % 2 == 1, -1, 1)[:, None] if flip else q
 
-    told = position + np.array([1.0, 0.0, 0.0])
+    rotated = position + np.array([1.0, 0.0, 0.0])
     columns = RECORDED_COLUMNS
-    table = np.column_stack([t + 3, told, wxyz(estimate, True), position, wxyz(truth, False)])
+    table = np.column_stack([t + 3, rotated, wxyz(estimate, True), position, wxyz(truth, False)])
     if swap:
         order = np.random.default_rng(1).permutation(len(columns))
         columns, table = [columns[i] for i in order], table[:, order]
@@ -340,12 +341,12 @@ def test_recorded_flight(goe_sim: Path, tmp_path: Path, swap: bool) -> None:
         "0",
     )
     true_position, true_attitude = poses(log.exact)
-    told_position, told_attitude = poses(log.frames)
+    logged_position, logged_attitude = poses(log.frames)
     assert len(true_position) == 101
     assert true_position == pytest.approx(position[20:121], abs=1e-9)
     assert (true_attitude.inv() * truth[20:121]).magnitude() == pytest.approx(np.zeros(101), abs=1e-9)
-    assert told_position - true_position == pytest.approx(np.tile([1.0, 0, 0], (101, 1)), abs=1e-9)
-    assert np.degrees((true_attitude.inv() * told_attitude).as_rotvec()) == pytest.approx(
+    assert logged_position - true_position == pytest.approx(np.tile([1.0, 0, 0], (101, 1)), abs=1e-9)
+    assert np.degrees((true_attitude.inv() * logged_attitude).as_rotvec()) == pytest.approx(
         np.tile([0, 0, 2.0], (101, 1)), abs=1e-6
     )
     way = position[170, :2] - position[20, :2]
@@ -353,7 +354,7 @@ def test_recorded_flight(goe_sim: Path, tmp_path: Path, swap: bool) -> None:
         -12, abs=1e-9
     )
     assert log.camera["trajectory.heading_deg"] == pytest.approx(np.degrees(np.arctan2(way[1], way[0])), abs=1e-9)
-    # the camera sees from the true pose
+    # the camera's image is from the true pose
     camera = Camera(log.camera)
     center = np.array([[log.truth["center_n_m"], log.truth["center_e_m"], 0.0]])
     pixel, _ = camera.project(true_position[0], true_attitude[0], center)
@@ -361,21 +362,22 @@ def test_recorded_flight(goe_sim: Path, tmp_path: Path, swap: bool) -> None:
 
 
 def test_between_the_rows_of_a_recording(goe_sim: Path, tmp_path: Path) -> None:
-    """Position on the straight line, attitude by slerp, whatever the signs of the quaternions."""
+    """Position by linear interpolation, attitude by slerp, for any signs of the quaternions."""
     truth, position = write_recording(tmp_path / "flight.csv")
     options = ("--flight", tmp_path / "flight.csv", "--run", "10", "--noise", "none", "--fps", "40")
     log = fly(goe_sim, tmp_path / "log", *options)
     t, rows = log.exact["t_s"], np.arange(len(position)) / 10
     expected = Slerp(rows, truth)(t)
-    told = expected * Rotation.from_euler("Z", 2, degrees=True)
+    rotated = expected * Rotation.from_euler("Z", 2, degrees=True)
     assert (poses(log.exact)[1].inv() * expected).magnitude().max() < 1e-9
-    assert (poses(log.frames)[1].inv() * told).magnitude().max() < 1e-7
+    assert (poses(log.frames)[1].inv() * rotated).magnitude().max() < 1e-7
     for axis in range(3):
         assert poses(log.exact)[0][:, axis] == pytest.approx(np.interp(t, rows, position[:, axis]), abs=1e-9)
 
 
-def test_from_inside_nothing_is_seen(goe_sim: Path, tmp_path: Path) -> None:
-    """A recording that goes through the obstacle: features before it, none inside, though its far corners lie ahead."""
+def test_from_inside_nothing_is_visible(goe_sim: Path, tmp_path: Path) -> None:
+    """A recording that goes through the obstacle: features before it, none inside, although its far corners are
+    ahead."""
     write_recording(tmp_path / "flight.csv")
     options = (
         "--flight",
@@ -393,8 +395,8 @@ def test_from_inside_nothing_is_seen(goe_sim: Path, tmp_path: Path) -> None:
     n, e = log.exact["n_m"] - log.truth["center_n_m"], log.exact["e_m"] - log.truth["center_e_m"]
     c, s = np.cos(np.radians(20.0)), np.sin(np.radians(20.0))
     inside = (np.abs(c * n + s * e) < 20.0) & (np.abs(c * e - s * n) < 6.0)
-    seen = sum((~np.isnan(log.pixels(name)[:, 0])).astype(int) for name in FEATURES)
-    assert inside.sum() > 10 and (seen[inside] == 0).all() and seen[0] > 0
+    visible = sum((~np.isnan(log.pixels(name)[:, 0])).astype(int) for name in FEATURES)
+    assert inside.sum() > 10 and (visible[inside] == 0).all() and visible[0] > 0
 
 
 def test_recorded_flight_ends_with_its_recording(goe_sim: Path, tmp_path: Path) -> None:
@@ -443,7 +445,7 @@ def test_bad_recordings_are_refused_with_their_place(goe_sim: Path, tmp_path: Pa
     [
         lambda text: "\ufeff" + text,
         lambda text: text.replace("\n", "\r\n"),
-        lambda text: text.replace("-25,", "-25." + "0" * 80 + ","),  # no field is cut
+        lambda text: text.replace("-25,", "-25." + "0" * 80 + ","),  # no field is truncated
         lambda text: "".join(f'"{line}, x",{line}\n' for line in text.splitlines()),
     ],
     ids=["byte order mark", "CRLF", "long numbers", "a column of one's own"],
@@ -581,7 +583,7 @@ def change_a_digit(log: Path) -> None:
     ids=["frames", "comment", "camera", "empty camera", "no truth", "frames alone"],
 )
 def test_a_log_of_others_is_not_replaced(goe_sim: Path, tmp_path: Path, change: Callable[[Path], object]) -> None:
-    """Neither one that another program wrote, nor one that was edited since."""
+    """Logs of another program, or edited ones."""
     log = tmp_path / "log"
     run(goe_sim, *TRUCK, "--out", log)
     change(log)
@@ -590,7 +592,7 @@ def test_a_log_of_others_is_not_replaced(goe_sim: Path, tmp_path: Path, change: 
     assert folder_bytes(log) == before and [path.name for path in tmp_path.iterdir()] == ["log"]
 
 
-def test_what_is_round_has_neither_sides_nor_orientation(goe_sim: Path, tmp_path: Path) -> None:
+def test_a_round_obstacle_has_neither_sides_nor_orientation(goe_sim: Path, tmp_path: Path) -> None:
     run(goe_sim, "--obstacle", "disc:6,30", "--run", "1", "--out", tmp_path / "log")
     with (tmp_path / "log" / "truth.csv").open(newline="") as file:
         (row,) = csv.DictReader(file)
@@ -606,7 +608,7 @@ def test_help(goe_sim: Path, word: str) -> None:
 
 
 def written(folder: Path) -> int:
-    """Bytes of all files there, which come and go meanwhile."""
+    """Bytes of all files in a folder, whose files may appear and vanish meanwhile."""
     size = 0
     for place, _, names in os.walk(folder):
         for name in names:
@@ -616,7 +618,7 @@ def written(folder: Path) -> int:
 
 
 def test_interrupted_runs_leave_no_part_of_a_log(goe_sim: Path, tmp_path: Path) -> None:
-    """Killed anywhere, by how much is written, the log is there whole or not at all, and no other folder stays."""
+    """Killed at any amount of output, the log is complete or missing, and no other folder remains."""
     run(goe_sim, "--out", tmp_path / "whole", *LONG)
     size = written(tmp_path)
     shutil.rmtree(tmp_path / "whole")
@@ -625,7 +627,7 @@ def test_interrupted_runs_leave_no_part_of_a_log(goe_sim: Path, tmp_path: Path) 
         while process.poll() is None and written(tmp_path) < part / 25 * size:
             pass
         process.send_signal(signal.SIGTERM)
-        process.wait()  # killed, or done: the signal waited until the log stood
+        process.wait()  # killed, or done: the signal waited until the log was complete
         names = [path.name for path in tmp_path.iterdir()]
         assert names in ([], ["log"])
         if names:
@@ -636,7 +638,7 @@ def test_interrupted_runs_leave_no_part_of_a_log(goe_sim: Path, tmp_path: Path) 
 
 
 def test_an_interrupt_while_it_reads_ends_it(goe_sim: Path, tmp_path: Path) -> None:
-    """Of a recorded flight that does not come: it cannot have ended by itself."""
+    """A recorded flight that never arrives, so that the program cannot end by itself."""
     command = [str(goe_sim), "--flight", "/dev/stdin", "--out", str(tmp_path / "log")]
     with subprocess.Popen(command, stdin=subprocess.PIPE) as process:
         process.send_signal(signal.SIGTERM)

@@ -1,4 +1,5 @@
-"""The simulator's images against an independent projection to 1e-9 px; hidden corners and the frame by brute force."""
+"""The simulator's images against an independent projection to 1e-9 px; hidden corners and the image border by brute
+force."""
 
 from __future__ import annotations
 
@@ -96,8 +97,8 @@ def same(found: np.ndarray, pixel: np.ndarray) -> bool:
 
 
 def test_box_corners_are_where_an_independent_projection_puts_them(box_log: Log) -> None:
-    """Base corners: exactly those that no part of the box hides and the frame holds, in order of bearing;
-    top: above the base corner that is nearest."""
+    """Base corners: exactly those inside the image that no part of the box hides, in order of bearing; top: above
+    the nearest base corner."""
     camera, corners = Camera(box_log.camera), box_corners(box_log.truth)
     position, attitude = poses(box_log.exact)
     found = {name: box_log.pixels(name) for name in FEATURES}
@@ -134,7 +135,7 @@ def test_box_corners_are_where_an_independent_projection_puts_them(box_log: Log)
 def test_box_silhouette_ends_at_the_outermost_corners(box_log: Log) -> None:
     camera, corners = Camera(box_log.camera), box_corners(box_log.truth)
     position, attitude = poses(box_log.exact)
-    seen = 0
+    checked = 0
     for name, sign in (("left", 1.0), ("right", -1.0)):
         found = box_log.pixels(name)
         for k in range(len(position)):
@@ -148,13 +149,13 @@ def test_box_silhouette_ends_at_the_outermost_corners(box_log: Log) -> None:
             if np.isnan(found[k, 0]):
                 assert not inside[ties].all()
             else:
-                seen += 1
+                checked += 1
                 assert any(same(found[k], pixels[i]) for i in np.flatnonzero(ties))
-    assert seen > 50
+    assert checked > 50
 
 
 def stretch_middle(camera: Camera, position: np.ndarray, attitude, foot: np.ndarray, height: float) -> np.ndarray:
-    """Pixel of the middle of the visible stretch of an upright line, searched at 33 heights; NaN if none is visible."""
+    """Pixel of the middle of the visible part of an upright line, searched at 33 heights; NaN if none is visible."""
     line = foot + np.outer(np.linspace(0.0, 1.0, 33), [0.0, 0.0, -height])
     inside = np.flatnonzero(camera.inside(*camera.project(position, attitude, line)))
     if len(inside) == 0:
@@ -196,7 +197,7 @@ def test_cylinder_tangents(goe_sim: Path, tmp_path: Path, cylinder_options: tupl
 
 
 def test_cylinder_cloud(goe_sim: Path, tmp_path: Path, cylinder_options: tuple[str, ...]) -> None:
-    """The cloud (120 azimuths, 5 rings) ends where its own outermost points are, and just inside the tangents."""
+    """The cloud (120 azimuths, 5 rings) ends at its own outermost points, just inside the tangents."""
     log = fly(goe_sim, tmp_path / "cloud", *WILD, "--cylinder", "cloud", *cylinder_options)
     camera, truth = Camera(log.camera), log.truth
     position, attitude = poses(log.exact)
@@ -223,7 +224,7 @@ def test_cylinder_cloud(goe_sim: Path, tmp_path: Path, cylinder_options: tuple[s
 
 
 def test_cloud_fills_the_tangents_to_one_percent(goe_sim: Path, tmp_path: Path) -> None:
-    """Bearings of the cloud's ends never pass the tangents, and miss little of the angle between them."""
+    """The ends of the cloud never pass the tangents, and miss little of the angle between them."""
     options = ("--noise", "none", "--obstacle", "cylinder", "--glide", "6", "--run", "16")
     bearings = {}
     for model in ("tangent", "cloud"):
@@ -244,7 +245,8 @@ def test_cloud_fills_the_tangents_to_one_percent(goe_sim: Path, tmp_path: Path) 
 
 
 def test_frame_cuts_features_off(goe_sim: Path, tmp_path: Path) -> None:
-    """Flown on past the obstacle's Z: at first all is in the frame, at last nothing, and features go one by one."""
+    """A flight past the obstacle's Z: at first all features are in the image, at the end none, and they vanish one
+    by one."""
     log = fly(goe_sim, tmp_path / "log", "--obstacle", "building", "--alpha", "20", "--noise", "none", "--run", "60")
     count = sum((~np.isnan(log.pixels(name)[:, 0])).astype(int) for name in FEATURES)
     assert count[0] == 6 and count[-1] == 0
@@ -254,7 +256,7 @@ def test_frame_cuts_features_off(goe_sim: Path, tmp_path: Path) -> None:
 
 
 def test_lens_does_not_fold_the_outside_into_the_image(goe_sim: Path, tmp_path: Path) -> None:
-    """A strong barrel lens maps rays at 60 degrees off its axis inwards again: they must not be seen."""
+    """A strong barrel lens maps rays beyond 60 degrees off its axis back into the image: they must not be visible."""
     log = fly(
         goe_sim,
         tmp_path / "log",

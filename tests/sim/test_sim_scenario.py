@@ -62,13 +62,13 @@ def test_others_change_nothing_of_the_first(goe_sim: Path, tmp_path: Path) -> No
     assert all(np.array_equal(numbers(three[i], POSE), numbers(three[1], POSE)) for i in (2, 3))
 
 
-def test_each_is_what_a_flight_past_it_alone_would_show(goe_sim: Path, tmp_path: Path) -> None:
-    """Exact boxes of the second one. The path is straight: the same past any obstacle."""
+def test_each_is_logged_as_in_a_flight_past_it_alone(goe_sim: Path, tmp_path: Path) -> None:
+    """Exact boxes of the second obstacle. The path is straight: the same past any obstacle."""
     run(goe_sim, "--scenario", write(tmp_path, FLIGHT + MAST + BUILDING), "--out", tmp_path / "two")
     alone = (*SAME, "--yaw-camera", 0, "--obstacle", "building", "--x0", -60, "--z0", 320, "--alpha", 20)
     run(goe_sim, *alone, "--out", tmp_path / "one")
-    seen, expected = rows(tmp_path / "two", "truth_frames.csv")[2], rows(tmp_path / "one", "truth_frames.csv")[1]
-    assert np.allclose(numbers(seen, SIDES), numbers(expected, SIDES), rtol=0, atol=1e-9, equal_nan=True)
+    logged, expected = rows(tmp_path / "two", "truth_frames.csv")[2], rows(tmp_path / "one", "truth_frames.csv")[1]
+    assert np.allclose(numbers(logged, SIDES), numbers(expected, SIDES), rtol=0, atol=1e-9, equal_nan=True)
     truth, single = rows(tmp_path / "two", "truth.csv")[2][0], rows(tmp_path / "one", "truth.csv")[1][0]
     assert {key: truth[key] for key in single if key != "id"} == {key: single[key] for key in single if key != "id"}
 
@@ -110,7 +110,7 @@ def test_the_flight_ends_at_any_of_them(goe_sim: Path, tmp_path: Path) -> None:
         ("speed = 18", "speed", "3: a line is [section] or key = value"),
         ("speed = 18", "out = elsewhere", "3: out: belongs on the command line"),
         ("z0 = 320\n", "", "14: [obstacle 2]: z0 is missing"),
-        ("what = building\n", "", "14: [obstacle 2]: what it is, is missing"),
+        ("what = building\n", "", "14: [obstacle 2]: the kind of obstacle (what) is missing"),
         ("what = building", "what = castle", "14: what: 'castle' is not cylinder, building"),
         ("z0 = 320", "z0 = far", "16: z0: 'far' is not a number"),
         ("z0 = 320", "z0 = 1e9", "14: [obstacle 2]: x0 and z0: must lie within"),
@@ -124,7 +124,7 @@ def test_the_flight_ends_at_any_of_them(goe_sim: Path, tmp_path: Path) -> None:
         ("[obstacle 3]", "[obstacle 2]", "19: what: [obstacle 2] has it twice, first in line 14"),
         (MAST, "", "11: what: obstacle 2 comes before obstacle 1"),
         ("alpha = 20", f"alpha = {'1' * 300}", "17: the line is longer than"),
-        ("alpha = 20", "colour = 20", "17: colour: an obstacle has what, x0, z0 and alpha"),
+        ("alpha = 20", "paint = 20", "17: paint: an obstacle has what, x0, z0 and alpha"),
     ],
 )
 def test_a_bad_file(goe_sim: Path, tmp_path: Path, old: str, new: str, fault: str) -> None:

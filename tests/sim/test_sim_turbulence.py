@@ -50,8 +50,8 @@ def spectra(omega: np.ndarray, w20: float, airspeed: float, height: float) -> li
     ("w20", "airspeed", "height"), [(15 * KNOT, 17.0, 15.0), (30 * KNOT, 17.0, 44.5), (30 * KNOT, 25.0, 150.0)]
 )
 def test_spectra(sim_probe: Path, w20: float, airspeed: float, height: float) -> None:
-    """Welch estimate over 4000 s in six bands of under half a decade; a band averages so many bins that 12 % is three
-    sigma. Bands end at a tenth of the sampling frequency, where sampled and continuous spectrum still agree to 3 %."""
+    """Welch estimate over 4000 s in six bands of under half a decade. A band averages so many bins that 12 % is
+    three sigma. Bands end at a tenth of the sampling frequency, where sampled and continuous spectrum agree to 3 %."""
     step, count = 0.01, 400_000
     series = gusts(sim_probe, w20, airspeed, height, step, count, 11)
     frequency, density = welch(series, fs=1 / step, nperseg=16384, axis=0, detrend=False)
@@ -66,7 +66,7 @@ def test_spectra(sim_probe: Path, w20: float, airspeed: float, height: float) ->
 
 
 def test_starts_in_its_stationary_state(sim_probe: Path) -> None:
-    """The spread over 300 seeds is the right one at the first step and a second later: no transient."""
+    """The standard deviation over 300 seeds is right at the first step and a second later: no transient."""
     su, sw, *_ = figures(15 * KNOT, 15.0)
     first = np.array([gusts(sim_probe, 15 * KNOT, 17.0, 15.0, 0.01, 101, seed) for seed in range(1, 301)])
     for k in (0, 100):
@@ -77,7 +77,7 @@ def test_starts_in_its_stationary_state(sim_probe: Path) -> None:
 
 @pytest.mark.parametrize("height", [3.5, 15.0, 90.0, 300.0])
 def test_gusts_do_not_depend_on_the_step(sim_probe: Path, height: float) -> None:
-    """Variance and correlation are exact at any step, also at one that a crude discretisation would not survive."""
+    """Variance and correlation are exact at any step, also at one at which a crude discretization would fail."""
     su, sw, lu, lw = figures(15 * KNOT, height)
     for scale, columns in ((lu, [0, 1]), (lw, [2])):
         series = gusts(sim_probe, 15 * KNOT, 17.0, height, scale / 17.0, 100_000, 3)  # one time constant
@@ -100,7 +100,7 @@ def test_heights_outside_the_model_take_its_limits(sim_probe: Path) -> None:
 
 
 def test_streams_are_uniform_normal_and_apart(sim_probe: Path) -> None:
-    """SplitMix64's bits; one seed's streams share nothing; moments of both distributions."""
+    """SplitMix64's bits; streams of one seed have nothing in common; moments of both distributions."""
     rows = {
         s: np.array([line.split() for line in run(sim_probe, "random", 42, s, 50_000).stdout.splitlines()])
         for s in (1, 2)

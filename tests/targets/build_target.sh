@@ -27,8 +27,8 @@ case $preset in
     *-clang-*) need clang-19 ;;
 esac
 
-# The safety tests run at full length on one processor; elsewhere what a compiler may do wrong shows early.
-# The other tests draw a share. GOE_TARGETS_LONG=1: at full length everywhere, as tools/evidence.sh --long does.
+# The safety tests run at full length on one processor; on the others most compiler faults show early.
+# The other tests run a part. GOE_TARGETS_LONG=1: full length everywhere, as tools/evidence.sh --long does.
 length=()
 if [ -n "${GOE_TARGETS_LONG:-}" ]; then
     length=(-DGOE_TARGET_SHARE=1)

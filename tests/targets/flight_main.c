@@ -1,9 +1,9 @@
-/* Prints one line: the hash of all that the flight layer makes of the embedded logs. SPDX-License-Identifier: MIT
+/* Prints one line: the hash over all outputs of the flight layer for the embedded logs. SPDX-License-Identifier: MIT
  *
  *   flight <hash> frames <n>
  *
- * Every logged image gives a sample of attitude and position, and a frame that comes two images late; an assessment follows each,
- * and all that the layer reports is hashed. The logs' times are moved so that the 32 bits wrap in flight. */
+ * Every logged image gives a sample of attitude and position, and a frame that comes two images late. An assessment follows each,
+ * and all reports of the layer are hashed. The logs' times are shifted so that the 32 bits wrap in flight. */
 #include <string.h>
 
 #include "goe_flight.h"
@@ -39,7 +39,7 @@ static void hash_numbers(replay_t *replay, const float *numbers, size_t count) {
 }
 
 static void hash_hazard(replay_t *replay, const goe_hazard_t *hazard) {
-    hash_numbers(replay, &hazard->time_s, 7u);
+    hash_numbers(replay, &hazard->tcpa_s, 7u);
     hash_word(replay, hazard->has_clearance ? 1u : 0u);
 }
 
@@ -62,7 +62,7 @@ static void hash_obstacle(replay_t *replay, const goe_flight_obstacle_t *o) {
     hash_word(replay, (uint32_t)o->valid);
     hash_word(replay, (uint32_t)o->model);
     hash_word(replay,
-              (o->suspect ? 1u : 0u) + (o->passed ? 2u : 0u) + (o->in_view ? 4u : 0u) + (o->has_hazard ? 8u : 0u));
+              (o->suspect ? 1u : 0u) + (o->receding ? 2u : 0u) + (o->in_view ? 4u : 0u) + (o->has_hazard ? 8u : 0u));
     hash_numbers(replay, &o->age_s, 1u);
     hash_numbers(replay, o->center_ned_m, 3u);
     hash_numbers(replay, o->covariance_ne_m2, 3u);
@@ -145,7 +145,7 @@ static void read_layer(replay_t *replay, uint32_t now_us, bool approach) {
 static void fly(replay_t *replay, const logged_track_t *track) {
     goe_settings_t estimator;
     goe_flight_settings_t settings;
-    replay_read_settings(track, GOE_METHOD_REFINED, &estimator);
+    replay_read_settings(track, GOE_METHOD_FILTER, &estimator);
     goe_flight_settings_default(&settings);
     settings.confirm_images = 1.0f;
     if (!(estimator.camera.width_px > 0.0f)) {

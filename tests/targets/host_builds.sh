@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# The replay's hash, and that of the replay through the flight layer, is the golden one whatever compiler of this machine and whatever level builds it.
+# The hashes of the replay, and of the replay through the flight layer, are the golden ones for every compiler of this machine and every
+# optimization level.
 #
 #   host_builds.sh <golden hash> <golden hash of the flight layer>
 set -euo pipefail
@@ -13,7 +14,7 @@ sources=("$here/replay.c" "$here/embedded_logs.c")
 failed=0
 ran=0
 
-# possible <compiler> <flag>...: whether this machine has what the flags need
+# possible <compiler> <flag>...: whether this machine has the components that the flags need
 possible() {
     echo '#include <math.h>
 int main(void) { return 0; }' | "$@" -x c - -o "$scratch/probe" 2>/dev/null && return

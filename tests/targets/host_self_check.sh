@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The self-check reports what flags and modes of the floating-point unit do to the library on this machine. Where it
-# reports nothing, the replay's hash must be the golden one: then the flag changed nothing.
+# The self-check reports the effects of flags and modes of the floating-point unit on the library on this machine. If it
+# reports nothing, the replay's hash must be the golden one: then the flag has changed nothing.
 #
 #   host_self_check.sh <golden hash>
 set -euo pipefail
@@ -13,7 +13,7 @@ machine=
 failed=0
 ran=0
 
-# objects <folder> <flag>... -- <file>...: compiles the files into the folder, once for all that want them so
+# objects <folder> <flag>... -- <file>...: compiles the files into the folder, once for all uses
 objects() {
     local folder=$1 flags=()
     shift
@@ -36,16 +36,16 @@ prove() {
     local define=(-DMODE="MODE_$mode" -DEXPECTED="$expected" -DALLOWED="$allowed")
     [ "$strict" = strict ] || define+=(-DGOLDEN="0x${golden}u")
     command -v "$compiler" >/dev/null || return 0
-    # Where only the hash can show that a flag does nothing, the whole library is compiled with it.
+    # If only the hash can show that a flag has no effect, the whole library is compiled with it.
     local checked=("$root/lib/goe_self_check.c")
     [ "$strict" = strict ] || checked=("${library_sources[@]}")
     library="$scratch/library $strict $compiler $*"
     objects "$library" -std=gnu99 -O2 -ffp-contract=off -fno-math-errno "$@" -- "${checked[@]}"
-    # The program that judges is compiled plainly.
+    # The judging program is compiled without special flags.
     judge="$scratch/judge $compiler $machine"
     # shellcheck disable=SC2086 # several flags or none
     objects "$judge" -std=gnu99 -O1 -ffp-contract=off $machine -- "$here/replay.c" "$here/embedded_logs.c"
-    # What is not in the library's part above.
+    # The rest of the library.
     rest="$scratch/rest $compiler $machine"
     # shellcheck disable=SC2086 # several flags or none
     objects "$rest" -std=gnu99 -O1 -ffp-contract=off $machine -- "${library_sources[@]}"
@@ -63,7 +63,7 @@ prove() {
 
 for compiler in gcc clang-19; do
     strict=strict
-    [ $compiler = gcc ] || strict=loose # clang makes no use of some flags
+    [ $compiler = gcc ] || strict=loose # clang ignores some flags
     prove plain NONE 0u 0u strict "" $compiler
     prove "rounding up" UP $rounding $any strict "" $compiler
     prove "rounding down" DOWN $rounding $any strict "" $compiler

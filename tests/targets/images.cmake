@@ -8,13 +8,13 @@ set(GOE_TARGET_SHARE 5 CACHE STRING "One of so many draws of the tests of tests/
 add_subdirectory(${PROJECT_SOURCE_DIR}/port/baremetal baremetal)
 
 target_link_libraries(goe PUBLIC m)
-# What tools/ci/cost reads. Lines (-g1), which leave the code as it is, on the processor that it proves the cost of.
+# Read by tools/ci/cost. Line information (-g1) does not change the code; on the processor for which the cost is proved.
 target_compile_options(goe PRIVATE -ffunction-sections -fstack-usage $<$<C_COMPILER_ID:GNU>:-fcallgraph-info=su>)
 if(GOE_TARGET_BOARD STREQUAL mps2-an386)
     target_compile_options(goe PRIVATE $<$<C_COMPILER_ID:GNU>:-g1>)
 endif()
 
-# The embedded logs and what flies them, compiled once for all images.
+# The embedded logs and their replay, compiled once for all images.
 add_library(replay_parts OBJECT ${replay_sources})
 goe_compile(replay_parts)
 target_link_libraries(replay_parts PRIVATE goe goe_port)
@@ -43,7 +43,7 @@ foreach(board IN LISTS GOE_TARGET_BOARDS)
         PASS_REGULAR_EXPRESSION "stack goe_update [1-9][0-9]*\n")
 endforeach()
 
-# The flight layer, on the larger board alone where there are two: four obstacles do not fit into 16 KiB.
+# The flight layer, only on the larger board if there are two: four obstacles do not fit into 16 KiB.
 goe_image(flight_${GOE_TARGET_BOARD} ${GOE_TARGET_BOARD} flight_main.c $<TARGET_OBJECTS:replay_parts>)
 target_link_libraries(flight_${GOE_TARGET_BOARD} PRIVATE goe_flight)
 goe_check_flight_hash(flight_${GOE_TARGET_BOARD} flight_${GOE_TARGET_BOARD})
@@ -55,7 +55,7 @@ goe_library_sources(library_sources)
 set(self_check_source ${library_sources})
 list(FILTER self_check_source INCLUDE REGEX "/goe_self_check\\.c$")
 
-# goe_library_with(<name> <sources> <flag>...): sources of the library once more, with other people's flags after its own
+# goe_library_with(<name> <sources> <flag>...): compiles sources of the library again, with other projects' flags after its own
 function(goe_library_with name sources)
     add_library(${name} STATIC ${sources})
     set_target_properties(${name} PROPERTIES C_STANDARD 99 C_EXTENSIONS ON)
@@ -72,9 +72,9 @@ function(goe_self_check_image image expected allowed mode)
     target_compile_definitions(${image} PRIVATE EXPECTED=${expected} ALLOWED=${allowed} MODE=MODE_${mode} ${ARGN})
 endfunction()
 
-# goe_self_check_proof(<name> <expected bits> <allowed bits> <mode> <flag>...): the self-check, compiled and run so,
-# must say so. gcc at -O2 makes use of every flag on every processor. The others may not: then the whole library with
-# these flags must give the golden hash; its image is built when the self-check has reported nothing.
+# goe_self_check_proof(<name> <expected bits> <allowed bits> <mode> <flag>...): the self-check, compiled and run in this way,
+# must report it. gcc at -O2 uses every flag on every processor. Others may not: then the whole library with
+# these flags must give the golden hash; its image is built if the self-check has reported nothing.
 function(goe_self_check_proof name expected allowed mode)
     set(image self_check_${name})
     goe_self_check_image(${image} ${expected} ${allowed} ${mode})
@@ -91,7 +91,7 @@ function(goe_self_check_proof name expected allowed mode)
                 whole_${name} $<TARGET_FILE:whole_${name}> ${goe_qemu_${GOE_TARGET_BOARD}})
         endif()
     endif()
-    target_link_libraries(${image} PRIVATE goe) # what is not in the one before
+    target_link_libraries(${image} PRIVATE goe) # sources not in the list above
     add_test(NAME ${image} COMMAND ${command})
     set_tests_properties(${image} PROPERTIES LABELS targets TIMEOUT ${goe_hang_s})
 endfunction()
@@ -122,7 +122,7 @@ endif()
 
 # ------------------------------------------------------------------------------------------------------- square root
 
-# That of port/sqrtf in integers against the C library's, of whose roots the replay has just shown that they are right.
+# The square root of port/sqrtf in integers against the C library's, which the replay has just shown to be right.
 if(NOT has_fpu)
     goe_image(sqrtf ${GOE_TARGET_BOARD} ${PROJECT_SOURCE_DIR}/tests/rtos/sqrtf_main.c
         ${PROJECT_SOURCE_DIR}/port/sqrtf/goe_sqrtf.c)
@@ -134,8 +134,8 @@ endif()
 
 # ---------------------------------------------------------------------------------------------------------- unit tests
 
-# All of tests/c but test_host_*.c, and test_double_*.c: those hold the library against double precision at length,
-# which single precision processors emulate. Or the safety tests alone: random bit patterns as input.
+# All of tests/c except test_host_*.c and test_double_*.c: the latter compare the library with double precision at length,
+# which single precision processors emulate. Or only the safety tests: random bit patterns as input.
 if(NOT GOE_TARGET_TESTS STREQUAL none)
     include(${PROJECT_SOURCE_DIR}/port/cmake/unity.cmake)
     if(NOT TARGET goe_unity)
@@ -176,7 +176,7 @@ if(NOT GOE_TARGET_TESTS STREQUAL none)
     target_link_libraries(test_flight_safety PRIVATE unit_test_support goe_flight)
     add_test(NAME test_flight_safety COMMAND test_flight_safety)
     set_tests_properties(test_flight_safety PROPERTIES LABELS unit TIMEOUT ${goe_hang_s})
-    # Those of the MAVLink messages: other alignment, other pointers.
+    # The safety tests of the MAVLink messages: other alignment, other pointers.
     set(mavlink_tests ${PROJECT_SOURCE_DIR}/tests/mavlink)
     foreach(name IN ITEMS test_mavlink_safety test_mavlink_codec)
         goe_image(${name} ${GOE_TARGET_BOARD} ${mavlink_tests}/${name}.c ${mavlink_tests}/any_message.c)
@@ -191,7 +191,7 @@ if(NOT GOE_TARGET_TESTS STREQUAL none)
         add_subdirectory(${PROJECT_SOURCE_DIR}/tests/examples examples)
     endif()
 
-    # The safety tests, with the library under the flags of four firmwares, on the processors that they run on: Cortex-M4 and M7.
+    # The safety tests, with the library under the flags of four firmwares, on their processors: Cortex-M4 and M7.
     if(GOE_TARGET_FLAGS MATCHES "cortex-m[47]" AND has_fpu AND CMAKE_C_COMPILER_ID STREQUAL GNU
        AND CMAKE_C_FLAGS_RELEASE STREQUAL -O2)
         set(px4 -std=gnu11 -freciprocal-math -fno-signed-zeros -fno-trapping-math -fno-math-errno)

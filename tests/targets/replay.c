@@ -68,7 +68,7 @@ static void hash_estimate(replay_t *replay, const goe_estimate_t *e) {
                              e->height_m,
                              e->orientation_deg,
                              e->orientation_raw_deg,
-                             e->other_side_deg,
+                             e->front_orientation_deg,
                              e->length_axis[0],
                              e->length_axis[1],
                              e->width_axis[0],
@@ -84,7 +84,7 @@ static void hash_estimate(replay_t *replay, const goe_estimate_t *e) {
                              e->residual,
                              e->baseline_m,
                              e->nis,
-                             e->misfit};
+                             e->nis_ratio};
     hash_word(replay, (uint32_t)e->method);
     hash_word(replay, (uint32_t)e->model);
     hash_word(replay, (uint32_t)e->valid);
@@ -92,7 +92,7 @@ static void hash_estimate(replay_t *replay, const goe_estimate_t *e) {
     hash_word(replay, e->suspect ? 1u : 0u);
     hash_text(replay, goe_reason_text(e->reason));
     hash_word(replay, (uint32_t)e->nis_rows);
-    hash_word(replay, (uint32_t)e->points);
+    hash_word(replay, (uint32_t)e->images_used);
     hash_numbers(replay, numbers, (int)(sizeof numbers / sizeof numbers[0]));
     hash_sigma(replay, &e->sigma);
 }
@@ -120,11 +120,11 @@ void replay_read_image(const logged_image_t *logged, goe_image_t *image) {
     for (int i = 0; i < 6; i++) {
         read_numbers(&logged->bits[11 + 2 * i], &pixels[i]->u_px, 1);
         read_numbers(&logged->bits[12 + 2 * i], &pixels[i]->v_px, 1);
-        pixels[i]->seen = ((logged->seen >> i) & 1u) != 0u;
+        pixels[i]->visible = ((logged->seen >> i) & 1u) != 0u;
     }
     if (logged->box != 0u) {
         read_numbers(&logged->bits[11], &image->box.left_px, 4);
-        image->box.seen = logged->box;
+        image->box.sides = logged->box;
     }
 }
 
@@ -158,8 +158,8 @@ void replay_read_settings(const logged_track_t *track, goe_method_t method, goe_
     settings->window.line_points = track->line_points;
     settings->window.orientation_memory = track->orientation_memory;
     settings->heading_auto = track->heading_auto != 0u;
-#if GOE_WITH_REFINED
-    settings->navigation.position_white_m = (float)track->position_white_m;
+#if GOE_WITH_FILTER
+    settings->navigation.position_white_sd_m = (float)track->position_white_sd_m;
 #endif
 }
 
@@ -187,23 +187,23 @@ static void hash_covariance(replay_t *replay, const goe_estimator_t *estimator) 
 
 #if GOE_WITH_HAZARD
 static void hash_hazard(replay_t *replay, const goe_estimator_t *estimator) {
-    static const goe_plan_t plan = {{15.0f, 1.0f, -0.5f}, 10.0f, 5.0f, 0.0f, 0.0f};
+    static const goe_intent_t intent = {{15.0f, 1.0f, -0.5f}, 10.0f, 5.0f, 0.0f, 0.0f};
     goe_hazard_t hazard;
-    hash_status(replay, goe_hazard(estimator, &plan, &hazard));
-    const float numbers[] = {hazard.time_s,    hazard.miss_m,    hazard.clearance_m,   hazard.violation,
-                             hazard.time_sd_s, hazard.miss_sd_m, hazard.clearance_sd_m};
+    hash_status(replay, goe_hazard(estimator, &intent, &hazard));
+    const float numbers[] = {hazard.tcpa_s,    hazard.dcpa_m,    hazard.clearance_m,   hazard.conflict_probability,
+                             hazard.tcpa_sd_s, hazard.dcpa_sd_m, hazard.clearance_sd_m};
     hash_numbers(replay, numbers, (int)(sizeof numbers / sizeof numbers[0]));
     hash_word(replay, hazard.has_clearance ? 1u : 0u);
 }
 
-/* For the cost ledger. What it decides hangs on bits that are in the hash. */
+/* For the cost ledger. Its decisions depend on bits that are in the hash. */
 static void decide(const goe_estimator_t *estimator) {
-    static const goe_plan_t plan = {{15.0f, 1.0f, -0.5f}, 10.0f, 5.0f, 0.5f, 0.2f};
+    static const goe_intent_t intent = {{15.0f, 1.0f, -0.5f}, 10.0f, 5.0f, 0.5f, 0.2f};
     goe_rule_t rule;
     goe_hazard_t hazard;
     goe_rule_default(&rule);
-    (void)!goe_decide(estimator, &plan, &rule, &hazard);
-    (void)goe_soonest_s(&hazard);
+    (void)!goe_decide(estimator, &intent, &rule, &hazard);
+    (void)goe_earliest_tcpa_s(&hazard);
 }
 #else
 static void hash_hazard(replay_t *replay, const goe_estimator_t *estimator) {
@@ -227,12 +227,12 @@ static void replay_images(replay_t *replay, goe_estimator_t *estimator, const lo
         decide(estimator);
         replay->images++;
     }
-    for (int i = 0; i < GOE_CAUSES; i++) {
-        hash_word(replay, estimator->causes[i]);
+    for (int i = 0; i < GOE_FAULT_COUNTS; i++) {
+        hash_word(replay, estimator->fault_counts[i]);
     }
 }
 
-const goe_method_t replay_methods[REPLAY_METHODS] = {GOE_METHOD_WINDOW, GOE_METHOD_REFINED};
+const goe_method_t replay_methods[REPLAY_METHODS] = {GOE_METHOD_WINDOW, GOE_METHOD_FILTER};
 
 void replay_all(replay_t *replay) {
     static goe_estimator_t estimator;
@@ -245,18 +245,18 @@ void replay_all(replay_t *replay) {
     }
 }
 
-/* What a method answers by itself, whatever other parts are compiled in: the window all along, the refined method where it
+/* The answers of a method alone, independent of other compiled parts: the window method always, the filter method where it
  * has solved an image. */
 static void replay_own(replay_parts_t *parts, goe_estimator_t *estimator, const logged_track_t *track,
                        goe_method_t method) {
-    replay_t *own = method == GOE_METHOD_WINDOW ? &parts->window : &parts->refined;
+    replay_t *own = method == GOE_METHOD_WINDOW ? &parts->window : &parts->filter;
     replay_t *hazard = method == GOE_METHOD_WINDOW ? &parts->window_hazard : &parts->refined_hazard;
     for (int k = 0; k < track->count; k++) {
         goe_image_t image;
         goe_estimate_t estimate;
         replay_read_image(&logged_images[track->first + k], &image);
         const goe_status_t status = goe_update(estimator, &image, &estimate);
-        const bool solved = estimate.method == GOE_METHOD_REFINED && estimate.fresh;
+        const bool solved = estimate.method == GOE_METHOD_FILTER && estimate.fresh;
         if (method == GOE_METHOD_WINDOW || solved) {
             hash_status(own, status);
             hash_estimate(own, &estimate);

@@ -1,4 +1,4 @@
-/* Replays the embedded logs and hashes every bit that comes out. SPDX-License-Identifier: MIT */
+/* Replays the embedded logs and hashes every output bit. SPDX-License-Identifier: MIT */
 #ifndef GOE_TARGET_REPLAY_H
 #define GOE_TARGET_REPLAY_H
 
@@ -14,16 +14,16 @@ typedef struct {
 
 replay_t replay_start(void);
 
-/* Each track is flown by each method, in this order. */
+/* Each method flies each track, in this order. */
 #define REPLAY_METHODS 2
 extern const goe_method_t replay_methods[REPLAY_METHODS];
 
-/* Every track: its estimator initialised, each image taken, reset at the end. All that is returned is hashed. */
+/* For every track: initializes the estimator, processes each image, resets at the end. Hashes all returned data. */
 void replay_all(replay_t *replay);
 
-/* The same of what does not depend on the parts that are compiled in beside a method; a part that is left out has no images. */
+/* The same for outputs that do not depend on other compiled parts; a part that is left out has no images. */
 typedef struct {
-    replay_t window, refined, window_hazard, refined_hazard;
+    replay_t window, filter, window_hazard, refined_hazard;
 } replay_parts_t;
 
 void replay_parts(replay_parts_t *parts);
@@ -31,7 +31,7 @@ void replay_parts(replay_parts_t *parts);
 void replay_read_settings(const logged_track_t *track, goe_method_t method, goe_settings_t *settings);
 void replay_read_image(const logged_image_t *logged, goe_image_t *image);
 
-/* 16 digits and the ending zero. */
+/* 16 digits and the terminating zero. */
 void replay_hash_text(uint64_t hash, char text[17]);
 
 /* Writes to the console, 0 to 2^31 - 1. */

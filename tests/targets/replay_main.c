@@ -1,4 +1,4 @@
-/* Prints one line: the hash of all that the embedded logs give, and the self-check's answer.
+/* Prints one line: the hash of all outputs for the embedded logs, and the self-check's result.
  * SPDX-License-Identifier: MIT
  *
  *   replay <hash> images <n> self_check <0x..> */

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The self-check under an emulator. Where it reports nothing, the compiler makes no use of its flags: then the whole library with these
+# The self-check under an emulator. If it reports nothing, the compiler does not use its flags: then the whole library with these
 # flags, built now, must give the golden hash.
 #
 #   self_check.sh <build> <image> <target of the whole library's image> <that image> <emulator>...

@@ -1,10 +1,10 @@
-/* Proves that goe_self_check() notices what changes the library's bits. SPDX-License-Identifier: MIT
+/* Proves that goe_self_check() detects changes of the library's bits. SPDX-License-Identifier: MIT
  *
  *   EXPECTED  the bits that it must report ...
- *   ALLOWED   ... and those that it may report besides; any other is a failure
- *   GOLDEN    if given, 0 will do instead, provided that the replay's hash is this one: a flag that this compiler makes
- *             no use of changes nothing
- *   MODE      what is done to the floating-point unit before, see below */
+ *   ALLOWED   ... and bits that it may report in addition; any other is a failure
+ *   GOLDEN    if given, 0 is accepted instead, provided that the replay's hash is this one: a flag that this compiler does
+ *             not use changes nothing
+ *   MODE      change of the floating-point unit's mode before the check, see below */
 #include "replay.h"
 
 #define MODE_NONE 0

@@ -1,8 +1,8 @@
-/* Prints how deep each public function drives the stack over the embedded logs. SPDX-License-Identifier: MIT
+/* Prints the stack depth of each public function over the embedded logs. SPDX-License-Identifier: MIT
  *
  *   stack <function> <bytes>
  *
- * The stack is painted before each call. What the call itself needs (arguments on the stack) belongs to the caller. */
+ * The stack is painted before each call. The arguments on the stack belong to the caller. */
 #include "replay.h"
 #include "semihosting.h"
 #include "stack.h"
@@ -74,10 +74,10 @@ __attribute__((noinline)) static size_t depth_of_covariance(void) {
 }
 
 __attribute__((noinline)) static size_t depth_of_hazard(void) {
-    static const goe_plan_t plan = {{15.0f, 1.0f, -0.5f}, 10.0f, 5.0f, 0.0f, 0.0f};
+    static const goe_intent_t intent = {{15.0f, 1.0f, -0.5f}, 10.0f, 5.0f, 0.0f, 0.0f};
     static goe_hazard_t hazard;
     port_stack_paint();
-    const goe_status_t status = goe_hazard(&estimator, &plan, &hazard);
+    const goe_status_t status = goe_hazard(&estimator, &intent, &hazard);
     return status == GOE_OK ? port_stack_used() : 0u;
 }
 
@@ -89,17 +89,17 @@ __attribute__((noinline)) static size_t depth_of_rule(void) {
 }
 
 __attribute__((noinline)) static size_t depth_of_decide(void) {
-    static const goe_plan_t plan = {{15.0f, 1.0f, -0.5f}, 10.0f, 5.0f, 0.0f, 0.0f};
+    static const goe_intent_t intent = {{15.0f, 1.0f, -0.5f}, 10.0f, 5.0f, 0.0f, 0.0f};
     static goe_hazard_t hazard;
     port_stack_paint();
-    const goe_decision_t decision = goe_decide(&estimator, &plan, NULL, &hazard);
+    const goe_decision_t decision = goe_decide(&estimator, &intent, NULL, &hazard);
     return decision != GOE_DECISION_KEEP ? port_stack_used() : 0u;
 }
 
 __attribute__((noinline)) static size_t depth_of_soonest(void) {
-    static const goe_hazard_t hazard = {.time_s = 10.0f, .time_sd_s = 1.0f};
+    static const goe_hazard_t hazard = {.time_s = 10.0f, .tcpa_sd_s = 1.0f};
     port_stack_paint();
-    (void)goe_soonest_s(&hazard);
+    (void)goe_earliest_tcpa_s(&hazard);
     return port_stack_used();
 }
 
@@ -119,7 +119,7 @@ static void measure_track(const logged_track_t *track, int method) {
     keep_larger(&deepest.reset, depth_of_reset());
 }
 
-static void tell(const char *function, size_t bytes) {
+static void report(const char *function, size_t bytes) {
     port_write_text("stack ");
     port_write_text(function);
     port_write_text(" ");
@@ -131,18 +131,18 @@ int main(void) {
     for (int t = 0; t < logged_track_count * REPLAY_METHODS; t++) {
         measure_track(&logged_tracks[t / REPLAY_METHODS], t % REPLAY_METHODS);
     }
-    tell("goe_settings_default", deepest.defaults);
-    tell("goe_init", deepest.init);
-    tell("goe_update_window", deepest.update[0]);
-    tell("goe_update", deepest.update[1]);
-    tell("goe_covariance", deepest.covariance);
-    tell("goe_hazard", deepest.hazard);
-    tell("goe_rule_default", deepest.rule);
-    tell("goe_decide", deepest.decide);
-    tell("goe_soonest_s", deepest.soonest);
-    tell("goe_reset", deepest.reset);
-    tell("goe_status_text", depth_of_text());
-    tell("goe_reason_text", depth_of_reason());
-    tell("goe_self_check", depth_of_self_check());
+    report("goe_settings_default", deepest.defaults);
+    report("goe_init", deepest.init);
+    report("goe_update_window", deepest.update[0]);
+    report("goe_update", deepest.update[1]);
+    report("goe_covariance", deepest.covariance);
+    report("goe_hazard", deepest.hazard);
+    report("goe_rule_default", deepest.rule);
+    report("goe_decide", deepest.decide);
+    report("goe_earliest_tcpa_s", deepest.soonest);
+    report("goe_reset", deepest.reset);
+    report("goe_status_text", depth_of_text());
+    report("goe_reason_text", depth_of_reason());
+    report("goe_self_check", depth_of_self_check());
     return 0;
 }

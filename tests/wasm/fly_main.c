@@ -1,4 +1,4 @@
-/* Flies the approach of port/wasm, compiled for this machine, and prints the bits of every field of every report, one image a line.
+/* Flies the approach of port/wasm, compiled for this machine, and prints the bits of every field of every report, one line per image.
  * SPDX-License-Identifier: MIT
  *
  *   fly <kind> <detector> <roll> <pixel> <height offset> <side> <knows> <seed>      the controls of live.h in their order */

@@ -14,6 +14,7 @@ COMMANDS = {  # name: module with add_arguments and run, and its description
     "flight_cost": (".cost.flight", "measure the cost of the flight layer's calls"),
     "ledger": (".cost.ledger", "measure the cost of the library on each target"),
     "packages": (".packages.command", "stage packages for other package managers, or check their manifests"),
+    "tidy_commands": (".tidy_commands", "write one compile command for each source, for clang-tidy"),
     "settings": (".settings_table", "print, write or check the manual's table of the library's settings"),
 }
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import ast
+import functools
 import os
 import subprocess
 from collections.abc import Iterator
@@ -62,13 +63,19 @@ def modules() -> dict[str, Path]:
     return found
 
 
-def affected(paths: set[str]) -> list[str]:
-    """Test files that these changes affect."""
+@functools.lru_cache(maxsize=1)
+def imports() -> dict[Path, set[Path]]:
+    """By module: the project's modules that it imports. Every file is parsed once a process."""
     by_name = modules()
-    uses = {
+    return {
         path: {by_name[name] for name in imported_names(path, module.split(".")[:-1]) if name in by_name}
         for module, path in by_name.items()
     }
+
+
+def affected(paths: set[str]) -> list[str]:
+    """Test files that these changes affect."""
+    by_name, uses = modules(), imports()
     tests = {path for path in by_name.values() if path.name.startswith("test_")}
     hit = {ROOT / path for path in paths}
     for _ in range(DEPTH):

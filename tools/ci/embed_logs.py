@@ -61,7 +61,7 @@ class Track:
     line_points: int = 8
     orientation_memory: int = 20
     heading_deg: float | None = None
-    position_white_m: int = 0
+    position_white_sd_m: int = 0
     own_images: bool = True
 
 
@@ -339,7 +339,7 @@ def make_book() -> Book:
     book.again("lens_folded", camera=dataclasses.replace(LENS_CAMERA, k1=-9.0, k2=4.0, p1=3.0))
     banked = dataclasses.replace(CORNER, wobble_deg=9.0, fps_hz=10.0, z0_m=110.0)
     book.add(Track("boxes", CORNER.camera, upright_boxes(banked, seed=3)))
-    book.again("boxes_disc", model="disc", position_white_m=1)
+    book.again("boxes_disc", model="disc", position_white_sd_m=1)
     lens_boxes = dataclasses.replace(lens, run_s=2.5)
     book.add(Track("lens_boxes", LENS_CAMERA, upright_boxes(lens_boxes, seed=4)))
     book.add(Track("moving", CORNER.camera, moving(CORNER, -4.0, 6.0)))
@@ -374,7 +374,7 @@ def _row(numbers: list[float]) -> str:
 
 
 def _image_lines(image: Image) -> Iterator[str]:
-    seen = sum(1 << i for i, name in enumerate(FEATURES) if name in image.pixels)
+    visible = sum(1 << i for i, name in enumerate(FEATURES) if name in image.pixels)
     time = "INT64_MIN" if image.time_us == TIME_UNKNOWN_US else str(image.time_us)
     known = int(image.reset_delta_m is not None)
     delta = image.reset_delta_m or (0.0, 0.0, 0.0)
@@ -383,7 +383,7 @@ def _image_lines(image: Image) -> Iterator[str]:
     if box:
         pixels[:4] = [image.box_px.get(side, 0.0) for side in SIDES]
     numbers = [*image.position_m, image.height_m, *image.attitude, *delta]
-    yield f"    {{{time}, 0x{seen:02X}u, 0x{box:02X}u, {image.reset_count}u, {known}u,"
+    yield f"    {{{time}, 0x{visible:02X}u, 0x{box:02X}u, {image.reset_count}u, {known}u,"
     yield f"     {{{_row(numbers[:8])},"
     yield f"      {_row([*numbers[8:], *pixels[:5]])},"
     yield f"      {_row(pixels[5:])}}}}},"
@@ -396,7 +396,7 @@ def _track_lines(track: Track, first: int) -> Iterator[str]:
                c.width, c.height]  # fmt: skip
     yield f'    {{"{track.name}", {first}, {len(track.images)}, {MODELS[track.model]}, {track.window},'
     yield f"     {track.line_points}, {track.orientation_memory}, {int(track.heading_deg is None)},"
-    yield f"     {track.position_white_m},"
+    yield f"     {track.position_white_sd_m},"
     yield f"     {{{_row(numbers[:8])},"
     yield f"      {_row(numbers[8:])}}}}},"
 

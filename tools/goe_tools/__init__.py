@@ -3,4 +3,4 @@
 README.md in this folder describes the source layout.
 """
 
-__version__ = "0.3.0"
+__version__ = "0.4.0"

@@ -20,30 +20,31 @@ from .flights.noise import Noise
 from .places import ROOT
 
 PACKAGE = ROOT / "port" / "python"
-METHODS = {"window": 1, "refined": 2}
+METHODS = {"window": 1, "filter": 2}
 MODEL_AUTO, MODEL_DISC, MODEL_LINE, MODEL_BOX, MODEL_PRISM = 1, 2, 3, 4, 5
 QUANTITIES = ("x0_m", "z0_m", "orientation_deg", "width_m", "length_m", "height_m")
 NUMBERS = ("x_m", "z_m", "velocity_north_m_s", "velocity_east_m_s", "latency_s")  # of Track.more, with sigmas
 HAZARD = (
-    "time_s", "miss_m", "clearance_m", "time_sd_s", "miss_sd_m", "clearance_sd_m", "violation", "has_clearance",
+    "tcpa_s", "dcpa_m", "clearance_m", "tcpa_sd_s", "dcpa_sd_m", "clearance_sd_m", "conflict_probability",
+    "has_clearance",
 )  # fmt: skip
 TO_RADIANS = np.where(np.arange(6) == 2, np.pi / 180.0, 1.0)
 SETTING_OF = {  # noise figure: setting of the library
-    "sigma_px": "detector.point_px",
-    "size_share": "detector.point_share",
+    "sigma_px": "detector.point_noise_px",
+    "size_share": "detector.point_noise_rel",
     "correlation": "detector.point_correlation",
-    "shape_share": "detector.shape_share",
-    "attitude_bias_deg": "navigation.attitude_bias_deg",
-    "attitude_white_deg": "navigation.attitude_white_deg",
-    "attitude_drift_deg": "navigation.attitude_drift_deg",
-    "height_m": "navigation.height_bias_m",
-    "velocity_bias_m_s": "navigation.velocity_bias_m_s",
-    "position_walk_m": "navigation.position_walk_m",
-    "typical_size_m": "refined.typical_size_m",
+    "shape_error_rel": "detector.shape_error_rel",
+    "attitude_bias_sd_deg": "navigation.attitude_bias_sd_deg",
+    "attitude_white_sd_deg": "navigation.attitude_white_sd_deg",
+    "attitude_walk_sd_deg": "navigation.attitude_walk_sd_deg",
+    "height_m": "navigation.height_bias_sd_m",
+    "velocity_bias_sd_m_s": "navigation.velocity_bias_sd_m_s",
+    "position_walk_sd_m": "navigation.position_walk_sd_m",
+    "prior_width_m": "filter.prior_width_m",
 }
 SMALLEST = {  # values that the library accepts
-    "detector.point_px": 0.05, "navigation.attitude_bias_deg": 1e-3, "navigation.attitude_white_deg": 1e-4,
-    "navigation.height_bias_m": 1e-3,
+    "detector.point_noise_px": 0.05, "navigation.attitude_bias_sd_deg": 1e-3, "navigation.attitude_white_sd_deg": 1e-4,
+    "navigation.height_bias_sd_m": 1e-3,
 }  # fmt: skip
 
 
@@ -81,7 +82,7 @@ class Track:
     height; NaN where they are not valid."""
 
     status: np.ndarray  # (K,) goe_status_t
-    method: np.ndarray  # (K,) 1 window, 2 refined, 0 none
+    method: np.ndarray  # (K,) 1 window, 2 filter, 0 none
     model: np.ndarray  # (K,) goe_model_t
     fresh: np.ndarray  # (K,) solved from this image
     suspect: np.ndarray  # (K,) the track does not fit a static obstacle
@@ -90,8 +91,8 @@ class Track:
     covariance: np.ndarray  # (K, 6, 6), 0 where not valid
     nis: np.ndarray  # (K,)
     nis_rows: np.ndarray  # (K,)
-    misfit: np.ndarray  # (K,)
-    points: np.ndarray | None = None  # (K,) images used by the answer
+    nis_ratio: np.ndarray  # (K,)
+    images_used: np.ndarray | None = None  # (K,) images used by the answer
     hazard: dict[str, np.ndarray] = field(default_factory=dict)  # "status", "act", columns of ``HAZARD``: (K, plans)
     more: dict[str, np.ndarray] = field(default_factory=dict)  # columns that some versions lack, (K,)
 
@@ -156,11 +157,11 @@ def camera_settings(flight: Flight) -> dict[str, float]:
     return result | {"heading_auto": 0.0, "heading_deg": camera.heading_deg or 0.0}
 
 
-def settings_of(flight: Flight, noise: Noise | None = None, method: str = "refined") -> dict[str, float]:
+def settings_of(flight: Flight, noise: Noise | None = None, method: str = "filter") -> dict[str, float]:
     """Settings by name for a flight's camera and noise, as a user would configure them."""
     noise = flight.noise if noise is None else noise
     result = camera_settings(flight) | {
-        "refined.top_is_highest": float(flight.top_is_highest),
+        "filter.top_is_highest": float(flight.top_is_highest),
         "method": float(METHODS[method]),
     }
     result |= {setting: getattr(noise, name) for name, setting in SETTING_OF.items()}
@@ -205,7 +206,7 @@ def run(images: Images, settings: dict[str, float], *, double: bool = False) -> 
     """Runs the library over a track."""
     goe = package()
     plans = images.plans if images.velocity_m_s is not None else ()
-    fixed = {"doubt": 1.0, "drift_m_s": 0.0}
+    fixed = {"suspect_factor": 1.0, "stale_growth_m_s": 0.0}
     rules = [goe.Rule(p.margin_m, p.clearance_m, **({} if p.grows else fixed)) for p in plans]
     run_track = double_precision.run if double else goe.run
     output = run_track(named_settings(tuple(settings.items())), to_package(images), rules=rules, covariance=True)
@@ -234,6 +235,6 @@ def _track(output: Any) -> Track:
         output.status, column["method"], column["model"], column["fresh"], column["suspect"],
         np.where(valid, values, np.nan), np.where(valid, sigmas, np.nan),
         output.covariance * TO_RADIANS[:, None] * TO_RADIANS,
-        column["nis"].astype(float), column["nis_rows"], column["misfit"].astype(float), column["points"],
+        column["nis"].astype(float), column["nis_rows"], column["nis_ratio"].astype(float), column["images_used"],
         _hazard(output), more,
     )  # fmt: skip

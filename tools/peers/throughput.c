@@ -20,7 +20,7 @@
 
 typedef enum { WINDOW, REFINED, REFINED_AND_HAZARD, KINDS } kind_t;
 
-static const goe_plan_t plan = {{15.0f, 1.0f, -0.5f}, 10.0f, 5.0f, 0.0f, 0.0f};
+static const goe_intent_t intent = {{15.0f, 1.0f, -0.5f}, 10.0f, 5.0f, 0.0f, 0.0f};
 static const logged_track_t *const track = &logged_tracks[0];
 static goe_image_t images[IMAGES_MAX];
 
@@ -57,12 +57,12 @@ static double fly(goe_estimator_t *estimators, int count, kind_t kind) {
         for (int i = 0; i < count; i++) {
             (void)goe_update(&estimators[i], &images[k], &estimate);
             if (kind == REFINED_AND_HAZARD) {
-                status = goe_hazard(&estimators[i], &plan, &hazard);
+                status = goe_hazard(&estimators[i], &intent, &hazard);
             }
         }
     }
     const double time = seconds() - start;
-    check(estimate.fresh && estimate.method == (kind == WINDOW ? GOE_METHOD_WINDOW : GOE_METHOD_REFINED),
+    check(estimate.fresh && estimate.method == (kind == WINDOW ? GOE_METHOD_WINDOW : GOE_METHOD_FILTER),
           "the flight ends without an answer");
     check(status == GOE_OK, "the flight ends without a hazard");
     return time;
@@ -72,7 +72,7 @@ static double fly(goe_estimator_t *estimators, int count, kind_t kind) {
 static double time_round(goe_estimator_t *estimators, int count, int flights, kind_t kind) {
     goe_settings_t settings;
     double time = 0.0;
-    replay_read_settings(track, kind == WINDOW ? GOE_METHOD_WINDOW : GOE_METHOD_REFINED, &settings);
+    replay_read_settings(track, kind == WINDOW ? GOE_METHOD_WINDOW : GOE_METHOD_FILTER, &settings);
     for (int i = 0; i < count; i++) {
         check(goe_init(&estimators[i], sizeof estimators[i], &settings, NULL) == GOE_OK, "bad settings");
     }

@@ -1,4 +1,4 @@
-/* Life of AP_GOE: start, parameters that change, assessment, what the operator is told. SPDX-License-Identifier: MIT */
+/* Life of AP_GOE: start, changes of parameters, assessment, texts for the operator. SPDX-License-Identifier: MIT */
 #include "AP_GOE_config.h"
 
 #if AP_GOE_ENABLED
@@ -200,7 +200,7 @@ void AP_GOE::report_changes()
         if (now.action == GOE_FLIGHT_NONE) {
             GCS_SEND_TEXT(MAV_SEVERITY_INFO, "GOE: no action any more");
         } else {
-            GCS_SEND_TEXT(MAV_SEVERITY_WARNING, "GOE: obstacle in %.1f s (%s%s)", double(now.hazard.time_s),
+            GCS_SEND_TEXT(MAV_SEVERITY_WARNING, "GOE: obstacle in %.1f s (%s%s)", double(now.hazard.tcpa_s),
                           goe_flight_action_text(now.action), now.late ? ", late" : "");
         }
     }

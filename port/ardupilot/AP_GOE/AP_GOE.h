@@ -1,14 +1,14 @@
 /*
  * AP_GOE - obstacles from a camera's detections, for ArduPilot
  *
- * Takes GOE_FEATURES from a camera over MAVLink and the pose from AP_AHRS, runs goe_flight, and puts what it finds into the
- * object avoidance database, the log and the telemetry. README.md beside this folder tells how it gets into a tree.
+ * Takes GOE_FEATURES from a camera over MAVLink and the pose from AP_AHRS, runs goe_flight, and puts the obstacles into the
+ * object avoidance database, the log and the telemetry. README.md next to this folder describes the integration into a tree.
  *
  * Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT
  *
  * Three threads. The main one reads the pose, receives messages, and reports: update() from the scheduler, the messages from the
- * links' reception. A thread of its own runs the flight layer. The avoidance planner's thread takes the obstacles over into its
- * database. What lies between them is behind a semaphore each, held for no longer than a copy takes. Frames as goe_flight.h: NED
+ * links' reception. A separate thread runs the flight layer. The avoidance planner's thread takes the obstacles over into its
+ * database. A semaphore each protects their shared data, held for no longer than a copy takes. Frames as goe_flight.h: NED
  * relative to the EKF's origin, m; times of AP_HAL::micros().
  */
 #pragma once
@@ -113,7 +113,7 @@ class AP_GOE
         uint16_t taken_settings, refused_settings, corruptions;
     };
 
-    struct State { // what is only there if enabled
+    struct State { // allocated only if enabled
         Inbox inbox;
         Found found;    // what the threads share
         Found shown;    // the main thread's copy
@@ -200,7 +200,7 @@ class AP_GOE
     // at the latest GOE_STATUS
     uint32_t _status_delay_us, _status_images;
 
-    // what was reported last
+    // the latest reports
     uint32_t _second_ms, _reported_ms, _resent_ms;
     goe_flight_action_t _reported_action;
     bool _reported_alive, _reported_waiting;

@@ -1,4 +1,4 @@
-/* What comes into AP_GOE: the pose from the vehicle, detections from a link. SPDX-License-Identifier: MIT */
+/* Inputs of AP_GOE: the pose from the vehicle, detections from a link. SPDX-License-Identifier: MIT */
 #include "AP_GOE_config.h"
 
 #if AP_GOE_ENABLED
@@ -138,7 +138,7 @@ void AP_GOE::handle_message(const mavlink_message_t &msg)
     }
 }
 
-/* The parser could not check it without the message's checksum seed. Framing it once more tells whether it is whole; a signed
+/* The parser could not check it without the message's checksum seed. Framing it once more shows whether it is whole; a signed
  * frame has other flags and never fits. */
 static bool is_whole(const mavlink_message_t &msg)
 {

@@ -24,12 +24,13 @@
 // @Field: NE: covariance of the middle, north and east
 // @Field: EE: variance of the middle, east
 // @Field: Age: time since it was measured
-// @Field: Mdl: what it is taken for: 2 disc, 3 line, 4 box, 5 something upright
-// @Field: Fl: 1 suspect, 2 passed, 4 in view
+// @Field: Mdl: assumed shape: 2 disc, 3 line, 4 box, 5 something upright
+// @Field: Fl: 1 suspect, 2 receding, 4 in view
 void AP_GOE::log_obstacle(int slot, const goe_flight_obstacle_t &obstacle) const
 {
 #if HAL_LOGGING_ENABLED
-    const unsigned flags = (obstacle.suspect ? GOE_MAVLINK_SUSPECT : 0U) | (obstacle.passed ? GOE_MAVLINK_PASSED : 0U) |
+    const unsigned flags = (obstacle.suspect ? GOE_MAVLINK_SUSPECT : 0U) |
+                           (obstacle.receding ? GOE_MAVLINK_RECEDING : 0U) |
                            (obstacle.in_view ? GOE_MAVLINK_IN_VIEW : 0U);
     AP::logger().WriteStreaming(
         "GOEO", "TimeUS,I,Id,N,E,D,R,W,H,HSD,NN,NE,EE,Age,Mdl,Fl", "s#-mmmmmmm---s--", "F--0000000---0--",
@@ -45,13 +46,13 @@ void AP_GOE::log_obstacle(int slot, const goe_flight_obstacle_t &obstacle) const
 // @Description: What an obstacle means for the present course, ten times a second
 // @Field: TimeUS: Time since system startup
 // @Field: I: place in the table
-// @Field: T: time to the closest approach
+// @Field: TCPA: time to the closest approach
 // @Field: TSD: one sigma of it
-// @Field: Miss: horizontal distance to the outline then
-// @Field: MSD: one sigma of it
+// @Field: DCPA: horizontal distance to the outline then
+// @Field: DSD: one sigma of it
 // @Field: Clr: height over its top then; 0: the top is not known
 // @Field: CSD: one sigma of it
-// @Field: Vio: probability that margin and clearance are both violated
+// @Field: CPrb: probability that margin and clearance are both violated
 // @Field: Act: action of the worst obstacle: 1 left, 2 right, 3 climb, 4 go around, 5 hold
 // @Field: Wst: 1: this is the worst obstacle
 void AP_GOE::log_hazard(int slot, const goe_flight_obstacle_t &obstacle) const
@@ -61,11 +62,12 @@ void AP_GOE::log_hazard(int slot, const goe_flight_obstacle_t &obstacle) const
         return;
     }
     const goe_hazard_t &hazard = obstacle.hazard;
-    AP::logger().WriteStreaming(
-        "GOEH", "TimeUS,I,T,TSD,Miss,MSD,Clr,CSD,Vio,Act,Wst", "s#ssmmmm---", "F-000000---", "QBfffffffBB",
-        AP_HAL::micros64(), unsigned(slot), double(hazard.time_s), double(hazard.time_sd_s), double(hazard.miss_m),
-        double(hazard.miss_sd_m), double(hazard.clearance_m), double(hazard.clearance_sd_m), double(hazard.violation),
-        unsigned(_state->shown.assessment.action), unsigned(slot == _state->shown.assessment.worst));
+    AP::logger().WriteStreaming("GOEH", "TimeUS,I,TCPA,TSD,DCPA,DSD,Clr,CSD,CPrb,Act,Wst", "s#ssmmmm---", "F-000000---",
+                                "QBfffffffBB", AP_HAL::micros64(), unsigned(slot), double(hazard.tcpa_s),
+                                double(hazard.tcpa_sd_s), double(hazard.dcpa_m), double(hazard.dcpa_sd_m),
+                                double(hazard.clearance_m), double(hazard.clearance_sd_m),
+                                double(hazard.conflict_probability), unsigned(_state->shown.assessment.action),
+                                unsigned(slot == _state->shown.assessment.worst));
 #endif
 }
 

@@ -1,4 +1,4 @@
-/* What goes out of AP_GOE: the avoidance database, messages. SPDX-License-Identifier: MIT */
+/* Outputs of AP_GOE: the avoidance database, messages. SPDX-License-Identifier: MIT */
 #include "AP_GOE_config.h"
 
 #if AP_GOE_ENABLED
@@ -40,8 +40,8 @@ static float place_sd_m(const goe_flight_obstacle_t &obstacle)
 }
 #endif
 
-/* The item of a slot keeps its id for as long as the slot is followed, and each call moves it. When nothing is followed there any
- * more, the database forgets it OA_DB_EXPIRE later: what was given up may still stand there. */
+/* The item of a slot keeps its id while the slot is followed, and each call moves it. After the end of the track
+ * the database forgets it OA_DB_EXPIRE later: the obstacle may still be there. */
 void AP_GOE::refresh_database(AP_OADatabase &database)
 {
 #if AP_OADATABASE_ENABLED
@@ -91,7 +91,7 @@ void AP_GOE::put_into_database(AP_OADatabase &database, int slot, const goe_flig
         item.id = id;
         database.database_item_add(item);
         if (index == database._database.count) {
-            return; // no room
+            return; // no space
         }
     }
     AP_OADatabase::OA_DbItem &item = database._database.items[index];
@@ -118,8 +118,8 @@ goe_mavlink_own_t AP_GOE::own() const
     return result;
 }
 
-/* To every link that is in use and has room. The trees' dialect does not know these messages, its framing takes them all the
- * same. */
+/* To every link in use with free buffer space. The trees' dialect does not know these messages, but its framing takes
+ * them. */
 void AP_GOE::send_payload(goe_mavlink_message_t message, const uint8_t *payload, size_t length) const
 {
 #if HAL_GCS_ENABLED

@@ -272,7 +272,7 @@ const char *AP_GOE::parameter_of(const char *field)
         {"camera.offset_m[0]", "GOE_POS_X"},
         {"camera.offset_m[1]", "GOE_POS_Y"},
         {"camera.offset_m[2]", "GOE_POS_Z"},
-        {"navigation.ground_m", "GOE_GND_SD"},
+        {"navigation.terrain_height_sd_m", "GOE_GND_SD"},
         {"delay_s", "GOE_DELAY"},
         {"home_sd_m", "GOE_HOME_SD"},
         {"margin_m", "GOE_MARGIN"},
@@ -315,8 +315,8 @@ void AP_GOE::read_params(goe_settings_t &estimator, goe_flight_settings_t &layer
     camera.offset_m[1] = _pos_y;
     camera.offset_m[2] = _pos_z;
 
-    estimator.navigation.attitude_drift_deg = AP_GOE_ATTITUDE_DRIFT;
-    estimator.navigation.ground_m = _gnd_sd;
+    estimator.navigation.attitude_walk_sd_deg = AP_GOE_ATTITUDE_DRIFT;
+    estimator.navigation.terrain_height_sd_m = _gnd_sd;
 
     layer.resets = GOE_FLIGHT_RESETS_TIME;
     layer.delay_s = _delay;

@@ -17,8 +17,8 @@
 #define AP_GOE_STACK 5120
 #endif
 
-// What no user sets. All have the layer's or the library's defaults but for the drift, which is of EKF3: its heading wanders by a
-// degree or two after take-off, and taken for constant that makes obstacles narrow. Degrees per square root of a second.
+// Constants that are not parameters. All have the layer's or the library's defaults except the drift, which is EKF3's: its heading
+// wanders by a degree or two after take-off; assumed constant, this makes obstacles narrow. Degrees per square root of a second.
 #ifndef AP_GOE_ATTITUDE_DRIFT
 #define AP_GOE_ATTITUDE_DRIFT 0.3f
 #endif

@@ -37,7 +37,7 @@ static void take_image(int k, goe_image_t *image) {
     image->box.right_px = 0.5f * WIDTH_PX + FOCAL_PX * BUILDING_RIGHT_M / ahead_m;
     image->box.top_px = 0.5f * HEIGHT_PX + FOCAL_PX * (height_m - BUILDING_TOP_M) / ahead_m;
     image->box.bottom_px = 0.5f * HEIGHT_PX + FOCAL_PX * height_m / ahead_m;
-    image->box.seen = GOE_SEES_BOX;
+    image->box.sides = GOE_SIDES_ALL;
 }
 
 int main(void) {
@@ -51,10 +51,10 @@ int main(void) {
     if (goe_init(&building, sizeof building, &settings, NULL) != GOE_OK) {
         return 1;
     }
-    const goe_plan_t plan = {.velocity_ned_m_s = {SPEED_M_S, 0.0f, SINK_M_S},
-                             .margin_m = MARGIN_M,
-                             .clearance_m = CLEARANCE_M,
-                             .since_image_s = LATENCY_S};
+    const goe_intent_t intent = {.velocity_ned_m_s = {SPEED_M_S, 0.0f, SINK_M_S},
+                                 .margin_m = MARGIN_M,
+                                 .clearance_m = CLEARANCE_M,
+                                 .since_image_s = LATENCY_S};
     bool order = false;
     for (int k = 0; k < IMAGES; k++) {
         goe_image_t image = {0};
@@ -62,14 +62,13 @@ int main(void) {
         goe_hazard_t hazard;
         take_image(k, &image);
         (void)goe_update(&building, &image, &now); /* a fault leaves the last good estimate */
-        const goe_decision_t decision = goe_decide(&building, &plan, NULL, &hazard);
+        const goe_decision_t decision = goe_decide(&building, &intent, NULL, &hazard);
         order = decision == GOE_DECISION_ACT || (order && decision != GOE_DECISION_CLEAR);
         if ((order || k % 8 == 0) && (now.valid & GOE_HAS_POSITION) != 0u) {
-            printf(
-                "%4.1f s: in %4.1f +- %3.1f s %3.0f m beside it, %3.0f m over its top; margins violated: %3.0f %%%s\n",
-                (double)((float)k / IMAGES_PER_S), (double)hazard.time_s, (double)hazard.time_sd_s,
-                (double)hazard.miss_m, (double)hazard.clearance_m, (double)(100.0f * hazard.violation),
-                order ? ": GO AROUND" : "");
+            printf("%4.1f s: in %4.1f +- %3.1f s %3.0f m past it, %3.0f m over its top; margins violated: %3.0f %%%s\n",
+                   (double)((float)k / IMAGES_PER_S), (double)hazard.tcpa_s, (double)hazard.tcpa_sd_s,
+                   (double)hazard.dcpa_m, (double)hazard.clearance_m, (double)(100.0f * hazard.conflict_probability),
+                   order ? ": GO AROUND" : "");
         }
         if (order) {
             break;

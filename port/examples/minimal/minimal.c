@@ -13,7 +13,7 @@
 
 static goe_estimator_t chimney; /* one per obstacle, all the memory there is */
 
-/* What your autopilot and your detector tell; here a chimney 5 m wide and 35 m high, straight ahead. */
+/* Replace this by your autopilot and your detector; here a chimney 5 m wide and 35 m high, straight ahead. */
 static void take_image(int k, goe_image_t *image) {
     const float ahead_m = 150.0f - FLOWN_M * (float)k;
     image->pose.time_us = (int64_t)k * IMAGE_US;
@@ -25,7 +25,7 @@ static void take_image(int k, goe_image_t *image) {
     image->box.right_px = 0.5f * WIDTH_PX + FOCAL_PX * 2.5f / ahead_m;
     image->box.top_px = 0.5f * HEIGHT_PX - FOCAL_PX * (35.0f - FLYING_HEIGHT_M) / ahead_m;
     image->box.bottom_px = 0.5f * HEIGHT_PX + FOCAL_PX * FLYING_HEIGHT_M / ahead_m;
-    image->box.seen = GOE_SEES_BOX;
+    image->box.sides = GOE_SIDES_ALL;
 }
 
 int main(void) {

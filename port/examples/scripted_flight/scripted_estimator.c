@@ -60,14 +60,14 @@ static void assess(scripted_estimator_t *estimator, uint32_t now_us) {
 
 /* ------------------------------------------------------------------------------------------------------------- lines -- */
 
-static bool tell(scripted_estimator_t *estimator, uint32_t tick, char line[SCRIPTED_LINE]) {
+static bool report(scripted_estimator_t *estimator, uint32_t tick, char line[SCRIPTED_LINE]) {
     const goe_flight_assessment_t *found = &estimator->assessment;
-    if (tick % LINE_TICKS != 0u && found->action == estimator->told_action &&
-        found->detector_alive == estimator->told_alive) {
+    if (tick % LINE_TICKS != 0u && found->action == estimator->reported_action &&
+        found->detector_alive == estimator->reported_alive) {
         return false;
     }
-    estimator->told_action = found->action;
-    estimator->told_alive = found->detector_alive;
+    estimator->reported_action = found->action;
+    estimator->reported_alive = found->detector_alive;
     scripted_line(&estimator->flight, tick * SCRIPTED_TICK_US, found, line);
     return true;
 }
@@ -106,7 +106,7 @@ bool scripted_take(scripted_estimator_t *estimator, const scripted_message_t *me
             return false;
         case SCRIPTED_TIMER:
             assess(estimator, message->tick * SCRIPTED_TICK_US);
-            return tell(estimator, message->tick, line);
+            return report(estimator, message->tick, line);
         case SCRIPTED_END:
             break;
     }

@@ -25,7 +25,7 @@ typedef struct {
     } of; /* nothing of a timer or the end */
 } scripted_message_t;
 
-/* What is sent of a kind at a tick, 0 to SCRIPTED_TICKS - 1; false: nothing. */
+/* The message of a kind at a tick, 0 to SCRIPTED_TICKS - 1; false: none. */
 bool scripted_message(uint32_t tick, scripted_kind_t kind, scripted_message_t *message);
 
 typedef uint32_t (*scripted_clock_t)(void); /* may wrap; any unit, of which durations are then */
@@ -42,19 +42,19 @@ typedef struct {
     scripted_cost_t assess; /* of goe_flight_assess() */
     uint32_t dropped;       /* images that were refused, or overtaken while they waited */
     scripted_image_t image;
-    bool image_waits; /* for a pose that is newer than its exposure */
-    bool told_alive;  /* as of the latest line: the detector, the action */
-    goe_flight_action_t told_action;
+    bool image_waits;    /* for a pose that is newer than its exposure */
+    bool reported_alive; /* as of the latest line: the detector, the action */
+    goe_flight_action_t reported_action;
 } scripted_estimator_t;
 
-/* false: the settings are refused, and the line tells why. */
+/* false: the settings are refused, and the line gives the reason. */
 bool scripted_start(scripted_estimator_t *estimator, scripted_clock_t clock, char line[SCRIPTED_LINE]);
 
 /* Takes a message. true: there is a line to print, one a second and one whenever the action changes or the detector falls silent or
  * comes back. */
 bool scripted_take(scripted_estimator_t *estimator, const scripted_message_t *message, char line[SCRIPTED_LINE]);
 
-/* "goe 0.3.0, self-check 0x00": the version compiled, and what goe_self_check() finds. */
+/* "goe 0.4.0, self-check 0x00": the version compiled, and what goe_self_check() finds. */
 void scripted_first_line(char line[SCRIPTED_LINE]);
 
 /* Of scripted_cost_t: 0 without calls. */

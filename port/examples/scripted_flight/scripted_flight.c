@@ -5,7 +5,7 @@
 #include <string.h>
 
 #define SPEED_M_S 18.0f /* north */
-#define METRES_PER_TICK 0.36f
+#define METERS_PER_TICK 0.36f
 #define HEIGHT_M 40.0f
 #define MAST_NORTH_M 230.0f
 #define MAST_EAST_M 10.0f
@@ -30,7 +30,7 @@ void scripted_settings(goe_settings_t *settings) {
     settings->camera.height_px = HEIGHT_PX;
 }
 
-static float north_m(uint32_t tick) { return METRES_PER_TICK * (float)tick; }
+static float north_m(uint32_t tick) { return METERS_PER_TICK * (float)tick; }
 
 void scripted_pose(uint32_t tick, scripted_pose_t *pose) {
     memset(pose, 0, sizeof *pose);
@@ -62,7 +62,7 @@ static bool see_mast(uint32_t tick, goe_box_t *box) {
     box->right_px = drawn_px(0.5f * WIDTH_PX + FOCAL_PX * right_m / ahead_m, WIDTH_PX);
     box->top_px = drawn_px(0.5f * HEIGHT_PX + FOCAL_PX * (HEIGHT_M - MAST_HEIGHT_M) / ahead_m, HEIGHT_PX);
     box->bottom_px = drawn_px(0.5f * HEIGHT_PX + FOCAL_PX * HEIGHT_M / ahead_m, HEIGHT_PX);
-    box->seen = GOE_SEES_BOX;
+    box->sides = GOE_SIDES_ALL;
     return true;
 }
 
@@ -126,8 +126,8 @@ void scripted_line(const goe_flight_t *flight, uint32_t now_us, const goe_flight
     if (goe_flight_obstacle(flight, assessment->worst, &obstacle) == GOE_FLIGHT_OK) {
         add_obstacle(&line, &obstacle);
         add_text(&line, " in");
-        add_number(&line, assessment->hazard.time_s, "s");
-        add_number(&line, assessment->hazard.miss_m, "m aside;");
+        add_number(&line, assessment->hazard.tcpa_s, "s");
+        add_number(&line, assessment->hazard.dcpa_m, "m aside;");
     } else {
         add_text(&line, assessment->detector_alive ? ": clear;" : ": nothing known;");
     }

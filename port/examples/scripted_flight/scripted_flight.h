@@ -1,9 +1,9 @@
-/* The world of the ports' samples: a straight flight past a mast, as an autopilot and a detector would tell of it.
+/* The simulated world of the ports' samples: a straight flight past a mast, with the messages of an autopilot and a detector.
  * SPDX-License-Identifier: MIT
  *
- * Poses come at 50 Hz. Every fifth tick a camera takes an image; its detections come 100 ms later, save that for a second and a half the
+ * Poses come at 50 Hz. Every fifth tick a camera takes an image; its detections come 100 ms later, except that for a second and a half the
  * detector is silent. The arithmetic has the same bits on every target, so the samples print the same on each of them (README.md). The
- * flight does not obey: what is ordered is printed. */
+ * flight does not obey: orders are only printed. */
 #ifndef SCRIPTED_FLIGHT_H
 #define SCRIPTED_FLIGHT_H
 
@@ -41,7 +41,7 @@ bool scripted_image(uint32_t tick, scripted_image_t *image);
 
 #define SCRIPTED_LINE 160 /* bytes that hold any line, the ending zero included; none has a line break */
 
-/* One line on what is known after an assessment: time, the worst obstacle, its hazard, whether the detector is alive, the action.
+/* One line after an assessment: time, the worst obstacle, its hazard, whether the detector is alive, the action.
  * Numbers are printed as integers, for C libraries that cannot print others. */
 void scripted_line(const goe_flight_t *flight, uint32_t now_us, const goe_flight_assessment_t *assessment,
                    char text[SCRIPTED_LINE]);

@@ -46,7 +46,7 @@ static bool see(const thing_t *thing, uint32_t step, goe_flight_detection_t *det
     detection->box.right_px = 0.5f * WIDTH_PX + scale * (thing->east_m + 0.5f * thing->width_m);
     detection->box.top_px = 0.5f * HEIGHT_PX + scale * (FLYING_HEIGHT_M - thing->top_m);
     detection->box.bottom_px = 0.5f * HEIGHT_PX + scale * FLYING_HEIGHT_M;
-    detection->box.seen = GOE_SEES_BOX;
+    detection->box.sides = GOE_SIDES_ALL;
     return ahead_m > 10.0f && detection->box.right_px < WIDTH_PX && detection->box.left_px > 0.0f &&
            detection->box.bottom_px < HEIGHT_PX;
 }
@@ -108,16 +108,16 @@ static void print_obstacles(const goe_flight_assessment_t *assessment) {
             continue;
         }
         const thing_t *truth = &things[found.id - 1u]; /* the tracker's numbers, here */
-        printf("  %-5s %3.0f +- %2.0f m north, %3.0f m east (stands at %3.0f, %3.0f), %2.0f m high (%2.0f); in %4.1f s "
+        printf("  %-5s %3.0f +- %2.0f m north, %3.0f m east (true: %3.0f, %3.0f), %2.0f m high (%2.0f); in %4.1f s "
                "%2.0f m aside%s%s\n",
                truth->name, (double)found.center_ned_m[0], (double)sqrtf(found.covariance_ne_m2[0]),
                (double)found.center_ned_m[1], (double)truth->north_m, (double)truth->east_m, (double)found.height_m,
-               (double)truth->top_m, (double)found.hazard.time_s, (double)found.hazard.miss_m,
+               (double)truth->top_m, (double)found.hazard.tcpa_s, (double)found.hazard.dcpa_m,
                found.suspect ? ", suspect" : "", slot == assessment->worst ? ", worst" : "");
     }
 }
 
-/* Ten times a second, whether images come or not: what is told late is not told. */
+/* Ten times a second, whether images come or not: a late report is useless. */
 static void assess(uint32_t step, goe_flight_action_t *ordered) {
     goe_flight_assessment_t now;
     const bool known = goe_flight_assess(&flight, step * STEP_US, false, &now) == GOE_FLIGHT_OK;
@@ -143,7 +143,7 @@ int main(void) {
     settings.camera.cy_px = 0.5f * HEIGHT_PX;
     settings.camera.width_px = WIDTH_PX; /* the layer needs the image's size */
     settings.camera.height_px = HEIGHT_PX;
-    settings.detector.box_share = 0.02f;
+    settings.detector.box_noise_rel = 0.02f;
     layer.delay_s = 0.0f; /* what the link takes at least */
     if (goe_flight_init(&flight, sizeof flight, &settings, &layer, NULL) != GOE_FLIGHT_OK) {
         return 1;

@@ -82,7 +82,7 @@ static bool detect(int k, detection_t *detection) {
 static goe_estimator_t mast;
 static uint32_t followed; /* the tracker's number; 0: none yet */
 
-/* An image in which nothing was seen is an image, too: the estimate grows older by it. */
+/* An image without a detection is an image, too: it ages the estimate. */
 static void fill(const detection_t *detection, goe_image_t *image) {
     if (detection == NULL || detection->score < SCORE_MIN) {
         return;
@@ -96,7 +96,8 @@ static void fill(const detection_t *detection, goe_image_t *image) {
     image->box.top_px = detection->top_px;
     image->box.right_px = detection->right_px;
     image->box.bottom_px = detection->bottom_px;
-    image->box.seen = GOE_SEES_BOX; /* also of a box that the border cuts: the size of the image tells the estimator */
+    image->box.sides =
+        GOE_SIDES_ALL; /* also of a box that the border cuts: the estimator knows it by the size of the image */
 }
 
 static void print(int k, goe_status_t status, const goe_estimate_t *now) {
@@ -125,8 +126,8 @@ int main(void) {
     settings.camera.cy_px = 0.5f * HEIGHT_PX;
     settings.camera.width_px = WIDTH_PX; /* needed for boxes that the border cuts */
     settings.camera.height_px = HEIGHT_PX;
-    settings.detector.box_px = 1.0f; /* whole pixels and some */
-    settings.detector.box_share =
+    settings.detector.box_noise_px = 1.0f; /* whole pixels and some */
+    settings.detector.box_noise_rel =
         0.02f; /* this detector's sides stay off by 2 % of the box; leave 0.07 if you do not know */
     if (goe_init(&mast, sizeof mast, &settings, NULL) != GOE_OK) {
         return 1;

@@ -78,30 +78,30 @@ void goe_python_sizes(size_t sizes[3]) {
 /* ---------------------------------------------------------------------------------------------------------- tracks -- */
 
 /* Why there is no hazard, or GOE_OK. */
-static goe_status_t status_of(const goe_estimator_t *estimator, const goe_plan_t *plan, goe_decision_t decision) {
+static goe_status_t status_of(const goe_estimator_t *estimator, const goe_intent_t *intent, goe_decision_t decision) {
     goe_hazard_t unused;
     if (decision == GOE_DECISION_ACT || decision == GOE_DECISION_CLEAR) {
         return GOE_OK;
     }
-    const goe_status_t status = goe_hazard(estimator, plan, &unused);
+    const goe_status_t status = goe_hazard(estimator, intent, &unused);
     return status == GOE_OK && decision == GOE_DECISION_KEEP ? GOE_OUT_OF_RANGE : status; /* of the rule */
 }
 
 static goe_decision_t decide(const goe_estimator_t *estimator, const float velocity[3], const goe_python_rule_t *given,
                              int32_t *hazard_status, goe_hazard_t *hazard) {
-    goe_plan_t plan;
+    goe_intent_t intent;
     goe_rule_t rule;
-    memcpy(plan.velocity_ned_m_s, velocity, sizeof plan.velocity_ned_m_s);
-    plan.margin_m = given->margin_m;
-    plan.clearance_m = given->clearance_m;
-    plan.since_image_s = given->since_image_s;
-    plan.velocity_sd_m_s = given->velocity_sd_m_s;
-    rule.violation_max = given->violation_max;
-    rule.act_s = given->act_s;
-    rule.doubt = given->doubt;
-    rule.drift_m_s = given->drift_m_s;
-    const goe_decision_t decision = goe_decide(estimator, &plan, &rule, hazard);
-    *hazard_status = (int32_t)status_of(estimator, &plan, decision);
+    memcpy(intent.velocity_ned_m_s, velocity, sizeof intent.velocity_ned_m_s);
+    intent.margin_m = given->margin_m;
+    intent.clearance_m = given->clearance_m;
+    intent.since_image_s = given->since_image_s;
+    intent.velocity_sd_m_s = given->velocity_sd_m_s;
+    rule.conflict_probability_max = given->conflict_probability_max;
+    rule.act_within_s = given->act_within_s;
+    rule.suspect_factor = given->suspect_factor;
+    rule.stale_growth_m_s = given->stale_growth_m_s;
+    const goe_decision_t decision = goe_decide(estimator, &intent, &rule, hazard);
+    *hazard_status = (int32_t)status_of(estimator, &intent, decision);
     return decision;
 }
 

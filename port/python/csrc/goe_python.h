@@ -1,5 +1,5 @@
-/* What Python needs beside goe.h: settings by number, and whole tracks in one call. The package `goe` compiles it; so does
- * sim_host, in double precision, for the tools that ask what the rounding of floats does. SPDX-License-Identifier: MIT */
+/* Interface for Python in addition to goe.h: settings by number, and whole tracks in one call. The package `goe` compiles it; so does
+ * sim_host, in double precision, for the tools that measure the rounding of floats. SPDX-License-Identifier: MIT */
 #ifndef GOE_PYTHON_H
 #define GOE_PYTHON_H
 
@@ -30,21 +30,21 @@ size_t goe_python_estimator_size(void);
 /* Bytes of goe_image_t, goe_estimate_t and goe_hazard_t, for callers that lay them out by themselves. */
 void goe_python_sizes(size_t sizes[3]);
 
-/* What goe_decide() gets after each image: of goe_plan_t all but the velocity, and goe_rule_t. */
+/* What goe_decide() gets after each image: of goe_intent_t all but the velocity, and goe_rule_t. */
 typedef struct {
     float margin_m, clearance_m;
-    float doubt;     /* 1: both as they are, also while the estimate is suspect */
-    float drift_m_s; /* 0: both as they are, also if it is old */
+    float suspect_factor;   /* 1: both as they are, also while the estimate is suspect */
+    float stale_growth_m_s; /* 0: both as they are, also if it is old */
     float since_image_s;
-    float violation_max, act_s;
+    float conflict_probability_max, act_within_s;
     float velocity_sd_m_s;
 } goe_python_rule_t;
 
-/* Images go in, one after the other, and what is known after each comes out.
+/* Takes the images in order, and writes the estimate after each.
  *   velocity_ned_m_s  [images] planned; read if there are rules
  *   covariance        [images]; null: not wanted
  *   decision, hazard_status, hazard  [images][rules]; written if there are rules. hazard_status: GOE_OK with a hazard, otherwise
- *                     why there is none: that of goe_hazard(), or GOE_OUT_OF_RANGE of a rule that goe_decide() refuses */
+ *                     the reason for none: that of goe_hazard(), or GOE_OUT_OF_RANGE of a rule that goe_decide() refuses */
 void goe_python_update(goe_estimator_t *estimator, size_t images, const goe_image_t *image, int32_t *status,
                        goe_estimate_t *estimate, float (*covariance)[GOE_QUANTITIES][GOE_QUANTITIES], size_t rules,
                        const goe_python_rule_t *rule, const float (*velocity_ned_m_s)[3], int32_t *decision,

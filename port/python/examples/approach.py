@@ -27,7 +27,7 @@ print(f"goe {goe.__version__}; arithmetic {'as on every target' if goe.self_chec
 # %%
 def approach(east_m: float, seed: int) -> goe.Images:
     """The flight past a mast `east_m` to the right of the path: boxes with 1 px of noise in each image, and with an
-    error of 3 % of the box that stays alike for about a second."""
+    error of 3 % of the box, correlated over about a second."""
     random = np.random.default_rng(seed)
     time_s = np.arange(IMAGES) / RATE_HZ
     ahead_m = MAST_NORTH_M - SPEED_M_S * time_s - MAST_WIDTH_M / 2
@@ -52,18 +52,18 @@ def approach(east_m: float, seed: int) -> goe.Images:
 images = approach(MAST_EAST_M, seed=1)
 
 # %% [markdown]
-# ## What is known after each image
+# ## The estimate after each image
 #
-# The settings say how wrong the sensors are: the sigmas are only as good as that. One call takes the whole track. The
-# decision rule is asked after each image what becomes of flying straight on, with margins that grow while the estimate
+# The settings define the sensor errors: the sigmas are only as good as these. One call takes the whole track. The
+# decision rule evaluates straight flight after each image, with margins that grow while the estimate
 # is in doubt or old.
 
 # %%
 settings = goe.Settings.for_camera(FOCAL_PX, FOCAL_PX, CENTER_PX, CENTER_PX, width_px=1280, height_px=1280)
-settings.detector.box_px = 1.0
-settings.detector.box_share = 0.03
+settings.detector.box_noise_px = 1.0
+settings.detector.box_noise_rel = 0.03
 CLIMB_S = 8.0  # what a climb takes, and some seconds to decide
-rule = goe.Rule(margin_m=15.0, clearance_m=10.0, act_s=CLIMB_S)
+rule = goe.Rule(margin_m=15.0, clearance_m=10.0, act_within_s=CLIMB_S)
 track = goe.run(settings, images, rules=[rule], covariance=True)
 
 true_m = MAST_NORTH_M - SPEED_M_S * np.arange(IMAGES) / RATE_HZ
@@ -75,8 +75,8 @@ for k in range(0, IMAGES, 10):
     ahead, width = estimate.position.z, estimate.width
     print(
         f"{k / RATE_HZ:5.2f} s  {ahead.m:6.1f} +- {ahead.sd_m:4.1f} m ahead (true {true_m[k]:6.1f}), "
-        f"{'' if width is None else f'{width.m:4.1f} m wide, '}{hazard.time_s:4.1f} s to go, "
-        f"violation {hazard.violation:.2f}"
+        f"{'' if width is None else f'{width.m:4.1f} m wide, '}{hazard.tcpa_s:4.1f} s to go, "
+        f"violation {hazard.conflict_probability:.2f}"
     )
 
 # %% [markdown]
@@ -89,7 +89,7 @@ for k in range(0, IMAGES, 10):
 act = track.decision[:, 0] == goe.Decision.ACT
 order = int(np.argmax(act)) if act.any() else None
 if order is not None:
-    left_s, left_m = track.hazards["time_s"][order, 0], true_m[order]
+    left_s, left_m = track.hazards["tcpa_s"][order, 0], true_m[order]
     print(f"go around at {order / RATE_HZ:.2f} s: {left_s:.1f} s to go, {left_m:.0f} m before the mast")
 
 # %% [markdown]
@@ -114,14 +114,14 @@ print(f"{len(flights)} flights: the true range lies within two sigma in {100 * s
 
 # %%
 mast = goe.Estimator(settings)
-straight_on = goe.Plan((SPEED_M_S, 0.0, 0.0), margin_m=15.0, clearance_m=10.0)
+straight_on = goe.Intent((SPEED_M_S, 0.0, 0.0), margin_m=15.0, clearance_m=10.0)
 go_around = False
 for k in range(IMAGES):
     pose = goe.Pose(int(images.time_us[k]), images.position_ned_m[k], HEIGHT_M, images.attitude[k])
     latest = mast.update(goe.Image(pose, bounding_box=goe.BoundingBox(*images.box_px[k])))
-    decision, hazard = mast.decide(straight_on, goe.DecisionRule(act_s=CLIMB_S))
+    decision, hazard = mast.decide(straight_on, goe.DecisionRule(act_within_s=CLIMB_S))
     assert decision == track.decision[k, 0]
     go_around = decision == goe.Decision.ACT or (go_around and decision != goe.Decision.CLEAR)
 assert latest == track[-1] and go_around
 if hazard is not None:
-    print(f"at the end: {hazard.time_s:.1f} +- {hazard.time_sd_s:.1f} s to go, misses by {hazard.miss.m:.1f} m")
+    print(f"at the end: {hazard.tcpa_s:.1f} +- {hazard.tcpa_sd_s:.1f} s to go, misses by {hazard.dcpa.m:.1f} m")

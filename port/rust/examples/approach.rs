@@ -1,6 +1,6 @@
-//! Flies towards a mast of 6 m by 30 m and prints what is known of it, and when to go around it.
+//! Flies towards a mast of 6 m by 30 m and prints the estimate, and when to go around it.
 
-use goe::{BoundingBox, DecisionRule, Error, Estimator, Fault, Image, Plan, Pose, Settings};
+use goe::{BoundingBox, DecisionRule, Error, Estimator, Fault, Image, Intent, Pose, Settings};
 
 const FOCAL_PX: f32 = 914.0;
 const CENTER_PX: f32 = 640.0;
@@ -17,16 +17,16 @@ fn main() -> Result<(), Error> {
     let mut settings = Settings::for_camera(FOCAL_PX, FOCAL_PX, CENTER_PX, CENTER_PX);
     settings.camera.width_px = 2.0 * CENTER_PX;
     settings.camera.height_px = 2.0 * CENTER_PX;
-    settings.detector.box_share = 0.01; // this detector does not err; real ones: leave the default
+    settings.detector.box_noise_rel = 0.01; // this detector does not err; real ones: leave the default
     let mut mast = Estimator::new(&settings)?;
-    let plan = Plan {
+    let intent = Intent {
         velocity_ned_m_s: [SPEED_M_S, 0.0, 0.0],
         margin_m: 15.0,
         clearance_m: 10.0,
-        ..Plan::default()
+        ..Intent::default()
     };
     let rule = DecisionRule {
-        act_s: 5.0, // what a climb takes here
+        act_within_s: 5.0, // what a climb takes here
         ..DecisionRule::default()
     };
     let mut go_around = false;
@@ -43,7 +43,7 @@ fn main() -> Result<(), Error> {
             ..Image::default()
         };
         let estimate = mast.update(&image).unwrap_or_else(|fault: Fault| fault.estimate);
-        let (decision, hazard) = mast.decide(&plan, &rule);
+        let (decision, hazard) = mast.decide(&intent, &rule);
         go_around = decision.acts(go_around);
         let (Some(position), Some(hazard)) = (estimate.position, hazard) else {
             println!("{:4.1} s  {}", f32::from(k) / 8.0, estimate.status);
@@ -55,12 +55,12 @@ fn main() -> Result<(), Error> {
                 f32::from(k) / 8.0,
                 position.z.m,
                 position.z.sd_m,
-                hazard.time_s,
-                hazard.violation
+                hazard.tcpa_s,
+                hazard.conflict_probability
             );
         }
         if go_around {
-            println!("{:4.1} s  go around: {:.1} s to go", f32::from(k) / 8.0, hazard.time_s);
+            println!("{:4.1} s  go around: {:.1} s to go", f32::from(k) / 8.0, hazard.tcpa_s);
             break;
         }
     }

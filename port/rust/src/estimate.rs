@@ -5,7 +5,7 @@ use core::fmt;
 use crate::ffi;
 use crate::{Method, Status};
 
-/// One sigma of each quantity of C's estimate, for [`crate::ffi`]; 0 of what is not valid.
+/// One sigma of each quantity of C's estimate, for [`crate::ffi`]; 0 of an invalid one.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sigma {
@@ -25,9 +25,9 @@ pub struct Sigma {
     pub height_m: f32,
     /// Of the orientation, degrees.
     pub orientation_deg: f32,
-    /// Of the centre, m.
+    /// Of the center, m.
     pub center_north_m: f32,
-    /// Of the centre, m.
+    /// Of the center, m.
     pub center_east_m: f32,
     /// Of the velocity, m/s.
     pub velocity_north_m_s: f32,
@@ -45,9 +45,9 @@ pub enum Model {
     Disc,
     /// The front edge of a box. Window method.
     Line,
-    /// A box with an upright, level outline. Refined method.
+    /// A box with an upright, level outline. Filter method.
     Box,
-    /// Something upright by its bounding boxes, whose depth along the line of sight is not known. Refined method.
+    /// Something upright by its bounding boxes, whose depth along the line of sight is not known. Filter method.
     Prism,
 }
 
@@ -63,17 +63,17 @@ impl Model {
     }
 }
 
-/// Why an estimate is suspect, the most significant one. Refined method.
+/// Why an estimate is suspect, the most significant one. Filter method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Reason {
-    /// What is given does not belong together: axes, signs or order of the attitude, the mounting, very late poses.
+    /// The inputs contradict each other: axes, signs or order of the attitude, the mounting, very late poses.
     Convention,
     /// The obstacle moves. Without [`Estimate::velocity`] it is not followed, and the position is wrong.
     Moves,
-    /// What was given as base corners proved to be none.
+    /// The given base corners proved to be wrong.
     Base,
-    /// A disc was asked for, and the silhouette is not that of one.
+    /// A disc was configured, and the silhouette is not that of one.
     Shape,
     /// Poses are late or early: [`Estimate::latency_s`]. Also of an estimate that is not suspect.
     Late,
@@ -118,7 +118,7 @@ pub struct Length {
     pub sd_m: f32,
 }
 
-/// Where the reference point is: of a disc the centre, of a line or box the middle of the front edge. X points right, Z ahead,
+/// Position of the reference point: of a disc the center, of a line or box the middle of the front edge. X points right, Z ahead,
 /// level.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Position {
@@ -130,20 +130,20 @@ pub struct Position {
     pub x: Length,
     /// ... and ahead, m.
     pub z: Length,
-    /// Window: root mean square residual of the fit, in its rows' own unit; refined: 0.
+    /// Window: root mean square residual of the fit, in its rows' own unit; filter: 0.
     pub residual: f32,
-    /// Window: spread of the flown baseline; refined: distance from where the track began; m.
+    /// Window: spread of the flown baseline; filter: distance from where the track began; m.
     pub baseline_m: f32,
 }
 
-/// How a box or a line stands.
+/// Orientation of a box or a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Orientation {
-    /// The side edge (length) from Z, clockwise seen from above, degrees; over -90, up to 90.
+    /// The side edge (length) from Z, clockwise as viewed from above, degrees; over -90, up to 90.
     pub side_deg: f32,
     /// Its one sigma, degrees.
     pub side_sd_deg: f32,
-    /// Window: the same of the latest image alone, degrees; refined: `side_deg`.
+    /// Window: the same of the latest image alone, degrees; filter: `side_deg`.
     pub side_raw_deg: f32,
     /// The front edge (width) from Z, degrees.
     pub front_deg: f32,
@@ -181,7 +181,7 @@ pub struct Velocity {
     pub east_sd_m_s: f32,
 }
 
-/// What is known after an image. A quantity that is not valid is `None`.
+/// The estimate after an image. A quantity that is not valid is `None`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     /// What became of the image.
@@ -197,7 +197,7 @@ pub struct Estimate {
     /// Why; [`Reason::Late`] also if it is not suspect.
     pub reason: Option<Reason>,
     /// Images behind the answer.
-    pub images: u16,
+    pub images_used: u16,
     /// Since the image of the last solution, s; 0 if fresh or none; at most 4000.
     pub age_s: f32,
     /// Where the obstacle is.
@@ -208,7 +208,7 @@ pub struct Estimate {
     pub length: Option<Length>,
     /// Top above ground.
     pub height: Option<Length>,
-    /// How it stands.
+    /// Orientation.
     pub orientation: Option<Orientation>,
     /// The middle of its base.
     pub center: Option<Center>,
@@ -220,12 +220,12 @@ pub struct Estimate {
     pub latency_s: f32,
     /// Its one sigma, s.
     pub latency_sd_s: f32,
-    /// Normalised innovation squared of the latest image. Refined method.
+    /// Normalized innovation squared of the latest image. Filter method.
     pub nis: f32,
     /// Its expectation: the rows that made it; 0: none.
     pub nis_rows: u16,
-    /// Running mean of `nis / nis_rows`: 1 is what the settings predict. Refined method.
-    pub misfit: f32,
+    /// Running mean of `nis / nis_rows`: 1 is what the settings predict. Filter method.
+    pub nis_ratio: f32,
 }
 
 fn length(m: f32, sd_m: f32) -> Length {
@@ -247,7 +247,7 @@ impl Estimate {
             fresh: c.fresh,
             suspect: c.suspect,
             reason: Reason::of(c.reason),
-            images: count(c.points),
+            images_used: count(c.images_used),
             age_s: c.age_s,
             position: has(ffi::GOE_HAS_POSITION).then(|| Position {
                 x0: length(c.x0_m, sd.x0_m),
@@ -264,7 +264,7 @@ impl Estimate {
                 side_deg: c.orientation_deg,
                 side_sd_deg: sd.orientation_deg,
                 side_raw_deg: c.orientation_raw_deg,
-                front_deg: c.other_side_deg,
+                front_deg: c.front_orientation_deg,
                 length_axis: c.length_axis,
                 width_axis: c.width_axis,
                 length_axis_ne: c.length_axis_ne,
@@ -286,7 +286,7 @@ impl Estimate {
             latency_sd_s: sd.latency_s,
             nis: c.nis,
             nis_rows: count(c.nis_rows),
-            misfit: c.misfit,
+            nis_ratio: c.nis_ratio,
         }
     }
 }

@@ -9,7 +9,7 @@ use crate::settings::bad_setting;
 #[cfg(not(feature = "hazard"))]
 use crate::Error;
 #[cfg(feature = "hazard")]
-use crate::{Decision, DecisionRule, Error, Hazard, Plan};
+use crate::{Decision, DecisionRule, Error, Hazard, Intent};
 use crate::{Estimate, Fault, Image, Settings};
 
 /// Follows one obstacle. It is all the memory there is (at most 2,936 bytes), may lie anywhere and be moved, copied or handed to
@@ -27,7 +27,7 @@ impl Estimator {
     /// Checks the settings, copies them and starts with an empty track and zeroed counters.
     ///
     /// # Errors
-    /// [`Error::BadSetting`] with the name of the first setting that is outside its range, or asks for a method that was left out.
+    /// [`Error::BadSetting`] with the name of the first setting that is outside its range, or requires a method that was left out.
     pub fn new(settings: &Settings) -> Result<Self, Error> {
         let mut place = MaybeUninit::uninit();
         Self::start(&mut place, settings)?;
@@ -73,10 +73,10 @@ impl Estimator {
         }
     }
 
-    /// Takes one image, also one in which nothing is seen, and tells what is known after it.
+    /// Takes one image, also one without a detection, and returns the estimate after it.
     ///
     /// # Errors
-    /// [`Fault`]: the image gave no new solution; it carries the last good estimate, and [`Status`](crate::Status) tells why.
+    /// [`Fault`]: the image gave no new solution; it carries the last good estimate, and [`Status`](crate::Status) gives the reason.
     pub fn update(&mut self, image: &Image) -> Result<Estimate, Fault> {
         let image = image.to_c();
         let mut answer = MaybeUninit::<ffi::goe_estimate_t>::zeroed();
@@ -93,8 +93,8 @@ impl Estimator {
         }
     }
 
-    /// Covariance of the latest estimate, by [`QUANTITIES`]; `None`: there is no position, or the memory is corrupted. Rows and columns of what is not valid are
-    /// 0.
+    /// Covariance of the latest estimate, by [`QUANTITIES`]; `None`: there is no position, or the memory is
+    /// corrupted. Rows and columns of invalid quantities are 0.
     #[must_use]
     pub fn covariance(&self) -> Option<[[f32; QUANTITIES]; QUANTITIES]> {
         let mut covariance = [[0.0; QUANTITIES]; QUANTITIES];
@@ -107,14 +107,14 @@ impl Estimator {
     ///
     /// # Errors
     /// [`Error::NoPosition`] and [`Error::Corrupted`], which do not mean that it is safe; [`Error::NotFinite`] and
-    /// [`Error::OutOfRange`] of the plan.
+    /// [`Error::OutOfRange`] of the intent.
     #[cfg(feature = "hazard")]
-    pub fn hazard(&self, plan: &Plan) -> Result<Hazard, Error> {
-        let plan = plan.to_c();
+    pub fn hazard(&self, intent: &Intent) -> Result<Hazard, Error> {
+        let intent = intent.to_c();
         let mut hazard = MaybeUninit::<ffi::goe_hazard_t>::zeroed();
         // SAFETY: zeros are a goe_hazard_t, which the call writes whole; the estimator is a started one.
         let (status, hazard) = unsafe {
-            let status = ffi::goe_hazard(&self.c, &plan, hazard.as_mut_ptr());
+            let status = ffi::goe_hazard(&self.c, &intent, hazard.as_mut_ptr());
             (status, hazard.assume_init())
         };
         match status {
@@ -126,29 +126,29 @@ impl Estimator {
         }
     }
 
-    /// The decision rule: whether to act now, and the hazard with the plan's margin and clearance widened by doubt and age. To be
+    /// The decision rule: whether to act now, and the hazard with the intent's margin and clearance widened by doubt and age. To be
     /// asked after each image, also after one without a detection. `None`: there is no hazard, which does not mean that it is safe.
     ///
     /// ```
-    /// # use goe::{DecisionRule, Estimator, Plan, Settings};
+    /// # use goe::{DecisionRule, Estimator, Intent, Settings};
     /// # let tower = Estimator::new(&Settings::for_camera(914.0, 914.0, 640.0, 640.0))?;
     /// # let mut go_around = false;
-    /// let plan = Plan { velocity_ned_m_s: [16.0, 0.0, 0.0], margin_m: 15.0, clearance_m: 10.0, ..Plan::default() };
-    /// let (decision, hazard) = tower.decide(&plan, &DecisionRule::default());
+    /// let intent = Intent { velocity_ned_m_s: [16.0, 0.0, 0.0], margin_m: 15.0, clearance_m: 10.0, ..Intent::default() };
+    /// let (decision, hazard) = tower.decide(&intent, &DecisionRule::default());
     /// go_around = decision.acts(go_around);
     /// # assert!(!go_around && hazard.is_none());
     /// # Ok::<(), goe::Error>(())
     /// ```
     #[cfg(feature = "hazard")]
-    pub fn decide(&self, plan: &Plan, rule: &DecisionRule) -> (Decision, Option<Hazard>) {
-        let (plan, rule) = (plan.to_c(), rule.to_c());
+    pub fn decide(&self, intent: &Intent, rule: &DecisionRule) -> (Decision, Option<Hazard>) {
+        let (intent, rule) = (intent.to_c(), rule.to_c());
         let mut hazard = MaybeUninit::<ffi::goe_hazard_t>::zeroed();
         // SAFETY: zeros are a goe_hazard_t, which the call writes whole; the estimator is a started one.
         let (decision, hazard) = unsafe {
-            let decision = ffi::goe_decide(&self.c, &plan, &rule, hazard.as_mut_ptr());
+            let decision = ffi::goe_decide(&self.c, &intent, &rule, hazard.as_mut_ptr());
             (Decision::of(decision), hazard.assume_init())
         };
-        let known = hazard.miss_sd_m > 0.0; // all zero without one
+        let known = hazard.dcpa_sd_m > 0.0; // all zero without one
         (decision, known.then(|| Hazard::of(&hazard)))
     }
 
@@ -161,16 +161,16 @@ impl Estimator {
     /// Faults so far, for the flight log: `[-code]` of each [`Status`](crate::Status) from -1 to -15, `[0]` the tracks that a filter
     /// reset of unknown size ended. They saturate.
     #[must_use]
-    pub fn causes(&self) -> [u32; ffi::GOE_CAUSES] {
+    pub fn fault_counts(&self) -> [u32; ffi::GOE_FAULT_COUNTS] {
         // SAFETY: the call returns the address of a field of the estimator.
-        unsafe { *ffi::goe_rust_causes(&self.c) }
+        unsafe { *ffi::goe_rust_fault_counts(&self.c) }
     }
 }
 
 impl fmt::Debug for Estimator {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Estimator")
-            .field("causes", &self.causes())
+            .field("fault_counts", &self.fault_counts())
             .finish_non_exhaustive()
     }
 }

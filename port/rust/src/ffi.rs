@@ -1,6 +1,6 @@
 //! The C interface as it is: `lib/goe.h` and `port/flight/goe_flight.h` are its manuals.
 //!
-//! Enumerations of C are integers here, so that no number that C may return is undefined behaviour. They have C's `int`: the
+//! Enumerations of C are integers here, so no number that C may return is undefined behavior. They have C's `int`: the
 //! library is compiled with `-fno-short-enums`, also where the processor's ABI would make them shorter. `layout.rs` lists sizes and
 //! offsets; both compilers compare them whenever the crate is built, and that of C the constants below.
 
@@ -11,8 +11,8 @@ use core::mem::MaybeUninit;
 
 pub use crate::estimate::Sigma as goe_sigma_t;
 pub use crate::settings::{
-    Camera as goe_camera_t, Detector as goe_detector_t, Navigation as goe_navigation_t,
-    RefinedSettings as goe_refined_settings_t, WindowSettings as goe_window_settings_t,
+    Camera as goe_camera_t, Detector as goe_detector_t, FilterSettings as goe_filter_settings_t,
+    Navigation as goe_navigation_t, WindowSettings as goe_window_settings_t,
 };
 
 /// Status of a call; negative: no new solution.
@@ -33,22 +33,22 @@ macro_rules! constants {
 }
 
 constants! {
-    goe_status_t: GOE_OK = 0, GOE_PARTIAL = 1, GOE_COLLECTING = 2, GOE_HELD = 3, GOE_NOTHING_SEEN = 4,
+    goe_status_t: GOE_OK = 0, GOE_PARTIAL = 1, GOE_CONVERGING = 2, GOE_STALE = 3, GOE_NO_DETECTION = 4,
         GOE_BEHIND_CAMERA = -1, GOE_LENS_FAILED = -2, GOE_SWAPPED = -3, GOE_EDGE_ON = -4, GOE_NO_EDGE = -5,
-        GOE_BAD_HEIGHT = -6, GOE_NO_BASELINE = -7, GOE_NO_PARALLAX = -8, GOE_PASSED = -9, GOE_NOT_FINITE = -10,
+        GOE_BAD_HEIGHT = -6, GOE_NO_BASELINE = -7, GOE_NO_PARALLAX = -8, GOE_ABEAM = -9, GOE_NOT_FINITE = -10,
         GOE_OUT_OF_RANGE = -11, GOE_BAD_TIME = -12, GOE_BAD_ATTITUDE = -13, GOE_BOX_INCOMPLETE = -14,
-        GOE_NO_HEIGHT = -15, GOE_BAD_SETTINGS = -32, GOE_BAD_ARGUMENT = -33, GOE_NOT_INITIALISED = -34,
+        GOE_NO_HEIGHT = -15, GOE_BAD_SETTINGS = -32, GOE_BAD_ARGUMENT = -33, GOE_NOT_INITIALIZED = -34,
         GOE_CORRUPTED = -35;
     goe_model_t: GOE_MODEL_NONE = 0, GOE_MODEL_AUTO = 1, GOE_MODEL_DISC = 2, GOE_MODEL_LINE = 3, GOE_MODEL_BOX = 4,
         GOE_MODEL_PRISM = 5;
-    goe_method_t: GOE_METHOD_WINDOW = 1, GOE_METHOD_REFINED = 2;
+    goe_method_t: GOE_METHOD_WINDOW = 1, GOE_METHOD_FILTER = 2;
     goe_reason_t: GOE_REASON_NONE = 0, GOE_REASON_CONVENTION = 1, GOE_REASON_MOVES = 2, GOE_REASON_BASE = 3,
         GOE_REASON_SHAPE = 4, GOE_REASON_LATE = 5, GOE_REASON_NOISE = 6;
     goe_decision_t: GOE_DECISION_UNKNOWN = 0, GOE_DECISION_CLEAR = 1, GOE_DECISION_ACT = 2, GOE_DECISION_KEEP = 3;
-    u8: GOE_SEES_LEFT = 1, GOE_SEES_TOP = 2, GOE_SEES_RIGHT = 4, GOE_SEES_BOTTOM = 8;
+    u8: GOE_SIDE_LEFT = 1, GOE_SIDE_TOP = 2, GOE_SIDE_RIGHT = 4, GOE_SIDE_BOTTOM = 8;
     c_uint: GOE_HAS_POSITION = 0x01, GOE_HAS_LENGTH = 0x02, GOE_HAS_HEIGHT = 0x04, GOE_HAS_ORIENTATION = 0x08,
         GOE_HAS_CENTER = 0x10, GOE_HAS_WIDTH = 0x20, GOE_HAS_VELOCITY = 0x40;
-    usize: GOE_CAUSES = 16, GOE_QUANTITIES = 6;
+    usize: GOE_FAULT_COUNTS = 16, GOE_QUANTITIES = 6;
 }
 
 macro_rules! c_struct {
@@ -74,7 +74,7 @@ c_struct! {
         navigation: goe_navigation_t,
         detector: goe_detector_t,
         window: goe_window_settings_t,
-        refined: goe_refined_settings_t,
+        filter: goe_filter_settings_t,
     }
     goe_pose_t {
         time_us: i64,
@@ -85,9 +85,9 @@ c_struct! {
         reset_delta_known: bool,
         reset_delta_ned_m: [f32; 3],
     }
-    goe_pixel_t { u_px: f32, v_px: f32, seen: bool }
-    goe_box_t { left_px: f32, top_px: f32, right_px: f32, bottom_px: f32, seen: u8 }
-    goe_image_noise_t { attitude_deg: f32, height_m: f32, pixel_px: f32 }
+    goe_pixel_t { u_px: f32, v_px: f32, visible: bool }
+    goe_box_t { left_px: f32, top_px: f32, right_px: f32, bottom_px: f32, sides: u8 }
+    goe_image_noise_t { attitude_sd_deg: f32, height_sd_m: f32, pixel_sd_px: f32 }
     goe_image_t {
         pose: goe_pose_t,
         left: goe_pixel_t,
@@ -107,7 +107,7 @@ c_struct! {
         fresh: bool,
         suspect: bool,
         reason: goe_reason_t,
-        points: c_int,
+        images_used: c_int,
         age_s: f32,
         x0_m: f32,
         z0_m: f32,
@@ -118,7 +118,7 @@ c_struct! {
         height_m: f32,
         orientation_deg: f32,
         orientation_raw_deg: f32,
-        other_side_deg: f32,
+        front_orientation_deg: f32,
         length_axis: [f32; 2],
         width_axis: [f32; 2],
         length_axis_ne: [f32; 2],
@@ -134,25 +134,25 @@ c_struct! {
         baseline_m: f32,
         nis: f32,
         nis_rows: c_int,
-        misfit: f32,
+        nis_ratio: f32,
         sigma: goe_sigma_t,
     }
-    goe_plan_t {
+    goe_intent_t {
         velocity_ned_m_s: [f32; 3],
         margin_m: f32,
         clearance_m: f32,
         since_image_s: f32,
         velocity_sd_m_s: f32,
     }
-    goe_rule_t { violation_max: f32, act_s: f32, doubt: f32, drift_m_s: f32 }
+    goe_rule_t { conflict_probability_max: f32, act_within_s: f32, suspect_factor: f32, stale_growth_m_s: f32 }
     goe_hazard_t {
-        time_s: f32,
-        miss_m: f32,
+        tcpa_s: f32,
+        dcpa_m: f32,
         clearance_m: f32,
-        time_sd_s: f32,
-        miss_sd_m: f32,
+        tcpa_sd_s: f32,
+        dcpa_sd_m: f32,
         clearance_sd_m: f32,
-        violation: f32,
+        conflict_probability: f32,
         has_clearance: bool,
     }
 }
@@ -182,7 +182,7 @@ extern "C" {
         image: *const goe_image_t,
         estimate: *mut goe_estimate_t,
     ) -> goe_status_t;
-    /// Covariance of the latest estimate: metres and degrees.
+    /// Covariance of the latest estimate: meters and degrees.
     pub fn goe_covariance(
         estimator: *const goe_estimator_t,
         covariance: *mut [[f32; GOE_QUANTITIES]; GOE_QUANTITIES],
@@ -191,7 +191,7 @@ extern "C" {
     #[cfg(feature = "hazard")]
     pub fn goe_hazard(
         estimator: *const goe_estimator_t,
-        plan: *const goe_plan_t,
+        intent: *const goe_intent_t,
         hazard: *mut goe_hazard_t,
     ) -> goe_status_t;
     /// Sets a rule to its defaults.
@@ -201,23 +201,23 @@ extern "C" {
     #[cfg(feature = "hazard")]
     pub fn goe_decide(
         estimator: *const goe_estimator_t,
-        plan: *const goe_plan_t,
+        intent: *const goe_intent_t,
         rule: *const goe_rule_t,
         hazard: *mut goe_hazard_t,
     ) -> goe_decision_t;
     /// The earliest time of the closest approach at two sigma.
     #[cfg(feature = "hazard")]
-    pub fn goe_soonest_s(hazard: *const goe_hazard_t) -> f32;
+    pub fn goe_earliest_tcpa_s(hazard: *const goe_hazard_t) -> f32;
     /// Forgets the track.
     pub fn goe_reset(estimator: *mut goe_estimator_t) -> goe_status_t;
     /// A short name for a status.
     pub fn goe_status_text(status: goe_status_t) -> *const c_char;
     /// A short name for a reason.
     pub fn goe_reason_text(reason: goe_reason_t) -> *const c_char;
-    /// What is wrong with the arithmetic of this machine; 0: nothing.
+    /// Faults of the arithmetic of this machine; 0: none.
     pub fn goe_self_check() -> c_uint;
-    /// The counters of an estimator: `causes` of `goe_estimator_t`. Of `shim.c`.
-    pub fn goe_rust_causes(estimator: *const goe_estimator_t) -> *const [u32; GOE_CAUSES];
+    /// The counters of an estimator: `fault_counts` of `goe_estimator_t`. Of `shim.c`.
+    pub fn goe_rust_fault_counts(estimator: *const goe_estimator_t) -> *const [u32; GOE_FAULT_COUNTS];
 }
 
 #[cfg(feature = "flight")]
@@ -240,7 +240,7 @@ mod flight {
         goe_flight_status_t: GOE_FLIGHT_OK = 0, GOE_FLIGHT_TOO_NEW = 1, GOE_FLIGHT_TOO_OLD = -1, GOE_FLIGHT_NO_POSE = -2,
             GOE_FLIGHT_BAD_TIME = -3, GOE_FLIGHT_NOT_FINITE = -4, GOE_FLIGHT_OUT_OF_RANGE = -5,
             GOE_FLIGHT_BAD_ATTITUDE = -6, GOE_FLIGHT_NOTHING = -7, GOE_FLIGHT_BAD_SETTINGS = -32,
-            GOE_FLIGHT_BAD_ARGUMENT = -33, GOE_FLIGHT_NOT_INITIALISED = -34,
+            GOE_FLIGHT_BAD_ARGUMENT = -33, GOE_FLIGHT_NOT_INITIALIZED = -34,
             GOE_FLIGHT_CORRUPTED = -35;
         goe_flight_action_t: GOE_FLIGHT_NONE = 0, GOE_FLIGHT_LEFT = 1, GOE_FLIGHT_RIGHT = 2, GOE_FLIGHT_CLIMB = 3,
             GOE_FLIGHT_GO_AROUND = 4, GOE_FLIGHT_HOLD = 5;
@@ -312,7 +312,7 @@ mod flight {
             valid: c_uint,
             model: goe_model_t,
             suspect: bool,
-            passed: bool,
+            receding: bool,
             in_view: bool,
             has_hazard: bool,
             age_s: f32,
@@ -374,7 +374,7 @@ mod flight {
         pub fn goe_flight_timesync(flight: *mut goe_flight_t, offset_us: u32, sd_us: u32) -> goe_flight_status_t;
         /// Takes an image's detections.
         pub fn goe_flight_frame(flight: *mut goe_flight_t, frame: *const goe_flight_frame_t) -> goe_flight_status_t;
-        /// What is ahead from now on, and what to do about it.
+        /// The hazards ahead from now on, and the reaction.
         pub fn goe_flight_assess(
             flight: *mut goe_flight_t,
             now_us: u32,

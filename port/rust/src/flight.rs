@@ -13,30 +13,30 @@ use crate::{BoundingBox, Error, Hazard, Length, Model, Pixel, Pose, Settings};
 
 /// Obstacles that are followed at a time.
 pub const SLOTS: usize = ffi::GOE_FLIGHT_SLOTS;
-/// Sectors of [`Flight::sectors`], 5 degrees each, the first centred on north.
+/// Sectors of [`Flight::sectors`], 5 degrees each, the first centered on north.
 pub const SECTORS: usize = ffi::GOE_FLIGHT_SECTORS;
 /// Most detections that [`Flight::frame`] takes at once.
 pub const DETECTIONS: usize = ffi::GOE_FLIGHT_DETECTIONS;
 
-/// Settings of the layer, beside those of the estimators.
+/// Settings of the layer, in addition to those of the estimators.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlightSettings {
     /// A detection of less is not looked at; 0 to 1; default 0.3.
     pub score_min: f32,
-    /// Images that a new obstacle must be seen in before it is followed; 1 to 20; default 3.
+    /// Images with a detection of a new obstacle before it is followed; 1 to 20; default 3.
     pub confirm_images: f32,
     /// Without a frame for this long the detector counts as dead, s; 0.05 to 60; default 1.
-    pub alive_s: f32,
-    /// An obstacle that was not seen for this long is given up, s; 1 to 600; default 10.
-    pub forget_s: f32,
+    pub detector_timeout_s: f32,
+    /// An obstacle undetected for this long is given up, s; 1 to 600; default 10.
+    pub track_timeout_s: f32,
     /// Least time from sending to arrival, s; 0 to 0.5; default 0.005.
     pub delay_s: f32,
-    /// Its one sigma, and that of any capture time whose sender tells none, s; 0 to 0.5; default 0.005.
+    /// Its one sigma, and that of any capture time whose sender gives none, s; 0 to 0.5; default 0.005.
     pub delay_sd_s: f32,
     /// A frame that comes later after its exposure is refused, s; 0.02 to 0.5; default 0.4.
     pub delay_max_s: f32,
-    /// How the autopilot tells resets: 0 by counters (PX4), 1 by times (ArduPilot); default 0.
+    /// How the autopilot reports resets: 0 by counters (PX4), 1 by times (ArduPilot); default 0.
     pub resets: f32,
     /// One sigma of the range finder, m; 0.001 to 100; default 0.3.
     pub range_finder_sd_m: f32,
@@ -51,11 +51,11 @@ pub struct FlightSettings {
     /// Wanted over the top, m; 0 to 1000; default 10.
     pub clearance_m: f32,
     /// Probability of violating both from which on there is a reaction; 0.001 to 1; default 0.1.
-    pub violation_max: f32,
+    pub conflict_probability_max: f32,
     /// Factor on margin and clearance while the estimate is suspect; 1 to 10; default 1.5.
-    pub doubt: f32,
+    pub suspect_factor: f32,
     /// By which both grow while the estimate is not renewed, m/s; 0 to 100; default 1.
-    pub drift_m_s: f32,
+    pub stale_growth_m_s: f32,
     /// Bank of an avoiding turn, degrees; 5 to 70; default 30.
     pub bank_deg: f32,
     /// From the order to that turn, s; 0 to 20; default 1.5.
@@ -198,19 +198,19 @@ impl Detection {
     /// A detection of this score, 0 to 1, without id, box or points.
     #[must_use]
     pub fn new(score: f32) -> Self {
-        let unseen = pixel_to_c(None);
+        let invisible = pixel_to_c(None);
         Self {
             c: ffi::goe_flight_detection_t {
                 id: 0,
                 score,
                 pixel_px: 0.0,
                 box_: BoundingBox::default().to_c(),
-                left: unseen,
-                right: unseen,
-                top: unseen,
-                base_left: unseen,
-                base_near: unseen,
-                base_right: unseen,
+                left: invisible,
+                right: invisible,
+                top: invisible,
+                base_left: invisible,
+                base_near: invisible,
+                base_right: invisible,
             },
         }
     }
@@ -283,15 +283,15 @@ pub struct Frame<'a> {
     pub capture: Capture,
     /// One sigma of that, microseconds; `None`: [`FlightSettings::delay_sd_s`].
     pub time_sd_us: Option<NonZeroU32>,
-    /// Of detections in the whole image: of all calls with the same capture, if one has not room for them. 0: nothing in view, which
-    /// tells that the detector is alive.
+    /// Of detections in the whole image: of all calls with the same capture, if they do not fit one. 0: nothing in view, which
+    /// shows that the detector is alive.
     pub number: u8,
     /// Those of this call; at most [`DETECTIONS`].
     pub detections: &'a [Detection],
 }
 
 impl<'a> Frame<'a> {
-    /// All the detections of an image; more than 255 cannot be told.
+    /// All the detections of an image; at most 255.
     #[must_use]
     pub fn new(arrival_us: u32, capture: Capture, detections: &'a [Detection]) -> Self {
         Self {
@@ -403,7 +403,7 @@ impl core::error::Error for FlightError {}
 pub enum Action {
     /// Fly on.
     None,
-    /// Fly to the target, which lies left of the obstacle as seen on the course.
+    /// Fly to the target, to the left of the obstacle looking along the course.
     Left,
     /// ... right of it.
     Right,
@@ -488,9 +488,9 @@ pub enum FlightPhase {
     Flying,
     /// It is landing: to go around comes first.
     Approach,
-    /// No order is given, and one that stands ends.
+    /// No order is given, and an active one ends.
     Flare,
-    /// It has touched down: the same. What stands behind the runway is not on its course.
+    /// It has touched down: the same. Obstacles behind the runway are not on its course.
     Landed,
 }
 
@@ -572,21 +572,21 @@ impl Assessment {
 /// Where an obstacle is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
-    /// Middle of the base as far as it is seen; down: of its ground; m.
+    /// Middle of the visible base; down: of its ground; m.
     pub center_ned_m: [f32; 3],
     /// Covariance of that: north north, north east, east east, m².
     pub covariance_ne_m2: [f32; 3],
-    /// Of the circle about the centre that holds the outline, m.
+    /// Of the circle about the center that contains the outline, m.
     pub radius_m: f32,
-    /// Of the circle, what is nearest to the aircraft, m.
+    /// The point of the circle nearest to the aircraft, m.
     pub nearest_ned_m: [f32; 3],
     /// The same relative to the aircraft: forward, right, down, m.
     pub nearest_body_m: [f32; 3],
-    /// The centre on the earth, if the origin is known.
+    /// The center on the earth, if the origin is known.
     pub center: Option<LatLon>,
 }
 
-/// One obstacle of the table. What is not known is `None`.
+/// One obstacle of the table. An unknown value is `None`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Obstacle {
     /// The detector's id; 0: it has none.
@@ -596,8 +596,8 @@ pub struct Obstacle {
     /// Its sigmas may be too small.
     pub suspect: bool,
     /// On the present course its distance grows.
-    pub passed: bool,
-    /// Seen in the latest image.
+    pub receding: bool,
+    /// Detected in the latest image.
     pub in_view: bool,
     /// It moves, and is followed.
     pub moves: bool,
@@ -624,7 +624,7 @@ impl Obstacle {
             id: c.id,
             model: Model::of(c.model),
             suspect: c.suspect,
-            passed: c.passed,
+            receding: c.receding,
             in_view: c.in_view,
             moves: has(ffi::GOE_HAS_VELOCITY),
             age_s: c.age_s,
@@ -812,17 +812,17 @@ impl Flight {
         unsafe { ffi::goe_flight_timesync(&mut self.c, offset_us, sd_us) };
     }
 
-    /// Takes an image's detections, also of an image in which nothing is seen.
+    /// Takes an image's detections, also of an image without any.
     ///
     /// # Errors
-    /// [`FlightError::TooNew`] (keep the frame, ask again after the next sample), `TooOld`, `NoPose`, `OutOfRange`.
+    /// [`FlightError::TooNew`] (keep the frame, call again after the next sample), `TooOld`, `NoPose`, `OutOfRange`.
     pub fn frame(&mut self, frame: &Frame<'_>) -> Result<(), FlightError> {
         let frame = frame.to_c();
         // SAFETY: the layer is a started one; the frame's pointer is to as many detections as it says, for this call.
         taken(unsafe { ffi::goe_flight_frame(&mut self.c, &frame) })
     }
 
-    /// What is ahead from now on, at the velocity of the newest sample, and what to do about it.
+    /// The hazards ahead from now on, at the velocity of the newest sample, and the reaction.
     ///
     /// `now_us`: the autopilot's clock; `phase`: what the aircraft does.
     ///
@@ -853,7 +853,8 @@ impl Flight {
         taken(status).map(|()| Obstacle::of(&obstacle))
     }
 
-    /// Nearest obstacle by bearing: sector i is centred on 5 i degrees from north. `max_cm`: what counts as far away, 1 to 65000.
+    /// Nearest obstacle by bearing: sector i is centered on 5 i degrees from north. `max_cm`: the distance that
+    /// counts as far away, 1 to 65000.
     ///
     /// # Errors
     /// [`FlightError::NoPose`] (nothing is known), `OutOfRange`.
@@ -889,7 +890,7 @@ impl Flight {
         unsafe { ffi::goe_flight_restart(&mut self.c) };
     }
 
-    /// What was counted so far.
+    /// The counters so far.
     #[must_use]
     pub fn counters(&self) -> Counters {
         // SAFETY: the call returns the address of a field of the layer.

@@ -7,7 +7,7 @@ use crate::Length;
 
 /// To fly on at constant velocity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Plan {
+pub struct Intent {
     /// Over the ground, north, east, down, m/s; each ±1e3.
     pub velocity_ned_m_s: [f32; 3],
     /// The outline of the obstacle must stay farther away than this, horizontally, m; 0 to 1e4.
@@ -24,13 +24,13 @@ pub struct Plan {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DecisionRule {
     /// Act from this probability on that margin and clearance are both violated; 0 to 1; default 0.1.
-    pub violation_max: f32,
+    pub conflict_probability_max: f32,
     /// ... if the obstacle may be reached within this time, s; 0 to 1e4; default 12.
-    pub act_s: f32,
+    pub act_within_s: f32,
     /// Times margin and clearance while the estimate is suspect; 1 to 100; default 1.5.
-    pub doubt: f32,
+    pub suspect_factor: f32,
     /// Margin and clearance grow by this for each second without a new answer, m/s; 0 to 100; default 1.
-    pub drift_m_s: f32,
+    pub stale_growth_m_s: f32,
 }
 
 impl Default for DecisionRule {
@@ -43,10 +43,10 @@ impl Default for DecisionRule {
             c.assume_init()
         };
         Self {
-            violation_max: c.violation_max,
-            act_s: c.act_s,
-            doubt: c.doubt,
-            drift_m_s: c.drift_m_s,
+            conflict_probability_max: c.conflict_probability_max,
+            act_within_s: c.act_within_s,
+            suspect_factor: c.suspect_factor,
+            stale_growth_m_s: c.stale_growth_m_s,
         }
     }
 }
@@ -54,10 +54,10 @@ impl Default for DecisionRule {
 impl DecisionRule {
     pub(crate) fn to_c(self) -> ffi::goe_rule_t {
         ffi::goe_rule_t {
-            violation_max: self.violation_max,
-            act_s: self.act_s,
-            doubt: self.doubt,
-            drift_m_s: self.drift_m_s,
+            conflict_probability_max: self.conflict_probability_max,
+            act_within_s: self.act_within_s,
+            suspect_factor: self.suspect_factor,
+            stale_growth_m_s: self.stale_growth_m_s,
         }
     }
 }
@@ -72,7 +72,7 @@ pub enum Decision {
     Clear,
     /// Go around, or avoid.
     Act,
-    /// The plan or the rule was refused, or the memory is corrupted: keep the previous decision.
+    /// The intent or the rule was refused, or the memory is corrupted: keep the previous decision.
     Keep,
 }
 
@@ -97,20 +97,20 @@ impl Decision {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hazard {
     /// Until the distance to the obstacle's outline is smallest, or the path enters it, s; 0: the distance grows already.
-    pub time_s: f32,
+    pub tcpa_s: f32,
     /// Its one sigma, s; 0 if the time is.
-    pub time_sd_s: f32,
+    pub tcpa_sd_s: f32,
     /// That distance; 0 m if the path crosses the outline.
-    pub miss: Length,
+    pub dcpa: Length,
     /// Camera above the top at that time, negative: below it; `None`: the height is not known.
     pub clearance: Option<Length>,
     /// Probability, 0 to 1, that margin and clearance are both violated; without a height: that the margin is.
-    pub violation: f32,
+    pub conflict_probability: f32,
 }
 
-impl Plan {
-    pub(crate) fn to_c(self) -> ffi::goe_plan_t {
-        ffi::goe_plan_t {
+impl Intent {
+    pub(crate) fn to_c(self) -> ffi::goe_intent_t {
+        ffi::goe_intent_t {
             velocity_ned_m_s: self.velocity_ned_m_s,
             margin_m: self.margin_m,
             clearance_m: self.clearance_m,
@@ -123,34 +123,34 @@ impl Plan {
 impl Hazard {
     /// The earliest time of the closest approach at two sigma, s.
     #[must_use]
-    pub fn soonest_s(&self) -> f32 {
+    pub fn earliest_tcpa_s(&self) -> f32 {
         let c = ffi::goe_hazard_t {
-            time_s: self.time_s,
-            miss_m: 0.0,
+            tcpa_s: self.tcpa_s,
+            dcpa_m: 0.0,
             clearance_m: 0.0,
-            time_sd_s: self.time_sd_s,
-            miss_sd_m: 0.0,
+            tcpa_sd_s: self.tcpa_sd_s,
+            dcpa_sd_m: 0.0,
             clearance_sd_m: 0.0,
-            violation: 0.0,
+            conflict_probability: 0.0,
             has_clearance: false,
         };
         // SAFETY: the call reads a hazard.
-        unsafe { ffi::goe_soonest_s(&c) }
+        unsafe { ffi::goe_earliest_tcpa_s(&c) }
     }
 
     pub(crate) fn of(c: &ffi::goe_hazard_t) -> Self {
         Self {
-            time_s: c.time_s,
-            time_sd_s: c.time_sd_s,
-            miss: Length {
-                m: c.miss_m,
-                sd_m: c.miss_sd_m,
+            tcpa_s: c.tcpa_s,
+            tcpa_sd_s: c.tcpa_sd_s,
+            dcpa: Length {
+                m: c.dcpa_m,
+                sd_m: c.dcpa_sd_m,
             },
             clearance: c.has_clearance.then_some(Length {
                 m: c.clearance_m,
                 sd_m: c.clearance_sd_m,
             }),
-            violation: c.violation,
+            conflict_probability: c.conflict_probability,
         }
     }
 }

@@ -17,7 +17,7 @@ pub struct Pose {
     /// Counts the resets of the autopilot's filter; any start, wraps.
     pub reset_count: u8,
     /// By what the position jumped with them, new minus old, summed over all resets since the last image that was taken, m; each
-    /// ±1e6. `None`: not known; then a change of `reset_count` starts the track anew.
+    /// ±1e6. `None`: not known; then a change of `reset_count` starts a new track.
     pub reset_delta_ned_m: Option<[f32; 3]>,
 }
 
@@ -60,7 +60,7 @@ pub struct BoundingBox {
 }
 
 impl BoundingBox {
-    /// A box of which all four sides are seen, px.
+    /// A box with all four sides visible, px.
     #[must_use]
     pub fn new(left_px: f32, top_px: f32, right_px: f32, bottom_px: f32) -> Self {
         Self {
@@ -78,27 +78,27 @@ impl BoundingBox {
             top_px: self.top_px.unwrap_or(0.0),
             right_px: self.right_px.unwrap_or(0.0),
             bottom_px: self.bottom_px.unwrap_or(0.0),
-            seen: bit(self.left_px, ffi::GOE_SEES_LEFT)
-                | bit(self.top_px, ffi::GOE_SEES_TOP)
-                | bit(self.right_px, ffi::GOE_SEES_RIGHT)
-                | bit(self.bottom_px, ffi::GOE_SEES_BOTTOM),
+            sides: bit(self.left_px, ffi::GOE_SIDE_LEFT)
+                | bit(self.top_px, ffi::GOE_SIDE_TOP)
+                | bit(self.right_px, ffi::GOE_SIDE_RIGHT)
+                | bit(self.bottom_px, ffi::GOE_SIDE_BOTTOM),
         }
     }
 }
 
-/// This image's own errors, one sigma each, instead of those of the settings; `None`: as in the settings. Refined method.
+/// This image's own errors, one sigma each, instead of those of the settings; `None`: as in the settings. Filter method.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ImageNoise {
-    /// Instead of [`Navigation::attitude_white_deg`](crate::Navigation::attitude_white_deg), degrees; up to 30. A late pose belongs
+    /// Instead of [`Navigation::attitude_white_sd_deg`](crate::Navigation::attitude_white_sd_deg), degrees; up to 30. A late pose belongs
     /// here: 20 ms at 24 degrees a second are 0.5 degrees.
-    pub attitude_deg: Option<f32>,
-    /// Instead of [`Navigation::height_bias_m`](crate::Navigation::height_bias_m), m; up to 1e3.
-    pub height_m: Option<f32>,
-    /// Instead of the detector's `point_px` and `box_px`, px; up to 100.
-    pub pixel_px: Option<f32>,
+    pub attitude_sd_deg: Option<f32>,
+    /// Instead of [`Navigation::height_bias_sd_m`](crate::Navigation::height_bias_sd_m), m; up to 1e3.
+    pub height_sd_m: Option<f32>,
+    /// Instead of the detector's `point_noise_px` and `box_noise_px`, px; up to 100.
+    pub pixel_sd_px: Option<f32>,
 }
 
-/// One image of one obstacle: a box, or points, or both. Any subset may be seen; none: give the image all the same.
+/// One image of one obstacle: a box, or points, or both. Any subset may be visible; none: pass the image anyway.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Image {
     /// Where the aircraft was.
@@ -111,7 +111,7 @@ pub struct Image {
     pub top: Option<Pixel>,
     /// Corner of the base on the ground, in image order.
     pub base_left: Option<Pixel>,
-    /// The one between two visible faces; not seen when one face alone is.
+    /// The one between two visible faces; not visible with a single face.
     pub base_near: Option<Pixel>,
     /// The last in image order.
     pub base_right: Option<Pixel>,
@@ -126,7 +126,7 @@ pub(crate) fn pixel_to_c(pixel: Option<Pixel>) -> ffi::goe_pixel_t {
     ffi::goe_pixel_t {
         u_px: at.u_px,
         v_px: at.v_px,
-        seen: pixel.is_some(),
+        visible: pixel.is_some(),
     }
 }
 
@@ -150,9 +150,9 @@ impl Image {
             base_right: pixel_to_c(self.base_right),
             box_: self.bounding_box.unwrap_or_default().to_c(),
             noise: ffi::goe_image_noise_t {
-                attitude_deg: self.noise.attitude_deg.unwrap_or(0.0),
-                height_m: self.noise.height_m.unwrap_or(0.0),
-                pixel_px: self.noise.pixel_px.unwrap_or(0.0),
+                attitude_sd_deg: self.noise.attitude_sd_deg.unwrap_or(0.0),
+                height_sd_m: self.noise.height_sd_m.unwrap_or(0.0),
+                pixel_sd_px: self.noise.pixel_sd_px.unwrap_or(0.0),
             },
             camera: 0,
         }

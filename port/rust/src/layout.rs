@@ -53,7 +53,7 @@ layout! {
         top_px: 4,
         right_px: 8,
         bottom_px: 12,
-        seen: 16,
+        sides: 16,
     }
     goe_camera_t: 76 {
         fx_px: 0,
@@ -71,18 +71,18 @@ layout! {
         offset_m: 48,
         width_px: 60,
         height_px: 64,
-        border_share: 68,
-        cut_share: 72,
+        border_rel: 68,
+        truncation_rel: 72,
     }
     goe_detector_t: 32 {
-        point_px: 0,
-        point_share: 4,
+        point_noise_px: 0,
+        point_noise_rel: 4,
         point_correlation: 8,
-        shape_share: 12,
-        box_px: 16,
-        box_share: 20,
-        correlation_s: 24,
-        cut_noise: 28,
+        shape_error_rel: 12,
+        box_noise_px: 16,
+        box_noise_rel: 20,
+        box_correlation_time_s: 24,
+        truncation_noise_rel: 28,
     }
     goe_estimate_t: 200 {
         method: 0,
@@ -91,7 +91,7 @@ layout! {
         fresh: 12,
         suspect: 13,
         reason: 16,
-        points: 20,
+        images_used: 20,
         age_s: 24,
         x0_m: 28,
         z0_m: 32,
@@ -102,7 +102,7 @@ layout! {
         height_m: 52,
         orientation_deg: 56,
         orientation_raw_deg: 60,
-        other_side_deg: 64,
+        front_orientation_deg: 64,
         length_axis: 68,
         width_axis: 76,
         length_axis_ne: 84,
@@ -118,23 +118,23 @@ layout! {
         baseline_m: 132,
         nis: 136,
         nis_rows: 140,
-        misfit: 144,
+        nis_ratio: 144,
         sigma: 148,
     }
     goe_hazard_t: 32 {
-        time_s: 0,
-        miss_m: 4,
+        tcpa_s: 0,
+        dcpa_m: 4,
         clearance_m: 8,
-        time_sd_s: 12,
-        miss_sd_m: 16,
+        tcpa_sd_s: 12,
+        dcpa_sd_m: 16,
         clearance_sd_m: 20,
-        violation: 24,
+        conflict_probability: 24,
         has_clearance: 28,
     }
     goe_image_noise_t: 12 {
-        attitude_deg: 0,
-        height_m: 4,
-        pixel_px: 8,
+        attitude_sd_deg: 0,
+        height_sd_m: 4,
+        pixel_sd_px: 8,
     }
     goe_image_t: 168 {
         pose: 0,
@@ -149,23 +149,23 @@ layout! {
         camera: 160,
     }
     goe_navigation_t: 40 {
-        attitude_bias_deg: 0,
-        attitude_white_deg: 4,
-        attitude_drift_deg: 8,
-        height_bias_m: 12,
-        velocity_bias_m_s: 16,
-        position_walk_m: 20,
-        position_white_m: 24,
-        height_white_m: 28,
-        slope: 32,
-        ground_m: 36,
+        attitude_bias_sd_deg: 0,
+        attitude_white_sd_deg: 4,
+        attitude_walk_sd_deg: 8,
+        height_bias_sd_m: 12,
+        velocity_bias_sd_m_s: 16,
+        position_walk_sd_m: 20,
+        position_white_sd_m: 24,
+        height_white_sd_m: 28,
+        terrain_slope_sd: 32,
+        terrain_height_sd_m: 36,
     }
     goe_pixel_t: 12 {
         u_px: 0,
         v_px: 4,
-        seen: 8,
+        visible: 8,
     }
-    goe_plan_t: 28 {
+    goe_intent_t: 28 {
         velocity_ned_m_s: 0,
         margin_m: 12,
         clearance_m: 16,
@@ -181,12 +181,12 @@ layout! {
         reset_delta_known: 41,
         reset_delta_ned_m: 44,
     }
-    goe_refined_settings_t: 24 {
-        typical_size_m: 0,
+    goe_filter_settings_t: 24 {
+        prior_width_m: 0,
         gate_sigma: 4,
         huber_sigma: 8,
-        misfit_max: 12,
-        range_share: 16,
+        nis_ratio_max: 12,
+        range_sd_rel_max: 16,
         top_is_highest: 20,
     }
     goe_settings_t: 216 {
@@ -198,7 +198,7 @@ layout! {
         navigation: 92,
         detector: 132,
         window: 164,
-        refined: 192,
+        filter: 192,
     }
     goe_sigma_t: 52 {
         x0_m: 0,
@@ -228,10 +228,10 @@ layout! {
 
 layout_hazard! {
     goe_rule_t: 16 {
-        violation_max: 0,
-        act_s: 4,
-        doubt: 8,
-        drift_m_s: 12,
+        conflict_probability_max: 0,
+        act_within_s: 4,
+        suspect_factor: 8,
+        stale_growth_m_s: 12,
     }
 }
 
@@ -287,7 +287,7 @@ layout_flight! {
         valid: 4,
         model: 8,
         suspect: 12,
-        passed: 13,
+        receding: 13,
         in_view: 14,
         has_hazard: 15,
         age_s: 16,
@@ -322,8 +322,8 @@ layout_flight! {
     goe_flight_settings_t: 108 {
         score_min: 0,
         confirm_images: 4,
-        alive_s: 8,
-        forget_s: 12,
+        detector_timeout_s: 8,
+        track_timeout_s: 12,
         delay_s: 16,
         delay_sd_s: 20,
         delay_max_s: 24,
@@ -334,9 +334,9 @@ layout_flight! {
         home_sd_m: 44,
         margin_m: 48,
         clearance_m: 52,
-        violation_max: 56,
-        doubt: 60,
-        drift_m_s: 64,
+        conflict_probability_max: 56,
+        suspect_factor: 60,
+        stale_growth_m_s: 64,
         bank_deg: 68,
         roll_in_s: 72,
         climb_m_s: 76,

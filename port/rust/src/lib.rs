@@ -1,7 +1,7 @@
 //! Position, size and orientation of a ground obstacle, each with a 1-sigma uncertainty, from a detector's boxes or points and the
 //! aircraft's own motion; and what a planned flight will meet. Over the C library goe, which this crate compiles.
 //!
-//! No heap, no `std`, nothing outside an [`Estimator`]. All lengths are metres, angles degrees, times as their names say; axes are
+//! No heap, no `std`, nothing outside an [`Estimator`]. All lengths are meters, angles degrees, times as their names say; axes are
 //! north, east, down; forward, right, down; and of the trajectory X right, Z ahead, level.
 //!
 //! ```
@@ -32,8 +32,8 @@
 //! A fault of one image is an `Err`, and still carries the last good estimate: use an estimate by what of it is `Some`, by
 //! [`fresh`](Estimate::fresh) and [`age_s`](Estimate::age_s), whatever the [`Status`]. "No position" does not mean "safe".
 //!
-//! The features `window`, `refined`, `hazard`, `movers` and `flight` are the parts of the library, all on by default; at least one of
-//! `window` and `refined` is needed.
+//! The features `window`, `filter`, `hazard`, `target_motion` and `flight` are the parts of the library, all on by default; at least one of
+//! `window` and `filter` is needed.
 #![no_std]
 #![deny(missing_docs)]
 #![warn(clippy::undocumented_unsafe_blocks)]
@@ -59,9 +59,9 @@ mod status;
 pub use estimate::{Center, Estimate, Length, Model, Orientation, Position, Reason, Velocity};
 pub use estimator::{Estimator, QUANTITIES};
 #[cfg(feature = "hazard")]
-pub use hazard::{Decision, DecisionRule, Hazard, Plan};
+pub use hazard::{Decision, DecisionRule, Hazard, Intent};
 pub use image::{BoundingBox, Image, ImageNoise, Pixel, Pose};
-pub use settings::{Camera, Detector, Method, Navigation, RefinedSettings, Settings, Shape, WindowSettings};
+pub use settings::{Camera, Detector, FilterSettings, Method, Navigation, Settings, Shape, WindowSettings};
 pub use status::{Error, Fault, Status};
 
 /// What the arithmetic of this machine does with the library's code: 0 if it is the IEEE 754 single precision arithmetic that gives

@@ -41,58 +41,58 @@ pub struct Camera {
     /// Height of the image, px; 0 to 1e5; default 0: not known. The flight layer needs it.
     pub height_px: f32,
     /// A box's side nearer to the border than this is not measured, fraction of the image's width; 0 to 0.5; default 0.012.
-    pub border_share: f32,
-    /// While left or right is nearer to the border than this the other sides count less: [`Detector::cut_noise`]; 0 to 0.5;
+    pub border_rel: f32,
+    /// While left or right is nearer to the border than this the other sides count less: [`Detector::truncation_noise_rel`]; 0 to 0.5;
     /// default 0.04.
-    pub cut_share: f32,
+    pub truncation_rel: f32,
 }
 
-/// How wrong the pose is, one sigma each; for the refined method.
+/// How wrong the pose is, one sigma each; for the filter method.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Navigation {
     /// Constant attitude error about each body axis, mounting included, degrees; 1e-3 to 30; default 0.5.
-    pub attitude_bias_deg: f32,
+    pub attitude_bias_sd_deg: f32,
     /// Attitude error that is new in each image, degrees; 1e-4 to 30; default 0.1.
-    pub attitude_white_deg: f32,
+    pub attitude_white_sd_deg: f32,
     /// Random walk of the attitude error, degrees per square root of a second; 0 to 30; default 0.
-    pub attitude_drift_deg: f32,
+    pub attitude_walk_sd_deg: f32,
     /// Constant error of [`Pose::height_m`](crate::Pose::height_m), m; 1e-3 to 1e3; default 0.5.
-    pub height_bias_m: f32,
+    pub height_bias_sd_m: f32,
     /// Constant error of the own horizontal velocity, each axis, m/s; 0 to 100; default 0.05.
-    pub velocity_bias_m_s: f32,
+    pub velocity_bias_sd_m_s: f32,
     /// Random walk of the own position, m per square root of a second; 0 to 100; default 0.05.
-    pub position_walk_m: f32,
+    pub position_walk_sd_m: f32,
     /// Error of the own position that is new in each image, each axis, m; 0 to 100; default 0. Upright boxes only.
-    pub position_white_m: f32,
+    pub position_white_sd_m: f32,
     /// Error of the height that is new in each image, m; 0 to 1e3; default 0.
-    pub height_white_m: f32,
+    pub height_white_sd_m: f32,
     /// Slope of the ground that the height is above, m per m flown; 0 to 1; default 0.
-    pub slope: f32,
+    pub terrain_slope_sd: f32,
     /// How far the obstacle's ground may lie off that which the height is above, m; 0 to 1e3; default 2. Boxes only.
-    pub ground_m: f32,
+    pub terrain_height_sd_m: f32,
 }
 
-/// How wrong the detector's features are, one sigma each; for the refined method.
+/// How wrong the detector's features are, one sigma each; for the filter method.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Detector {
     /// Error of an image point, new in each image, px; 0.05 to 100; default 0.5.
-    pub point_px: f32,
+    pub point_noise_px: f32,
     /// Error of left, right and top as points, added to it, fraction of the silhouette's width; 0 to 1; default 0.
-    pub point_share: f32,
+    pub point_noise_rel: f32,
     /// Correlation of a point's error from image to image; 0 to 0.95; default 0.
     pub point_correlation: f32,
     /// How far a real silhouette departs from a cylinder's, fraction of its width; 0 to 1; default 0.
-    pub shape_share: f32,
+    pub shape_error_rel: f32,
     /// Error of a box's side that is new in each image, px; 0.05 to 100; default 1.
-    pub box_px: f32,
-    /// Error of a side that stays alike from image to image, fraction of the box's width or height; 0 to 1; default 0.07.
-    pub box_share: f32,
-    /// How long it stays alike, time constant, s; 0 to 100; default 1.2.
-    pub correlation_s: f32,
+    pub box_noise_px: f32,
+    /// Slowly varying (correlated) error of a side, fraction of the box's width or height; 0 to 1; default 0.07.
+    pub box_noise_rel: f32,
+    /// Correlation time of this error, s; 0 to 100; default 1.2.
+    pub box_correlation_time_s: f32,
     /// Error of every side while the image's border cuts the box, fraction of the box; 0 to 10; default 1.
-    pub cut_noise: f32,
+    pub truncation_noise_rel: f32,
 }
 
 /// The paper's method: least squares over the last images.
@@ -115,21 +115,21 @@ pub struct WindowSettings {
     pub min_baseline_m: f32,
 }
 
-/// The refined method: a square-root information filter over the whole track.
+/// The filter method: a square-root information filter over the whole track.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RefinedSettings {
+pub struct FilterSettings {
     /// Width that the range is first guessed from, m; 0.1 to 1e3; default 6.
-    pub typical_size_m: f32,
+    pub prior_width_m: f32,
     /// A point farther off is left out, sigmas; 1 to 100; default 5.
     pub gate_sigma: f32,
     /// A point farther off counts less, sigmas; 0.5 to 100; default 2.5.
     pub huber_sigma: f32,
-    /// Misfit above which the obstacle is suspect; 0.01 to 1e3; default 1.9.
-    pub misfit_max: f32,
+    /// NIS ratio above which the obstacle is suspect; 0.01 to 1e3; default 1.9.
+    pub nis_ratio_max: f32,
     /// Sigma over range up to which a position is reported; 0.01 to 10; default 0.25.
-    pub range_share: f32,
-    /// `top` is the highest point in the image also when seen from above the roof; default false.
+    pub range_sd_rel_max: f32,
+    /// `top` is the highest point in the image also from above the roof; default false.
     pub top_is_highest: bool,
 }
 
@@ -138,15 +138,15 @@ pub struct RefinedSettings {
 pub enum Method {
     /// The paper's window; needs the feature `window`.
     Window,
-    /// The filter; needs the feature `refined`.
-    Refined,
+    /// The filter; needs the feature `filter`.
+    Filter,
 }
 
 impl Method {
     pub(crate) fn of(method: ffi::goe_method_t) -> Option<Self> {
         match method {
             ffi::GOE_METHOD_WINDOW => Some(Self::Window),
-            ffi::GOE_METHOD_REFINED => Some(Self::Refined),
+            ffi::GOE_METHOD_FILTER => Some(Self::Filter),
             _ => None,
         }
     }
@@ -154,7 +154,7 @@ impl Method {
     fn code(self) -> ffi::goe_method_t {
         match self {
             Self::Window => ffi::GOE_METHOD_WINDOW,
-            Self::Refined => ffi::GOE_METHOD_REFINED,
+            Self::Filter => ffi::GOE_METHOD_FILTER,
         }
     }
 }
@@ -162,11 +162,11 @@ impl Method {
 /// Which shapes the estimator may answer with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Shape {
-    /// A disc until the images show a box (refined), or enough of its base (window).
+    /// A disc until the images show a box (filter), or enough of its base (window).
     Auto,
     /// Discs only.
     Disc,
-    /// Window: the line through the front edge; refined: a box, and no disc before it.
+    /// Window: the line through the front edge; filter: a box, and no disc before it.
     Line,
 }
 
@@ -188,18 +188,18 @@ impl Shape {
     }
 }
 
-/// All that an estimator is told at its start. What belongs to a part that was left out is neither read nor checked.
+/// All settings of an estimator. Settings of a part that was left out are neither read nor checked.
 ///
 /// ```
 /// let mut settings = goe::Settings::for_camera(914.0, 914.0, 640.0, 640.0);
-/// settings.navigation.attitude_bias_deg = 1.0;
+/// settings.navigation.attitude_bias_sd_deg = 1.0;
 /// assert!(goe::Estimator::new(&settings).is_ok());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// The camera.
     pub camera: Camera,
-    /// The method; default refined, if it is compiled in.
+    /// The method; default filter, if it is compiled in.
     pub method: Method,
     /// The shapes; default all.
     pub shape: Shape,
@@ -212,8 +212,8 @@ pub struct Settings {
     pub detector: Detector,
     /// The window method.
     pub window: WindowSettings,
-    /// The refined method.
-    pub refined: RefinedSettings,
+    /// The filter method.
+    pub filter: FilterSettings,
 }
 
 impl Settings {
@@ -238,7 +238,7 @@ impl Settings {
             navigation: self.navigation,
             detector: self.detector,
             window: self.window,
-            refined: self.refined,
+            filter: self.filter,
         }
     }
 }
@@ -254,13 +254,13 @@ impl Default for Settings {
         };
         Self {
             camera: c.camera,
-            method: Method::of(c.method).unwrap_or(Method::Refined),
+            method: Method::of(c.method).unwrap_or(Method::Filter),
             shape: Shape::of(c.model),
             heading_deg: (!c.heading_auto).then_some(c.heading_deg),
             navigation: c.navigation,
             detector: c.detector,
             window: c.window,
-            refined: c.refined,
+            filter: c.filter,
         }
     }
 }

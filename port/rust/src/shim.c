@@ -1,8 +1,8 @@
 /* What Rust reads of the estimators' memory. SPDX-License-Identifier: MIT */
 #include "goe.h"
 
-const uint32_t *goe_rust_causes(const goe_estimator_t *estimator);
-const uint32_t *goe_rust_causes(const goe_estimator_t *estimator) { return estimator->causes; }
+const uint32_t *goe_rust_fault_counts(const goe_estimator_t *estimator);
+const uint32_t *goe_rust_fault_counts(const goe_estimator_t *estimator) { return estimator->fault_counts; }
 
 #ifdef GOE_RUST_FLIGHT
 #include "goe_flight.h"

@@ -44,18 +44,18 @@ statuses! {
     /// Solved, but a part of the image was refused or could not be used.
     Partial = GOE_PARTIAL,
     /// Image taken; no solution yet.
-    Collecting = GOE_COLLECTING,
-    /// Image taken; it adds no point to the reported model, whose older solution stands.
-    Held = GOE_HELD,
-    /// Image taken for its pose; no feature was seen.
-    NothingSeen = GOE_NOTHING_SEEN,
+    Converging = GOE_CONVERGING,
+    /// Image taken; it adds no point to the reported model, whose older solution stays.
+    Stale = GOE_STALE,
+    /// Image taken for its pose; no feature was visible.
+    NoDetection = GOE_NO_DETECTION,
     /// Image taken; a ray points backwards or sideways.
     BehindCamera = GOE_BEHIND_CAMERA,
     /// Image taken; the lens model cannot be inverted at a pixel.
     LensFailed = GOE_LENS_FAILED,
     /// Image taken; left is not left of right.
     Swapped = GOE_SWAPPED,
-    /// Image taken; the front edge is seen from its end or from behind.
+    /// Image taken; the camera views the front edge from its end or from behind.
     EdgeOn = GOE_EDGE_ON,
     /// Image taken; no edge has a measurable orientation.
     NoEdge = GOE_NO_EDGE,
@@ -66,7 +66,7 @@ statuses! {
     /// Image taken; the picture does not grow as it must.
     NoParallax = GOE_NO_PARALLAX,
     /// Image taken; the solution lies abeam or behind.
-    Passed = GOE_PASSED,
+    Abeam = GOE_ABEAM,
     /// Image refused: a NaN or an infinity.
     NotFinite = GOE_NOT_FINITE,
     /// Image refused: a number outside its range.
@@ -132,9 +132,9 @@ pub enum Error {
     NoPosition,
     /// The estimator's memory is not what the library left there. Nothing is known any more, which does not make it safe.
     Corrupted,
-    /// A number of the plan is a NaN or an infinity.
+    /// A number of the intent is a NaN or an infinity.
     NotFinite,
-    /// A number of the plan is outside its range.
+    /// A number of the intent is outside its range.
     OutOfRange,
 }
 
@@ -170,7 +170,7 @@ mod tests {
 
     #[test]
     fn faults_and_refusals() {
-        assert!(!Status::NothingSeen.is_fault());
+        assert!(!Status::NoDetection.is_fault());
         assert!(Status::NoBaseline.is_fault() && Status::NoBaseline.is_image_taken());
         assert!(Status::BadTime.is_fault() && !Status::BadTime.is_image_taken());
         assert!(Status::BoxIncomplete.is_fault() && Status::BoxIncomplete.is_image_taken());

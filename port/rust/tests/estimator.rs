@@ -38,22 +38,22 @@ fn nothing_is_wrong_with_the_arithmetic() {
     assert_eq!(goe::self_check(), 0);
 }
 
-#[cfg(feature = "refined")]
-mod refined {
+#[cfg(feature = "filter")]
+mod filter {
     use super::*;
 
     #[test]
     fn the_figures_of_the_readme() {
         let mut tower = Estimator::new(&settings()).expect("good settings");
         let first = tower.update(&image(0)).expect("a good image");
-        assert_eq!((first.status, first.position), (Status::Collecting, None));
+        assert_eq!((first.status, first.position), (Status::Converging, None));
         let estimate = fly(&mut Estimator::new(&settings()).expect("good settings"), 2);
         let position = estimate.position.expect("a position with the second image");
         let said = format!(
             "{:.1} +- {:.1} m ahead, {:.1} m to the left",
             position.z.m, position.z.sd_m, -position.x.m
         );
-        if cfg!(feature = "window") && cfg!(feature = "movers") {
+        if cfg!(feature = "window") && cfg!(feature = "target_motion") {
             let width = estimate.width.expect("a width");
             let height = estimate.height.expect("a height");
             assert_eq!(said, "201.0 +- 46.1 m ahead, 30.4 m to the left");
@@ -78,7 +78,7 @@ fn a_bad_setting_is_named() {
 fn a_method_that_is_left_out_is_refused() {
     for (method, there) in [
         (goe::Method::Window, cfg!(feature = "window")),
-        (goe::Method::Refined, cfg!(feature = "refined")),
+        (goe::Method::Filter, cfg!(feature = "filter")),
     ] {
         let chosen = Settings { method, ..settings() };
         assert_eq!(Estimator::new(&chosen).is_ok(), there, "{method:?}");
@@ -97,7 +97,7 @@ fn a_fault_carries_the_last_good_estimate_and_is_counted() {
     assert_eq!(estimate.status, Status::NotFinite);
     assert!(!estimate.fresh && estimate.status.is_fault() && !estimate.status.is_image_taken());
     assert_eq!(estimate.position, good.position);
-    assert_eq!(estimator.causes()[10], 1);
+    assert_eq!(estimator.fault_counts()[10], 1);
     let repeated = estimator.update(&image(11)).expect_err("the same time again");
     assert_eq!(
         (repeated.estimate.status, repeated.to_string()),
@@ -113,7 +113,7 @@ fn nothing_in_view_is_not_a_fault() {
         bounding_box: None,
         ..image(0)
     };
-    assert_eq!(estimator.update(&empty).expect("no fault").status, Status::NothingSeen);
+    assert_eq!(estimator.update(&empty).expect("no fault").status, Status::NoDetection);
 }
 
 #[test]
@@ -143,97 +143,108 @@ fn a_reset_forgets_the_track() {
 #[cfg(feature = "hazard")]
 #[test]
 fn hazards() {
-    use goe::Plan;
-    let plan = Plan {
+    use goe::Intent;
+    let intent = Intent {
         velocity_ned_m_s: [16.0, 0.0, 0.0],
         margin_m: 40.0,
         clearance_m: 10.0,
-        ..Plan::default()
+        ..Intent::default()
     };
     let mut estimator = Estimator::new(&settings()).expect("good settings");
-    assert_eq!(estimator.hazard(&plan), Err(Error::NoPosition));
+    assert_eq!(estimator.hazard(&intent), Err(Error::NoPosition));
     let z_m = fly(&mut estimator, 12).position.expect("a position").z.m;
-    let hazard = estimator.hazard(&plan).expect("a position");
-    assert!((hazard.time_s - z_m / 16.0).abs() < 1.0, "{hazard:?} {z_m}");
-    assert!(hazard.clearance.is_some_and(|clearance| clearance.m < 0.0) && hazard.violation > 0.1);
-    let away = Plan {
+    let hazard = estimator.hazard(&intent).expect("a position");
+    assert!((hazard.tcpa_s - z_m / 16.0).abs() < 1.0, "{hazard:?} {z_m}");
+    assert!(hazard.clearance.is_some_and(|clearance| clearance.m < 0.0) && hazard.conflict_probability > 0.1);
+    let away = Intent {
         velocity_ned_m_s: [-16.0, 0.0, 0.0],
-        ..plan
+        ..intent
     };
-    assert_eq!(estimator.hazard(&away).expect("a position").time_s, 0.0);
+    assert_eq!(estimator.hazard(&away).expect("a position").tcpa_s, 0.0);
     assert_eq!(
-        estimator.hazard(&Plan {
+        estimator.hazard(&Intent {
             margin_m: f32::NAN,
-            ..plan
+            ..intent
         }),
         Err(Error::NotFinite)
     );
     assert_eq!(
-        estimator.hazard(&Plan { margin_m: -1.0, ..plan }),
+        estimator.hazard(&Intent {
+            margin_m: -1.0,
+            ..intent
+        }),
         Err(Error::OutOfRange)
     );
-    let unsure = Plan {
+    let unsure = Intent {
         velocity_sd_m_s: 3.0,
-        ..plan
+        ..intent
     };
     let unsure = estimator.hazard(&unsure).expect("a position");
-    assert!(unsure.miss.sd_m > 2.0 * hazard.miss.sd_m, "{unsure:?} {hazard:?}");
-    let most = hazard.time_s + 2.0 * hazard.time_sd_s;
-    assert!((hazard.soonest_s() - hazard.time_s * hazard.time_s / most).abs() < 1e-4);
+    assert!(unsure.dcpa.sd_m > 2.0 * hazard.dcpa.sd_m, "{unsure:?} {hazard:?}");
+    let most = hazard.tcpa_s + 2.0 * hazard.tcpa_sd_s;
+    assert!((hazard.earliest_tcpa_s() - hazard.tcpa_s * hazard.tcpa_s / most).abs() < 1e-4);
 }
 
 #[cfg(feature = "hazard")]
 #[test]
 fn decisions() {
-    use goe::{Decision, DecisionRule, Plan};
+    use goe::{Decision, DecisionRule, Intent};
     let rule = DecisionRule::default();
     assert_eq!(
-        (rule.violation_max, rule.act_s, rule.doubt, rule.drift_m_s),
+        (
+            rule.conflict_probability_max,
+            rule.act_within_s,
+            rule.suspect_factor,
+            rule.stale_growth_m_s
+        ),
         (0.1, 12.0, 1.5, 1.0)
     );
-    let plan = Plan {
+    let intent = Intent {
         velocity_ned_m_s: [16.0, 0.0, 0.0],
         margin_m: 40.0,
         clearance_m: 10.0,
-        ..Plan::default()
+        ..Intent::default()
     };
     let mut estimator = Estimator::new(&settings()).expect("good settings");
-    assert_eq!(estimator.decide(&plan, &rule), (Decision::Unknown, None));
+    assert_eq!(estimator.decide(&intent, &rule), (Decision::Unknown, None));
     fly(&mut estimator, 12);
-    let (decision, hazard) = estimator.decide(&plan, &rule);
+    let (decision, hazard) = estimator.decide(&intent, &rule);
     let hazard = hazard.expect("a position");
     assert_eq!(
         (decision, hazard),
-        (Decision::Act, estimator.hazard(&plan).expect("a position"))
+        (Decision::Act, estimator.hazard(&intent).expect("a position"))
     );
     let late = DecisionRule {
-        act_s: 0.5 * hazard.soonest_s(),
+        act_within_s: 0.5 * hazard.earliest_tcpa_s(),
         ..rule
     };
-    assert_eq!(estimator.decide(&plan, &late), (Decision::Clear, Some(hazard)));
-    let away = Plan {
+    assert_eq!(estimator.decide(&intent, &late), (Decision::Clear, Some(hazard)));
+    let away = Intent {
         velocity_ned_m_s: [-16.0, 0.0, 0.0],
         margin_m: 5.0,
-        ..plan
+        ..intent
     };
     assert_eq!(estimator.decide(&away, &rule).0, Decision::Clear);
-    let bad_plan = Plan {
+    let bad_intent = Intent {
         margin_m: f32::NAN,
-        ..plan
+        ..intent
     };
-    let bad_rule = DecisionRule { doubt: 0.5, ..rule };
-    assert_eq!(estimator.decide(&bad_plan, &rule), (Decision::Keep, None));
-    assert_eq!(estimator.decide(&plan, &bad_rule), (Decision::Keep, None));
+    let bad_rule = DecisionRule {
+        suspect_factor: 0.5,
+        ..rule
+    };
+    assert_eq!(estimator.decide(&bad_intent, &rule), (Decision::Keep, None));
+    assert_eq!(estimator.decide(&intent, &bad_rule), (Decision::Keep, None));
     assert!(Decision::Act.acts(false) && Decision::Keep.acts(true) && Decision::Unknown.acts(true));
     assert!(!Decision::Clear.acts(true) && !Decision::Keep.acts(false));
-    let mut unseen = image(12);
-    unseen.bounding_box = None;
-    unseen.pose.time_us += 1_000_000;
-    estimator.update(&unseen).expect("no fault");
-    assert_ne!(estimator.decide(&plan, &rule).1, estimator.hazard(&plan).ok());
+    let mut invisible = image(12);
+    invisible.bounding_box = None;
+    invisible.pose.time_us += 1_000_000;
+    estimator.update(&invisible).expect("no fault");
+    assert_ne!(estimator.decide(&intent, &rule).1, estimator.hazard(&intent).ok());
 }
 
-#[cfg(feature = "refined")]
+#[cfg(feature = "filter")]
 #[test]
 fn a_box_without_sides_and_one_without_a_height() {
     let mut estimator = Estimator::new(&settings()).expect("good settings");
@@ -249,5 +260,5 @@ fn a_box_without_sides_and_one_without_a_height() {
         panic!("a box of one side")
     };
     assert_eq!(estimate.status, Status::BoxIncomplete);
-    assert_eq!((estimator.causes()[14], estimator.causes()[15]), (1, 1));
+    assert_eq!((estimator.fault_counts()[14], estimator.fault_counts()[15]), (1, 1));
 }

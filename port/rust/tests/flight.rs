@@ -70,7 +70,7 @@ fn an_order_comes_in_time() {
                 seen.action
             );
             let obstacle = flight
-                .obstacle(seen.avoided.expect("what it is about"))
+                .obstacle(seen.avoided.expect("an order has an obstacle"))
                 .expect("an obstacle");
             assert_eq!(obstacle.id, 7);
             let place = obstacle.place.expect("a place");
@@ -89,7 +89,7 @@ fn an_order_comes_in_time() {
 }
 
 #[test]
-fn what_is_refused_is_told_and_counted() {
+fn refused_input_is_reported_and_counted() {
     let mut flight = Flight::new(&settings(), &FlightSettings::default()).expect("good settings");
     let empty = |capture_us| Frame::new(1_000_000, Capture::Autopilot { capture_us }, &[]);
     assert_eq!(flight.frame(&empty(1_000_000)), Err(FlightError::NoPose));

@@ -1,4 +1,4 @@
-/* All of <math.h> that lib/ asks for: one instruction, correctly rounded by WebAssembly's own rules. SPDX-License-Identifier: MIT */
+/* All of <math.h> that lib/ needs: one instruction, correctly rounded by WebAssembly's own rules. SPDX-License-Identifier: MIT */
 #ifndef GOE_WASM_MATH_H
 #define GOE_WASM_MATH_H
 

@@ -1,4 +1,4 @@
-/* All of <string.h> that lib/ asks for: WebAssembly copies and fills memory itself (memory.copy, memory.fill).
+/* All of <string.h> that lib/ needs: WebAssembly copies and fills memory itself (memory.copy, memory.fill).
  * SPDX-License-Identifier: MIT */
 #ifndef GOE_WASM_STRING_H
 #define GOE_WASM_STRING_H

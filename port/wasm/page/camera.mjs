@@ -1,11 +1,11 @@
-// What the camera sees: horizon, obstacle, the detector's box. SPDX-License-Identifier: MIT
+// The camera image: horizon, obstacle, the detector's box. SPDX-License-Identifier: MIT
 
 import { el, points, trueOutline } from "./draw.mjs";
 
 const WIDTH = 1280, HEIGHT = 960, FOCAL = 914; // px, as in approach.h
-const FAR = 4; // tangent up to which the horizon is drawn
+const FAR = 4; // tangent of the largest angle to which the horizon is drawn
 
-/** Pixel of a point ahead, right and below the camera, which is rolled. */
+/** Pixel of a point ahead, right and below, for a rolled camera. */
 function project(roll, ahead, right, below) {
   const c = Math.cos(roll), s = Math.sin(roll);
   return [WIDTH / 2 + (FOCAL * (c * right + s * below)) / ahead, HEIGHT / 2 + (FOCAL * (c * below - s * right)) / ahead];
@@ -15,7 +15,7 @@ function ground(roll) {
   return [project(roll, 1, -FAR, 0), project(roll, 1, FAR, 0), project(roll, 1, FAR, 4 * FAR), project(roll, 1, -FAR, 4 * FAR)];
 }
 
-/** Faces of the obstacle; together they are its silhouette. */
+/** Faces of the obstacle. */
 function faces(r, roll) {
   const base = trueOutline(r);
   const at = ([ahead, right], up) => project(roll, ahead, right, r.true_height_m - up);

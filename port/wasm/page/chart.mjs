@@ -1,4 +1,4 @@
-// One quantity over the flight: the estimate with its band of two sigma, and the truth. SPDX-License-Identifier: MIT
+// One quantity over time: estimate, 2-sigma band, truth. SPDX-License-Identifier: MIT
 
 import { el, points, text } from "./draw.mjs";
 import { HAS } from "./words.mjs";
@@ -6,10 +6,10 @@ import { HAS } from "./words.mjs";
 const TICKS = [1, 2, 4, 5, 10, 20, 40, 100]; // m
 const PAD = { left: 34, right: 6, top: 6, bottom: 16 };
 
-/** Whether the width is that of the front edge, of a line or box; otherwise it is what is seen across the line of sight. */
+/** Whether the width is that of the front edge (line, box); of other models it is the extent across the line of sight. */
 export const isEdge = (r) => r.model === 3 || r.model === 4;
 
-/** The four charts: value, one sigma and truth of a report, null while the value is not known. */
+/** The four charts: value, 1 sigma and truth of a report; null while the value is unknown. */
 export const QUANTITIES = [
   { id: "ahead", needs: HAS.position, of: (r) => [r.ahead_m, Math.sqrt(r.ahead_ahead_m2), r.true_ahead_m], span: [0, 460], tick: 200 },
   { id: "side", needs: HAS.position, of: (r) => [r.right_m, Math.sqrt(r.right_right_m2), r.true_right_m], about: 24, tick: 20 },
@@ -29,7 +29,7 @@ function range(quantity, flight) {
   return [0, high, TICKS.find((tick) => tick >= high / 3) ?? high];
 }
 
-/** Bands and lines of the stretches in which the quantity is known. */
+/** The periods in which the quantity is known. */
 function stretches(quantity, flight) {
   const found = [];
   let open = null;

@@ -3,7 +3,7 @@
 /** A number for an attribute: a hundredth of a pixel is enough. */
 const short = (value) => (typeof value === "number" ? String(Math.round(value * 100) / 100) : value);
 
-/** An element; `more` is what it holds. */
+/** An element; `more`: its content. */
 export function el(name, attributes, more = "") {
   const given = Object.entries(attributes).map(([key, value]) => ` ${key}="${short(value)}"`).join("");
   return `<${name}${given}>${more}</${name}>`;
@@ -13,7 +13,7 @@ export const points = (list) => list.map(([x, y]) => `${short(x)},${short(y)}`).
 
 export const text = (x, y, words, more = {}) => el("text", { x, y, ...more }, words);
 
-/** Corners about a middle, in metres (ahead, right): of a box by its two axes, of what is round a polygon. */
+/** Corners around a center, in meters (ahead, right): of a box by its two axes, of a circle a polygon. */
 export function outline(middle, width_m, length_m, across, along) {
   if (!across) {
     return Array.from({ length: 48 }, (_, i) => {
@@ -33,7 +33,7 @@ export function trueOutline(r) {
     r.true_round ? null : [-along[1], along[0]], along);
 }
 
-/** Half axes and direction (radians from ahead to the right) of an ellipse of so many sigma. */
+/** Half axes and direction (radians from ahead to the right) of the ellipse of `sigmas` sigma. */
 export function ellipse(aa, ar, rr, sigmas) {
   const mean = 0.5 * (aa + rr);
   const spread = Math.hypot(0.5 * (aa - rr), ar);

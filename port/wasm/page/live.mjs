@@ -1,4 +1,4 @@
-// The page: modules loaded and proved, controls read, the flight flown anew at each change and played. SPDX-License-Identifier: MIT
+// The page: loads and verifies the modules, reads the controls, repeats the flight after each change, plays it. SPDX-License-Identifier: MIT
 
 import { Goe, LiveFlight } from "../goe.mjs";
 import { drawCamera } from "./camera.mjs";
@@ -8,29 +8,30 @@ import { amount, doubts, HAS, order, side } from "./words.mjs";
 
 const find = (id) => document.getElementById(id);
 const SEEDS = 1000;
+const STILL_SHARE = 0.6; // of the flight: shown first if the reader prefers reduced motion
 
 // ------------------------------------------------------------------------------------------------------------ modules
 
-/** A module that the page carries, as bytes. */
-function carried(id) {
+/** An embedded module as bytes. */
+function embedded(id) {
   const text = atob(find(id).textContent.trim());
   return Uint8Array.from(text, (letter) => letter.charCodeAt(0));
 }
 
-function tellProof(right, words) {
+function showProof(right, words) {
   const badge = find("proof");
   badge.className = right ? "right" : "wrong";
   badge.innerHTML = words;
 }
 
-/** Flies the tests' logs through the library of this page, and says whether every bit is as it was in the tests. */
+/** Replays the test logs with this page's library and compares the hash over every output bit with the recorded one. */
 async function prove(goe, golden) {
   const expected = find("proof").dataset.expected;
   const hash = await goe.goldenHash(golden);
   const right = hash === expected && goe.selfCheck() === 0;
-  tellProof(right, right
-    ? `<b>✓ right: ${hash}</b> the tests' logs give here the bits that flight controllers give`
-    : `<b>✗ wrong: ${hash}</b> and not ${expected}: trust nothing on this page`);
+  showProof(right, right
+    ? `<b>✓ Verified: same bits as on flight controllers</b> (hash ${hash})`
+    : `<b>✗ Library check failed: wrong hash ${hash}</b>, expected ${expected}: trust nothing on this page`);
 }
 
 // ------------------------------------------------------------------------------------------------------------ controls
@@ -47,7 +48,7 @@ function readControls() {
   return given;
 }
 
-/** Puts controls where the fragment of the address says: #kind=2&roll_deg=10&t=8. */
+/** Sets the controls from the fragment of the address: #kind=2&roll_deg=10&t=8. Returns t, or null. */
 function applyFragment() {
   const given = new URLSearchParams(location.hash.slice(1));
   for (const input of inputs()) {
@@ -62,10 +63,10 @@ function applyFragment() {
 }
 
 const SAYS = {
-  roll_deg: (v) => (v ? `±${v}°` : "none"),
+  roll_deg: (v) => (v ? `${v}° each way` : "none"),
   pixel_px: (v) => `${v.toFixed(1)} px`,
-  height_offset_m: (v) => (v ? `${v > 0 ? "+" : "−"}${Math.abs(v)} m` : "right"),
-  side_m: (v) => (v ? `${Math.abs(v)} m ${v < 0 ? "left" : "right"}` : "dead ahead"),
+  height_offset_m: (v) => (v ? `reads ${Math.abs(v)} m too ${v > 0 ? "high" : "low"}` : "none"),
+  side_m: (v) => (v ? `${Math.abs(v)} m ${v < 0 ? "left" : "right"} of the course` : "on the course"),
 };
 
 function showControls() {
@@ -81,14 +82,16 @@ function showControls() {
 let live = null;
 let flight = [];
 let at = 0;
+let first_s = null; // time of the first estimate
 let seed = 1;
 let playing = false;
-let started_ms = 0; // when the flight would have begun for the image that is shown
+let started_ms = 0; // start of playback, so that the present image is due now
 
 function fly() {
   showControls();
   flight = live.fly(readControls());
   find("time").max = flight.length - 1;
+  first_s = flight.find((r) => r.valid & HAS.position)?.time_s ?? null;
   at = Math.min(at, flight.length - 1);
   show();
 }
@@ -105,17 +108,17 @@ function value(r, id) {
 
 function show() {
   const r = flight[at];
-  const told = order(r);
-  find("order").className = told.name;
-  find("order-head").textContent = told.head;
-  find("order-line").textContent = told.line;
+  const decision = order(r, first_s);
+  find("order").className = decision.name;
+  find("order-head").textContent = decision.head;
+  find("order-line").textContent = decision.line;
   find("doubts").textContent = doubts(r);
   find("order").dataset.suspect = r.suspect ? r.reason : "";
   find("order").dataset.at = at;
-  find("width-title").textContent = isEdge(r) ? "Width, front edge" : "Width, across the view";
+  find("width-title").textContent = isEdge(r) ? "Width of the front" : "Width across the line of sight";
   find("turned").textContent = r.valid & HAS.orientation
-    ? `Turned ${amount(r.orientation_deg)}° ± ${amount(r.orientation_sd_deg)} (truth ${amount(r.true_orientation_deg)}°)` +
-      (r.valid & HAS.length ? `, ${amount(r.length_m)} m ± ${amount(r.length_sd_m)} deep (truth ${amount(r.true_length_m)} m).` : ".")
+    ? `Orientation ${amount(r.orientation_deg)}° ± ${amount(r.orientation_sd_deg)} (truth ${amount(r.true_orientation_deg)}°)` +
+      (r.valid & HAS.length ? `, length ${amount(r.length_m)} m ± ${amount(r.length_sd_m)} (truth ${amount(r.true_length_m)} m).` : ".")
     : "";
   find("time").value = at;
   find("time").setAttribute("aria-valuetext", `${r.time_s.toFixed(1)} seconds`);
@@ -185,7 +188,7 @@ const KEYS = {
   End: () => goTo(flight.length - 1),
 };
 
-/** What a focused control does with a key by itself stays its own. */
+/** Keys that the focused control handles itself. */
 function ownKey(target, key) {
   if (key === " ") return target.matches("button, summary, a, input[type=checkbox], input[type=radio]");
   return target.matches("input") && /^(Arrow|Home|End|Page)/.test(key);
@@ -212,7 +215,7 @@ function listen() {
 
 async function start() {
   const [library, flightModule, golden] = ["goe", "flight", "golden"].map((name) => {
-    const bytes = carried(`${name}-module`);
+    const bytes = embedded(`${name}-module`);
     find(`${name}-bytes`).textContent = bytes.length.toLocaleString("en");
     return bytes;
   });
@@ -223,13 +226,14 @@ async function start() {
   fly();
   listen();
   if (wanted_s !== null) goTo(Math.round(wanted_s * (flight.length - 1) / flight[flight.length - 1].time_s));
-  else if (!matchMedia("(prefers-reduced-motion: reduce)").matches) setPlaying(true);
+  else if (matchMedia("(prefers-reduced-motion: reduce)").matches) goTo(Math.round(STILL_SHARE * (flight.length - 1)));
+  else setPlaying(true);
   await prove(goe, golden);
   document.documentElement.dataset.ready = "yes";
 }
 
 start().catch((error) => {
-  tellProof(false, "<b>✗ wrong</b> the module does not run: trust nothing on this page");
+  showProof(false, "<b>✗ Library check failed: wrong module</b>, it does not run: trust nothing on this page");
   find("proof").title = String(error);
   document.documentElement.dataset.ready = "failed";
 });

@@ -1,16 +1,16 @@
-// The approach from above: the course goes to the right. SPDX-License-Identifier: MIT
+// The approach from above, flight direction to the right. SPDX-License-Identifier: MIT
 
 import { el, ellipse, outline, points, text, trueOutline } from "./draw.mjs";
 import { HAS, ORDER } from "./words.mjs";
 
-const BEHIND_M = 12, BEYOND_M = 62; // what is shown at least, behind the aircraft's start and beyond the obstacle
+const BEHIND_M = 12, BEYOND_M = 62; // least extent behind the aircraft's start and beyond the obstacle
 const ASIDE_M = 56; // ... and on either side
 const MARGIN_M = 15; // as in live.c
-const NAMES_PX = 18; // below, for what the lines are called
+const NAMES_PX = 18; // height of the labels of the lines
 const FIELD_DEG = 35; // half the camera's field of view
-const NARROW_PX = 560; // a narrower map moves along with the aircraft
+const NARROW_PX = 560; // a narrower map follows the aircraft
 
-/** Metres on the ground to pixels of the map. */
+/** Meters on the ground to pixels of the map. */
 function plane(width, height, r, first_m) {
   const here_m = first_m - r.true_ahead_m;
   const left_m = width < NARROW_PX ? here_m - BEHIND_M : -BEHIND_M;
@@ -18,7 +18,7 @@ function plane(width, height, r, first_m) {
   return { scale, x: (north) => (north - left_m) * scale, y: (east) => 0.5 * (height - NAMES_PX) + east * scale, here_m };
 }
 
-/** Lines every 100 m to go, below all else, and what they are called, above all else. */
+/** A line for every 100 m of distance to the obstacle, drawn first, and their labels, drawn last. */
 function grid(p, height, first_m) {
   let lines = "", names = "";
   for (let left_m = 0; left_m <= first_m; left_m += 100) {
@@ -50,7 +50,7 @@ function aircraft(p) {
   return el("polygon", { class: "aircraft", points: points(both.map(([x, y]) => [p.x(p.here_m) + x, p.y(0) + y])) });
 }
 
-/** The true obstacle, and the estimate over it. */
+/** The true obstacle, the estimate on top of it. */
 function obstacle(p, r) {
   const place = ([ahead, right]) => [p.x(p.here_m + ahead), p.y(right)];
   let found = el("polygon", { class: "truth", points: points(trueOutline(r).map(place)) });
@@ -71,10 +71,10 @@ function obstacle(p, r) {
   return found + el("path", { class: "middle", d: `M${middle[0] - 5} ${middle[1]}h10M${middle[0]} ${middle[1] - 5}v10` });
 }
 
-/** Where the flight passes closest. */
+/** The place of closest approach. */
 function closest(p, r, speed_m_s) {
-  if (!(r.order > ORDER.nothing) || r.hazard_s <= 0) return "";
-  const x = p.x(p.here_m + r.hazard_s * speed_m_s);
+  if (!(r.order > ORDER.nothing) || r.tcpa_s <= 0) return "";
+  const x = p.x(p.here_m + r.tcpa_s * speed_m_s);
   return el("path", { class: r.order === ORDER.goAround ? "closest hot" : "closest", d: `M${x} ${p.y(0) - 9}v18` });
 }
 

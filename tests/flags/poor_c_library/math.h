@@ -1,4 +1,4 @@
-/* All of <math.h> that lib/ may ask for: embedded C libraries have as little as this. SPDX-License-Identifier: MIT */
+/* All of <math.h> that lib/ may use: some embedded C libraries have only this much. SPDX-License-Identifier: MIT */
 #ifndef POOR_MATH_H
 #define POOR_MATH_H
 

@@ -1,4 +1,4 @@
-/* All of <string.h> that lib/ may ask for. SPDX-License-Identifier: MIT */
+/* All of <string.h> that lib/ may use. SPDX-License-Identifier: MIT */
 #ifndef POOR_STRING_H
 #define POOR_STRING_H
 

@@ -1,14 +1,14 @@
-/* What interpolation costs on recorded flights of real autopilots. SPDX-License-Identifier: MIT
+/* The cost of interpolation on recorded flights of real autopilots. SPDX-License-Identifier: MIT
  *
  *   flight_recorded FILE...
  *
- * Masts stand along each flight. The camera sees them from the true pose; the estimator is given what the autopilot believed: at
+ * Masts stand along each flight. The camera uses the true pose; the estimator gets the autopilot's estimate: at
  * the very time of each image, or as the flight layer finds it 100 ms later between samples so far apart; or late by so much, with
- * the clock's uncertainty told or not. For each: the median distance of the estimate from the truth along the line of sight when
+ * the clock's uncertainty given or not. For each: the median distance of the estimate from the truth along the line of sight when
  * the mast is 70 m ahead, and how often two of its sigmas cover it.
  *
  * Exit status: 0 if interpolation stays within its share of the exact time's median (SHARE_MAX, and SHARE_COARSE_MAX for samples
- * 200 ms apart), and what is late by 20 and by 100 ms, and tells it, covers the truth as often as it should, or as the exact time
+ * 200 ms apart), and poses late by 20 and by 100 ms, with a given uncertainty, cover the truth as often as required, or as the exact time
  * does; 1 otherwise; 77 if there is no such file. */
 #include <math.h>
 #include <stdio.h>
@@ -27,22 +27,22 @@
 #define PLACES 200    /* along a flight, with a mast on each side at two distances */
 #define FIRST_S 12.0  /* of the recording: abeam of the first mast */
 #define FIRST_M 170.0
-#define ASKED_M 70.0
+#define WANTED_M 70.0
 #define MASTS_MAX 4096
 #define PIXEL_PX 1.0
 #define STREAM_RECORDED 200
 #define SHARE_MAX 1.05
 #define SHARE_COARSE_MAX                                                                                               \
-    1.25 /* half of the images of a flight that pitches by 24 degrees a second, rms, tell little then */
+    1.25 /* half of the images of a flight that pitches by 24 degrees a second, rms, are hardly informative then */
 #define COARSE_S 0.15
 #define COVERED_MIN 0.88
 #define COVERED_RESOLVED 0.03 /* by the masts along the shorter flight */
 #define EXIT_SKIPPED 77
 
 typedef struct {
-    double gap_s;     /* between samples; 0: the pose at the very time */
-    double late_s;    /* the pose is that of so much later */
-    uint32_t told_us; /* one sigma of the time */
+    double gap_s;       /* between samples; 0: the pose at the very time */
+    double late_s;      /* the pose is that of so much later */
+    uint32_t report_us; /* one sigma of the time */
     const char *name;
 } way_t;
 
@@ -63,16 +63,16 @@ static double ground_distance(vec3_t a, const obstacle_t *o) { return hypot(a.x 
 static goe_settings_t settings_of(const camera_t *camera, bool wanders) {
     goe_settings_t settings;
     goe_settings_default(&settings);
-    settings.navigation.attitude_bias_deg = wanders ? 1.0f : 0.5f;
-    settings.navigation.attitude_white_deg = wanders ? 0.3f : 0.1f;
-    settings.navigation.attitude_drift_deg = wanders ? 0.5f : 0.0f;
+    settings.navigation.attitude_bias_sd_deg = wanders ? 1.0f : 0.5f;
+    settings.navigation.attitude_white_sd_deg = wanders ? 0.3f : 0.1f;
+    settings.navigation.attitude_walk_sd_deg = wanders ? 0.5f : 0.0f;
     settings.camera.fx_px = (float)camera->fx_px;
     settings.camera.fy_px = (float)camera->fy_px;
     settings.camera.cx_px = (float)camera->cx_px;
     settings.camera.cy_px = (float)camera->cy_px;
     settings.camera.width_px = (float)camera->width_px;
     settings.camera.height_px = (float)camera->height_px;
-    settings.detector.point_px = (float)PIXEL_PX;
+    settings.detector.point_noise_px = (float)PIXEL_PX;
     return settings;
 }
 
@@ -101,18 +101,18 @@ static void give_sample(const recorded_flight_t *recording, double t_s) {
 /* The pose for an image at t_s. Samples come up to the first one behind it. */
 static bool find_pose(const recorded_flight_t *recording, const way_t *way, double t_s, double *sampled_s,
                       goe_pose_t *pose, float *sd_deg) {
-    const double asked_s = t_s + way->late_s;
+    const double wanted_s = t_s + way->late_s;
     const double gap_s = way->gap_s > 0.0 ? way->gap_s : 0.02;
-    while (*sampled_s < asked_s || *sampled_s + gap_s <= t_s + ARRIVAL_S + 1e-6) {
+    while (*sampled_s < wanted_s || *sampled_s + gap_s <= t_s + ARRIVAL_S + 1e-6) {
         *sampled_s += gap_s;
         give_sample(recording, *sampled_s);
     }
-    const uint32_t asked_us = (uint32_t)llround(1e6 * asked_s);
-    if (goe_flight_pose(&flight, asked_us, way->told_us, pose, sd_deg) != GOE_FLIGHT_OK) {
+    const uint32_t question_us = (uint32_t)llround(1e6 * wanted_s);
+    if (goe_flight_pose(&flight, question_us, way->report_us, pose, sd_deg) != GOE_FLIGHT_OK) {
         return false;
     }
     if (!(way->gap_s > 0.0)) {
-        const recorded_pose_t at = recorded_flight_at(recording, asked_s);
+        const recorded_pose_t at = recorded_flight_at(recording, wanted_s);
         to_floats(&at.estimated, pose->position_ned_m, pose->attitude);
     }
     pose->time_us = llround(1e6 * t_s);
@@ -124,7 +124,7 @@ static goe_pixel_t pixel_of(const feature_t *feature, random_t *random) {
     const double du = PIXEL_PX * random_normal(random), dv = PIXEL_PX * random_normal(random);
     pixel.u_px = (float)(feature->u_px + du);
     pixel.v_px = (float)(feature->v_px + dv);
-    pixel.seen = feature->seen;
+    pixel.visible = feature->seen;
     return pixel;
 }
 
@@ -141,7 +141,7 @@ static bool begins_anew(const recorded_flight_t *recording, const goe_settings_t
     return true;
 }
 
-/* Flies past the mast that stands aside of where the aircraft is at abeam_s. */
+/* Flies past the mast abeam of the aircraft's position at abeam_s. */
 static void fly(const recorded_flight_t *recording, bool wanders, const way_t *way, double abeam_s, uint64_t seed,
                 tally_t *tally) {
     camera_t camera = camera_default();
@@ -175,7 +175,7 @@ static void fly(const recorded_flight_t *recording, bool wanders, const way_t *w
         const pose_t truth = recorded_flight_at(recording, t_s).truth;
         const view_t view = camera_view(&camera, &truth);
         const features_t seen = features_project(&mast, CYLINDER_TANGENT, &camera, &view);
-        if (!find_pose(recording, way, t_s, &sampled_s, &image.pose, &image.noise.attitude_deg)) {
+        if (!find_pose(recording, way, t_s, &sampled_s, &image.pose, &image.noise.attitude_sd_deg)) {
             continue;
         }
         image.pose.height_m = (float)mast.ground_d_m - image.pose.position_ned_m[2];
@@ -185,7 +185,7 @@ static void fly(const recorded_flight_t *recording, bool wanders, const way_t *w
         (void)goe_update(&estimator, &image, &estimate);
         const double north = mast.center_n_m - truth.position_ned_m.x, east = mast.center_e_m - truth.position_ned_m.y;
         const double range_m = hypot(north, east);
-        if (range_m > ASKED_M || !(estimate.valid & GOE_HAS_CENTER)) {
+        if (range_m > WANTED_M || !(estimate.valid & GOE_HAS_CENTER)) {
             continue;
         }
         /* relative to where the aircraft believes to be */
@@ -225,9 +225,9 @@ static const way_t ways[] = {
     {0.04, 0.0, 1000u, "samples 40 ms apart"},
     {0.1, 0.0, 1000u, "samples 100 ms apart"},
     {0.2, 0.0, 1000u, "samples 200 ms apart"},
-    {0.04, 0.02, 1000u, "20 ms late, not known"},
-    {0.04, 0.02, 20000u, "20 ms late, known"},
-    {0.04, 0.1, 100000u, "100 ms late, known"},
+    {0.04, 0.02, 1000u, "20 ms late, not configured"},
+    {0.04, 0.02, 20000u, "20 ms late, configured"},
+    {0.04, 0.1, 100000u, "100 ms late, configured"},
 };
 
 static int judge(const char *path) {
@@ -252,10 +252,10 @@ static int judge(const char *path) {
         exact_m = i == 0 ? middle_m : exact_m;
         exact_covered = i == 0 ? covered : exact_covered;
         const bool interpolated = way->gap_s > 0.0 && !(way->late_s > 0.0);
-        const bool told = way->late_s > 0.0 && way->told_us > 1000u;
+        const bool reported = way->late_s > 0.0 && way->report_us > 1000u;
         const double share_max = way->gap_s > COARSE_S ? SHARE_COARSE_MAX : SHARE_MAX;
         bad += interpolated && !(middle_m <= share_max * exact_m) ? 1 : 0;
-        bad += told && !(covered >= fmin(COVERED_MIN, exact_covered - COVERED_RESOLVED)) ? 1 : 0;
+        bad += reported && !(covered >= fmin(COVERED_MIN, exact_covered - COVERED_RESOLVED)) ? 1 : 0;
     }
     recorded_flight_free(&recording);
     return bad;

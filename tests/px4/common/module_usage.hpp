@@ -1,4 +1,4 @@
-/* What both forms of ModuleBase stand on: standin.hpp. SPDX-License-Identifier: MIT */
+/* Common base of both forms of ModuleBase: see standin.hpp. SPDX-License-Identifier: MIT */
 #pragma once
 
 #include <cstring>

@@ -1,4 +1,4 @@
-/* What stands in for PX4 in the tests. SPDX-License-Identifier: MIT */
+/* The stand-in for PX4 in the tests. SPDX-License-Identifier: MIT */
 #include "standin.hpp"
 
 #include <px4_platform_common/param.h>
@@ -30,7 +30,7 @@ struct Timer {
 };
 
 constexpr size_t TEXT = 512;
-constexpr int RUNS_MAX = 100000; /* at one time: more is an endless loop */
+constexpr int RUNS_MAX = 100000; /* at one time; more is an endless loop */
 
 uint64_t clock_us;
 std::map<std::pair<std::string, int>, Node> nodes;

@@ -1,5 +1,5 @@
-# Stands in for Zephyr's CMake package on the host: the functions that port/zephyr calls, and no more. Names and arguments were
-# compared with Zephyr 3.4.0 on 2026-11-22. STAND_IN_CONFIG names a folder with config.cmake and autoconf.h.
+# A stand-in for Zephyr's CMake package on the host: only the functions that port/zephyr calls. Names and arguments were
+# compared with Zephyr 3.4.0 on 2026-11-22. STAND_IN_CONFIG is a folder with config.cmake and autoconf.h.
 
 project(stand_in_zephyr LANGUAGES C)
 include(${STAND_IN_CONFIG}/config.cmake)

@@ -1,6 +1,6 @@
-/* What stands in for Zephyr's kernel on the host. With STAND_IN_HURRY in the environment time does not wait for anybody, and whoever
- * takes from a queue is slower than those who put into it, however fast the machine is: it takes a message only after one was
- * refused, or once nobody else runs. SPDX-License-Identifier: MIT */
+/* The stand-in for Zephyr's kernel on the host. With STAND_IN_HURRY in the environment time waits for no thread, and readers of a
+ * queue are slower than its writers, however fast the machine is: a reader takes a message only after one was
+ * refused, or once no other thread runs. SPDX-License-Identifier: MIT */
 #include <zephyr/kernel.h>
 #include <zephyr/sys/printk.h>
 
@@ -12,7 +12,7 @@
 #include <time.h>
 
 #define NS_PER_S 1000000000L
-#define STACK_UNUSED 96 /* bytes that every thread is said to have left */
+#define STACK_UNUSED 96 /* the reported number of unused stack bytes of every thread */
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static pthread_cond_t changed = PTHREAD_COND_INITIALIZER;
@@ -22,7 +22,7 @@ static struct k_msgq *queues;
 
 static bool in_a_hurry(void) { return getenv("STAND_IN_HURRY") != NULL; }
 
-/* Both are called with the lock. */
+/* Both are called with the lock held. */
 static void begin_waiting(void) {
     busy--;
     (void)pthread_cond_broadcast(&changed);
@@ -60,7 +60,7 @@ int k_msgq_put(struct k_msgq *queue, const void *message, k_timeout_t timeout) {
     return 0;
 }
 
-/* Called with the lock. */
+/* Called with the lock held. */
 static bool is_too_early(const struct k_msgq *queue) {
     return queue->count == 0u || (in_a_hurry() && refused == 0 && busy != 0);
 }
@@ -136,7 +136,7 @@ static void *run(void *argument) {
     return NULL;
 }
 
-/* Whoever shares a floating-point unit has to say so: all threads here compute. */
+/* Threads that share a floating-point unit have to declare it: all threads here compute. */
 static bool may_compute(const struct stand_in_thread *thread) {
 #if defined(CONFIG_FPU_SHARING)
     return (thread->options & K_FP_REGS) != 0u;
@@ -180,6 +180,6 @@ void printk(const char *format, ...) {
     va_end(arguments);
 }
 
-/* Linked with --wrap=goe_flight_init: no settings are good enough. */
+/* Linked with --wrap=goe_flight_init: refuses all settings. */
 int __wrap_goe_flight_init(void);
 int __wrap_goe_flight_init(void) { return -32; }

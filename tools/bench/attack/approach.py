@@ -42,11 +42,11 @@ class HazardRow:
 
 
 def _rows() -> list[HazardRow]:
-    white = {"navigation.height_white_m": 1.0}
+    white = {"navigation.height_white_sd_m": 1.0}
     errors: tuple[tuple[str, dict[str, float], dict[str, float], float], ...] = (
         ("nominal", {}, {}, 0.0), ("50 ms late", {"late_s": 0.05}, {}, 0.0), ("100 ms late", {"late_s": 0.1}, {}, 0.4),
-        ("altimeter 1 m", {"height_white_m": 1.0}, white, 0.0),
-        ("50 ms late + altimeter", {"late_s": 0.05, "height_white_m": 1.0}, white, 0.0),
+        ("altimeter 1 m", {"height_white_sd_m": 1.0}, white, 0.0),
+        ("50 ms late + altimeter", {"late_s": 0.05, "height_white_sd_m": 1.0}, white, 0.0),
     )  # fmt: skip
     features = {"corners": ("corners", 0.1), "outline": ("outlines", 0.15), "boxes": ("boxes", 0.1)}
     return [
@@ -67,12 +67,12 @@ class Approach:
     """The true outcome without a maneuver: times from the flight's first image; clearance at the closest approach."""
 
     time_s: float
-    miss_m: float
+    dcpa_m: float
     clearance_m: float
 
     @property
     def violates(self) -> bool:
-        return self.miss_m < MARGIN_M and self.clearance_m < CLEARANCE_M
+        return self.dcpa_m < MARGIN_M and self.clearance_m < CLEARANCE_M
 
 
 @dataclass
@@ -81,11 +81,11 @@ class Warnings:
     answer."""
 
     time_s: np.ndarray
-    refined: np.ndarray  # (K,) answered by the refined method: the window's sigmas are not judged
+    refined: np.ndarray  # (K,) answered by the filter method: the window's sigmas are not judged
     to_go_s: np.ndarray
     to_go_sd_s: np.ndarray
-    miss_m: np.ndarray
-    miss_sd_m: np.ndarray
+    dcpa_m: np.ndarray
+    dcpa_sd_m: np.ndarray
     clearance_m: np.ndarray
     clearance_sd_m: np.ndarray
     violation: np.ndarray
@@ -165,7 +165,7 @@ def coverage(runs: Sequence[Run]) -> dict[str, float]:
     for run in runs:
         w, a, judged = run.warnings, run.approach, _judged(run)
         errors = {
-            "time": (w.to_go_s - (a.time_s - w.time_s), w.to_go_sd_s), "miss": (w.miss_m - a.miss_m, w.miss_sd_m),
+            "time": (w.to_go_s - (a.time_s - w.time_s), w.to_go_sd_s), "miss": (w.dcpa_m - a.dcpa_m, w.dcpa_sd_m),
             "clearance": (w.clearance_m - a.clearance_m, w.clearance_sd_m),
         }  # fmt: skip
         for name, (error, sigma) in errors.items():
@@ -190,7 +190,7 @@ def false_warnings(runs: Sequence[Run]) -> float:
     wide = [
         math.isfinite(first_warning_s(run.warnings))
         for run in runs
-        if run.approach.miss_m >= 2 * MARGIN_M and run.approach.clearance_m < CLEARANCE_M
+        if run.approach.dcpa_m >= 2 * MARGIN_M and run.approach.clearance_m < CLEARANCE_M
     ]
     return 100.0 * float(np.mean(wide)) if wide else math.nan
 
@@ -198,5 +198,5 @@ def false_warnings(runs: Sequence[Run]) -> float:
 def counts(runs: Sequence[Run]) -> dict[str, float]:
     """Violators and passes at twice the margin."""
     violators = sum(run.approach.violates for run in runs)
-    wide = sum(run.approach.miss_m >= 2 * MARGIN_M and run.approach.clearance_m < CLEARANCE_M for run in runs)
+    wide = sum(run.approach.dcpa_m >= 2 * MARGIN_M and run.approach.clearance_m < CLEARANCE_M for run in runs)
     return {"violators": float(violators), "at twice the margin": float(wide)}

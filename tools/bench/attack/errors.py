@@ -23,17 +23,19 @@ WRONG_NEAR_SHARE = (0.2, 0.5)  # place of the wrong near corner along an edge of
 class Wrong:
     """The defaults are the errors in the library's default settings."""
 
-    point_px: float = 0.5
-    point_share: float = 0.0  # of left, right, top: share of the width in the image, correlated over correlation_s
-    box_px: float = 0.5
-    box_share: float = 0.04  # of a side: share of the box's width or height, correlated over correlation_s
-    correlation_s: float = 1.0
-    attitude_bias_deg: float = 0.5  # each body axis
-    attitude_white_deg: float = 0.1
-    velocity_bias_m_s: float = 0.05  # north, east
-    position_walk_m: float = 0.05  # per sqrt(s), each axis
-    height_bias_m: float = 0.5
-    height_white_m: float = 0.0
+    point_noise_px: float = 0.5
+    point_noise_rel: float = (
+        0.0  # of left, right, top: share of the width in the image, correlated over box_correlation_time_s
+    )
+    box_noise_px: float = 0.5
+    box_noise_rel: float = 0.04  # of a side: share of the box's width or height, correlated over box_correlation_time_s
+    box_correlation_time_s: float = 1.0
+    attitude_bias_sd_deg: float = 0.5  # each body axis
+    attitude_white_sd_deg: float = 0.1
+    velocity_bias_sd_m_s: float = 0.05  # north, east
+    position_walk_sd_m: float = 0.05  # per sqrt(s), each axis
+    height_bias_sd_m: float = 0.5
+    height_white_sd_m: float = 0.0
     ground_off_m: float = 0.0  # exact size, up or down
     slope: float = 0.0  # rise or fall of the ground under the aircraft towards the obstacle
     reset_m: float = 0.0  # halfway the reported down and height jump by this size, up or down; the jump is reported
@@ -126,11 +128,11 @@ def correlated(time_s: np.ndarray, constant_s: float, columns: int, rng: np.rand
 
 def spoil_points(exact: np.ndarray, time_s: np.ndarray, wrong: Wrong, rng: np.random.Generator) -> np.ndarray:
     """Points (K, 6, 2) with a detector's errors."""
-    pixel = exact + wrong.point_px * rng.standard_normal(exact.shape)
-    drawn = correlated(time_s, wrong.correlation_s, 3, rng)
-    if wrong.point_share:
+    pixel = exact + wrong.point_noise_px * rng.standard_normal(exact.shape)
+    drawn = correlated(time_s, wrong.box_correlation_time_s, 3, rng)
+    if wrong.point_noise_rel:
         width = exact[:, RIGHT, 0] - exact[:, LEFT, 0]
-        error = wrong.point_share * width[:, None] * drawn
+        error = wrong.point_noise_rel * width[:, None] * drawn
         pixel[:, LEFT, 0] += error[:, 0]
         pixel[:, RIGHT, 0] += error[:, 1]
         pixel[:, TOP, 1] += np.where(np.isfinite(error[:, 2]), error[:, 2], 0.0)
@@ -146,8 +148,8 @@ def spoil_points(exact: np.ndarray, time_s: np.ndarray, wrong: Wrong, rng: np.ra
 def spoil_boxes(exact: np.ndarray, time_s: np.ndarray, wrong: Wrong, rng: np.random.Generator) -> np.ndarray:
     """Boxes (K, 4) with a detector's errors, before clipping at the border."""
     size = np.tile(exact[:, 2:] - exact[:, :2], 2)
-    white = wrong.box_px * rng.standard_normal(exact.shape)
-    return exact + wrong.box_share * size * correlated(time_s, wrong.correlation_s, 4, rng) + white
+    white = wrong.box_noise_px * rng.standard_normal(exact.shape)
+    return exact + wrong.box_noise_rel * size * correlated(time_s, wrong.box_correlation_time_s, 4, rng) + white
 
 
 def reported_pose(
@@ -159,15 +161,15 @@ def reported_pose(
     place, body = path.at(time_s - wrong.late_s)
     place, height = origin_m + place @ to_ned.T, -place[:, 2]
     count, flown_s = len(time_s), time_s - time_s[0]
-    bias = math.radians(wrong.attitude_bias_deg) * rng.standard_normal(3)
-    white = math.radians(wrong.attitude_white_deg) * rng.standard_normal((count, 3))
-    step = wrong.position_walk_m * np.sqrt(np.diff(time_s, prepend=time_s[0]))[:, None]
+    bias = math.radians(wrong.attitude_bias_sd_deg) * rng.standard_normal(3)
+    white = math.radians(wrong.attitude_white_sd_deg) * rng.standard_normal((count, 3))
+    step = wrong.position_walk_sd_m * np.sqrt(np.diff(time_s, prepend=time_s[0]))[:, None]
     place = place + np.cumsum(step * rng.standard_normal((count, 3)), 0)
-    drift = np.append(wrong.velocity_bias_m_s * rng.standard_normal(2), 0.0)
+    drift = np.append(wrong.velocity_bias_sd_m_s * rng.standard_normal(2), 0.0)
     place = place + drift * flown_s[:, None]
     up, slope, jump = rng.choice([-1.0, 1.0], 3) * [wrong.ground_off_m, wrong.slope, wrong.reset_m]
-    reported = height + up + wrong.height_bias_m * rng.standard_normal()
-    reported = reported + wrong.height_white_m * rng.standard_normal(count)
+    reported = height + up + wrong.height_bias_sd_m * rng.standard_normal()
+    reported = reported + wrong.height_white_sd_m * rng.standard_normal(count)
     reported = reported + slope * np.linalg.norm(path.at(time_s)[0][:, :2] - obstacle_m, axis=1)
     jumped = np.zeros((count, 3))
     jumped[count // 2 :, 2] = jump

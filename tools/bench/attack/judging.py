@@ -23,7 +23,7 @@ DISC, LINE, BOX, PRISM = 2, 3, 4, 5  # the library's models
 @dataclass
 class Answers:
     """Answers for one track, K images. Quantities in the order X0, Z0, orientation (rad), width, length, height; NaN
-    without an answer of the refined method."""
+    without an answer of the filter method."""
 
     time_s: np.ndarray
     values: np.ndarray  # (K, 6)

@@ -42,20 +42,20 @@ def rule_numbers(p: Params) -> np.ndarray:
 
 SETTINGS = {  # by group of goe_settings_t: its field, and the parameter with its value
     "navigation": (
-        ("attitude_bias_deg", "attitude_bias"), ("attitude_white_deg", "attitude_white"),
-        ("attitude_drift_deg", "attitude_drift"), ("height_bias_m", "height_bias"),
-        ("velocity_bias_m_s", "velocity_bias"),
-        ("position_walk_m", "position_walk"), ("position_white_m", "position_white"),
-        ("height_white_m", "height_white"),
-        ("ground_m", "ground"),
+        ("attitude_bias_sd_deg", "attitude_bias"), ("attitude_white_sd_deg", "attitude_white"),
+        ("attitude_walk_sd_deg", "attitude_drift"), ("height_bias_sd_m", "height_bias"),
+        ("velocity_bias_sd_m_s", "velocity_bias"),
+        ("position_walk_sd_m", "position_walk"), ("position_white_sd_m", "position_white"),
+        ("height_white_sd_m", "height_white"),
+        ("terrain_height_sd_m", "ground"),
     ),
     "detector": (
-        ("point_px", "point_px"), ("point_share", "point_share"), ("point_correlation", "point_correlation"),
-        ("box_px", "box_px"), ("box_share", "box_share"), ("correlation_s", "correlation_s"),
-        ("cut_noise", "cut_noise"),
+        ("point_noise_px", "point_px"), ("point_noise_rel", "point_share"), ("point_correlation", "point_correlation"),
+        ("box_noise_px", "box_px"), ("box_noise_rel", "box_share"), ("box_correlation_time_s", "correlation_s"),
+        ("truncation_noise_rel", "cut_noise"),
     ),
-    "refined": (
-        ("typical_size_m", "typical_m"), ("range_share", "range_share"), ("top_is_highest", "top_is_highest"),
+    "filter": (
+        ("prior_width_m", "typical_m"), ("range_sd_rel_max", "range_share"), ("top_is_highest", "top_is_highest"),
     ),
 }  # fmt: skip
 LENS_AND_PINHOLE = ("fx_px", "fy_px", "cx_px", "cy_px", "k1", "k2", "p1", "p2")
@@ -82,7 +82,7 @@ def settings(world: World, i: int) -> goe.Settings:
         heading_deg=None if np.isnan(heading) else heading,
         navigation=goe.Navigation(**group["navigation"]),
         detector=goe.Detector(**group["detector"]),
-        refined=goe.RefinedSettings(**group["refined"]),
+        filter=goe.FilterSettings(**group["filter"]),
     )
 
 

@@ -15,7 +15,7 @@ TINY = 1e-12
 class Approach:
     time_s: Array  # until the first minimum of the distance, or the entry into the outline
     leaves_s: Array  # until the exit; time_s without an entry
-    miss_m: Array  # 0 if the outline is entered
+    dcpa_m: Array  # 0 if the outline is entered
 
 
 def _to_disc(start: Array, velocity: Array, radius: Array) -> Approach:
@@ -73,5 +73,5 @@ def closest(is_round: np.ndarray, axes: Array, half: Array, start: Array, veloci
     moving = np.einsum("...ij,...j->...i", axes, velocity)
     disc, cuboid = _to_disc(start, velocity, half[..., 0]), _to_cuboid(own, moving, half)
     return Approach(
-        *(np.where(is_round, getattr(disc, n), getattr(cuboid, n)) for n in ("time_s", "leaves_s", "miss_m"))
+        *(np.where(is_round, getattr(disc, n), getattr(cuboid, n)) for n in ("time_s", "leaves_s", "dcpa_m"))
     )

@@ -8,7 +8,7 @@ import numpy as np
 
 from .answers import RULES, Answers
 from .genes import ORBIT, TURNING
-from .judge import BOX, DISC, FLIGHT_QUANTITIES, LENGTH, ORIENTATION, QUANTITIES, REFINED, REFUSED_STATUS, Judged
+from .judge import BOX, DISC, FILTER, FLIGHT_QUANTITIES, LENGTH, ORIENTATION, QUANTITIES, REFUSED_STATUS, Judged
 from .world import World
 
 CONFIDENT_SIGMA = 6.0
@@ -34,7 +34,7 @@ COLUMNS = (*JUDGED, *(f"{name} of a circle" for name in FLIGHT_QUANTITIES))
 class Finds:
     """Of N images."""
 
-    ratio: np.ndarray  # (N, COLUMNS) error over sigma of refined answers that are not suspect; NaN otherwise
+    ratio: np.ndarray  # (N, COLUMNS) error over sigma of the filter answers that are not suspect; NaN otherwise
     confident: np.ndarray  # (N, COLUMNS)
     false_safety: np.ndarray  # (N, RULES)
     doubted: np.ndarray  # (N, RULES) false safety of suspect or old answers
@@ -52,7 +52,7 @@ def _causes(world: World, found: Answers, judged: Judged) -> np.ndarray:
         (world.unknown | late) & (found.hazard_status != 0).all(1),
         (found.status >= REFUSED_STATUS[0]) & (found.status <= REFUSED_STATUS[1]), world.known, ~world.detected,
         e["method"] != e["method"][before],
-        e["points"] < e["points"][before], e["model"] != e["model"][before], found.status == HELD,
+        e["images_used"] < e["images_used"][before], e["model"] != e["model"][before], found.status == HELD,
     ]  # fmt: skip
     cause = np.select(tests, range(1, len(tests) + 1), len(CAUSES) - 1)
     return np.where(moved, 0, cause[:, None])
@@ -70,7 +70,7 @@ def _vanished(world: World, found: Answers, judged: Judged) -> np.ndarray:
 
 def find(world: World, found: Answers, judged: Judged) -> Finds:
     e = found.estimates
-    counts = (e["method"] == REFINED) & ~e["suspect"]
+    counts = (e["method"] == FILTER) & ~e["suspect"]
     is_round = world.solid.round[world.flight]
     whole_box = (e["model"] == BOX) & ((e["valid"] & LENGTH) != 0) & ((e["valid"] & ORIENTATION) != 0)
     outline_known = np.where(is_round, e["model"] == DISC, whole_box) & counts

@@ -14,7 +14,7 @@ from .world import World, relative_to
 POSITION, LENGTH, HEIGHT, ORIENTATION, CENTER, WIDTH = 0x01, 0x02, 0x04, 0x08, 0x10, 0x20  # GOE_HAS_...
 DISC, LINE, BOX, PRISM = 2, 3, 4, 5
 MODELS = {0: "none", 2: "disc", 3: "line", 4: "box", 5: "prism"}
-WINDOW, REFINED = 1, 2
+WINDOW, FILTER = 1, 2
 QUANTITIES = ("x0", "z0", "x", "z", "width", "length", "height", "orientation", "north", "east")
 FLIGHT_QUANTITIES = ("time", "miss", "clearance")
 REFUSED_STATUS = (-13, -10)
@@ -213,7 +213,7 @@ class Met:
     """The true encounter of each plan: (N, RULES)."""
 
     time_s: Array
-    miss_m: Array
+    dcpa_m: Array
     clearance_m: Array
     at_reported_m: Array  # clearance at the reported time
 
@@ -229,29 +229,29 @@ def meet(world: World, at: np.ndarray, reported_s: Array) -> Met:
         start[..., :2] - own.center[:, None], velocity[..., :2],
     )  # fmt: skip
     over = -start[..., 2] - world.height_m[world.flight][:, None]
-    crosses = near.miss_m <= 0.0
+    crosses = near.dcpa_m <= 0.0
     when = np.where(crosses & (velocity[..., 2] > 0.0), near.leaves_s, near.time_s)
-    return Met(near.time_s, near.miss_m, over - velocity[..., 2] * when, over - velocity[..., 2] * reported_s)
+    return Met(near.time_s, near.dcpa_m, over - velocity[..., 2] * when, over - velocity[..., 2] * reported_s)
 
 
 def _hazards(world: World, found: Answers, tolerance_m: float) -> tuple[Array, Array, np.ndarray, Array]:
     h, there = found.hazards, found.hazard_status == 0
-    reported_s = h["time_s"].astype(float)
+    reported_s = h["tcpa_s"].astype(float)
     truth, numbers = (
         meet(world, latest_taken(world, found.status), reported_s),
         answers.rule_numbers(world.p)[world.flight],
     )
-    both_enter = (truth.miss_m <= 0.0) == (h["miss_m"] <= 0.0)
-    time = np.where((h["time_sd_s"] > 0.0) & (truth.time_s > 0.0) & both_enter, reported_s - truth.time_s, np.nan)
+    both_enter = (truth.dcpa_m <= 0.0) == (h["dcpa_m"] <= 0.0)
+    time = np.where((h["tcpa_sd_s"] > 0.0) & (truth.time_s > 0.0) & both_enter, reported_s - truth.time_s, np.nan)
     clearance = np.where(h["has_clearance"], h["clearance_m"] - truth.clearance_m, np.nan)
-    errors = np.stack([time, h["miss_m"] - truth.miss_m, clearance], -1)
+    errors = np.stack([time, h["dcpa_m"] - truth.dcpa_m, clearance], -1)
     errors[~there] = np.nan
-    sigma = np.stack([h["time_sd_s"], h["miss_sd_m"], h["clearance_sd_m"]], -1).astype(float)
+    sigma = np.stack([h["tcpa_sd_s"], h["dcpa_sd_m"], h["clearance_sd_m"]], -1).astype(float)
     margin, least = numbers[..., 0], numbers[..., 1]
     high = np.maximum(truth.clearance_m, truth.at_reported_m)
-    violated = (truth.miss_m < margin - tolerance_m) & (high < least - tolerance_m)
-    met = np.stack([truth.miss_m, truth.clearance_m], -1)
-    return errors / np.maximum(sigma, SIGMA_LEAST), np.where(there, h["violation"], np.nan), violated, met
+    violated = (truth.dcpa_m < margin - tolerance_m) & (high < least - tolerance_m)
+    met = np.stack([truth.dcpa_m, truth.clearance_m], -1)
+    return errors / np.maximum(sigma, SIGMA_LEAST), np.where(there, h["conflict_probability"], np.nan), violated, met
 
 
 def judge(world: World, found: Answers) -> Judged:

@@ -19,7 +19,7 @@ from .world import World
 
 TRACK = 1
 POINTS = goe.POINTS
-SEES = (1, 2, 4, 8)
+SIDE_BITS = (1, 2, 4, 8)
 CAMERA_INI = ("fx_px", "fy_px", "cx_px", "cy_px", "k1", "k2", "p1", "p2", "mount_", "offset_m", "heading")
 
 
@@ -53,13 +53,13 @@ def _frame(image: np.ndarray, reset: bool) -> Frame:
     pose, box = image["pose"], image["box"]
     w, x, y, z = (_short(value) for value in pose["attitude"])
     pixels = {
-        name: (_short(image[name]["u_px"]), _short(image[name]["v_px"])) for name in POINTS if image[name]["seen"]
+        name: (_short(image[name]["u_px"]), _short(image[name]["v_px"])) for name in POINTS if image[name]["visible"]
     }
-    sides = tuple(_short(box[f"{side}_px"]) if box["seen"] & bit else None for side, bit in zip(goe.SIDES, SEES))
+    sides = tuple(_short(box[f"{side}_px"]) if box["sides"] & bit else None for side, bit in zip(goe.SIDES, SIDE_BITS))
     known = reset and pose["reset_delta_known"]
     return Frame(
         float(pose["time_us"]) / 1e6, TRACK, _triple(pose["position_ned_m"]), (w, x, y, z), _short(pose["height_m"]),
-        **pixels, box_px=sides if box["seen"] else None, camera=int(image["camera"]),
+        **pixels, box_px=sides if box["sides"] else None, camera=int(image["camera"]),
         reset_count=int(pose["reset_count"]),
         reset_delta_m=_triple(pose["reset_delta_ned_m"]) if known else None,
     )  # type: ignore[arg-type]  # fmt: skip
@@ -95,7 +95,7 @@ def settings_beyond(world: World) -> dict[str, float]:
 
 def _wrong(flown: Flown, want: Want, k: int) -> tuple[str, int]:
     """The error in words, and the plan in which it appears."""
-    violation, lies = flown.found.hazards["violation"], flown.lies
+    violation, lies = flown.found.hazards["conflict_probability"], flown.lies
     if want.kind == KINDS[0]:
         rule = int(np.argmax(np.nan_to_num(np.abs(flown.judged.hazard_ratio[k])).max(1)))
         return f"{want.what} is {lies.ratio[k, COLUMNS.index(want.what)]:.1f} sigma off", rule

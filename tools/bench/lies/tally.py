@@ -11,7 +11,7 @@ from . import finds
 from .answers import Answers
 from .finds import CAUSES, COLUMNS, JUDGED, KINDS, PROMISED, Finds
 from .genes import MIXES
-from .judge import MODELS, POSITION, REFINED, Judged
+from .judge import FILTER, MODELS, POSITION, Judged
 from .world import World
 
 COVER_SIGMA = 2.0
@@ -54,7 +54,7 @@ def _basics(tally: Tally, world: World, found: Answers, found_lies: Finds, judge
     e, count = found.estimates, tally.counts
     count["flights", name] += int(here.sum())
     count["images", name] += int(of_mix.sum())
-    answered = ((e["valid"] & POSITION) != 0) & (e["method"] == REFINED)
+    answered = ((e["valid"] & POSITION) != 0) & (e["method"] == FILTER)
     count["answered", name] += int((per_flight(world, answered)[here] > 0).sum())
     count["suspect", name] += int((per_flight(world, e["suspect"])[here] > 0).sum())
     for column, title in enumerate(COLUMNS):

@@ -99,7 +99,7 @@ class Case:
     """Visible features, method, and whether the obstacle moves."""
 
     kind: str
-    method: str = "refined"
+    method: str = "filter"
     moves: bool = False
 
     @property
@@ -165,10 +165,11 @@ def settings_of(case: Case, f: dict[str, float]) -> dict[str, float]:
     settings |= {f"camera.offset_m[{i}]": f["arm_m"] * share for i, share in enumerate((0.8, -0.5, 0.33))}
     settings |= {
         "heading_auto": 0.0, "heading_deg": 0.0, "method": float(METHODS[case.method]),
-        "navigation.attitude_bias_deg": f["bias_deg"], "navigation.attitude_white_deg": f["white_deg"],
-        "navigation.height_bias_m": f["height_m"], "navigation.velocity_bias_m_s": f["velocity_m_s"],
-        "navigation.position_walk_m": f["walk_m"], "detector.point_px": f["point_px"], "detector.box_px": f["point_px"],
-        "refined.typical_size_m": min(max(f["width"] * f["range_m"], 0.1), 1e3),
+        "navigation.attitude_bias_sd_deg": f["bias_deg"], "navigation.attitude_white_sd_deg": f["white_deg"],
+        "navigation.height_bias_sd_m": f["height_m"], "navigation.velocity_bias_sd_m_s": f["velocity_m_s"],
+        "navigation.position_walk_sd_m": f["walk_m"], "detector.point_noise_px": f["point_px"],
+        "detector.box_noise_px": f["point_px"],
+        "filter.prior_width_m": min(max(f["width"] * f["range_m"], 0.1), 1e3),
     }  # fmt: skip
     return settings | ({"model": float(MODEL_DISC)} if case.kind == "disc" else {})
 

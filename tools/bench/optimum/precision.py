@@ -20,7 +20,7 @@ class Rounding:
     """One flight with K images."""
 
     sigmas: np.ndarray  # (K, 6) |float32 - float64| over the float64 filter's one sigma; NaN where not compared
-    answered: int  # images with an answer of the refined method in either build
+    answered: int  # images with an answer of the filter method in either build
     apart: int  # of these, those where method, model or validity differ
 
     @property
@@ -35,8 +35,8 @@ class Rounding:
 
 
 def _refined(track: Track) -> np.ndarray:
-    """(K,): images with an answer of the refined method."""
-    return (track.method == METHODS["refined"]) & track.valid.any(1)
+    """(K,): images with an answer of the filter method."""
+    return (track.method == METHODS["filter"]) & track.valid.any(1)
 
 
 def rounding_of(flight: Flight) -> Rounding:

@@ -18,7 +18,7 @@ QUANTITIES: dict[str, tuple[int, float]] = {
     "orientation_deg": (ORIENTATION, 180.0), "center_north_m": (CENTER, 0.0), "center_east_m": (CENTER, 0.0),
     "velocity_north_m_s": (VELOCITY, 0.0), "velocity_east_m_s": (VELOCITY, 0.0),
 }  # fmt: skip
-DECISIONS = ("method", "model", "valid", "fresh", "suspect", "points", "nis_rows", "reason")
+DECISIONS = ("method", "model", "valid", "fresh", "suspect", "images_used", "nis_rows", "reason")
 MOVES = 2  # reason of a suspect estimate of a moving obstacle
 NIS_APART = 0.05  # of 1 + NIS: a larger difference indicates a different internal decision
 

@@ -2,7 +2,7 @@
 
 job           a problem with its cases and solvers
 window        problem: the window's fit
-update        problem: the refined filter's measurement update
+update        problem: the filter's measurement update
 lower_bound   minimum number of operations of such an update
 others        solvers that are installed here
 build         programs for this machine and images for the Cortex-M4F

@@ -9,13 +9,13 @@ from .build import PEERS, ROOT, Builder, library_includes, library_sources, outp
 REPLAY = ROOT / "tests" / "targets"
 FULL = (10000, 1000000)  # most obstacles; least updates of each number and kind
 QUICK = (10, 1)
-KINDS = ("window", "refined", "refined and hazard")
+KINDS = ("window", "filter", "filter and hazard")
 COLUMNS = (
     "obstacles",
     "state, KiB",
     *(f"{kind}: updates per second" for kind in KINDS),
-    "time of refined over window",
-    "of refined and hazard over refined",
+    "time of filter over window",
+    "of filter and hazard over filter",
 )
 TITLE = "Updates of the whole library on one core, built with the library's flags"
 

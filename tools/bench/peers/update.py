@@ -1,4 +1,4 @@
-"""The refined filter's measurement update: ten states, up to nine rows, three nuisances common to the rows.
+"""The filter's measurement update: ten states, up to nine rows, three nuisances common to the rows.
 
 Filters differ in the form of their covariance. Each solver starts with the same prior in its form, rounded once, and is
 measured until it has the posterior in the same form and the change of the state. The triangle of an information filter
@@ -42,7 +42,7 @@ RECORDED = (TRIANGLE, 1, COLUMNS * ROWS)  # output of record.c
 CASE = (TRIANGLE, TRIANGLE, STATES**2, 1, COLUMNS * ROWS)  # peer_case_t
 ANSWER = (STATES, 1, STATES**2)  # peer_answer_t
 QUICK_CASES = 4
-TEN_STATES = "-DGOE_WITH_MOVERS=0"  # without augmented states, which no peer has
+TEN_STATES = "-DGOE_WITH_TARGET_MOTION=0"  # without augmented states, which no peer has
 GROUPS = (9, 5, 3)  # by used rows: a box with all points visible, mostly discs, bounding boxes alone
 
 

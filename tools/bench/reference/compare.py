@@ -83,16 +83,16 @@ class Labels:
 
     status: int = 0
     model: int = 0
-    n_used: int = 0
+    images_used: int = 0
 
     def count(self, a: Estimate, b: Estimate) -> None:
         self.status += a.status != b.status
         self.model += a.model != b.model
-        self.n_used += a.n_used != b.n_used
+        self.images_used += a.images_used != b.images_used
 
     @property
     def total(self) -> int:
-        return self.status + self.model + self.n_used
+        return self.status + self.model + self.images_used
 
 
 @dataclass
@@ -269,14 +269,14 @@ def print_result(console: Console, title: str, result: Result) -> None:
     console.print(table)
     console.print(
         f"rows {result.rows}, solved {result.solved}, with baseline/W > {MIN_BASELINE_RATIO:g}: {result.conditioned}; "
-        f"differing status/model/n_used: float32 {_counts(result.single)}, float64 {_counts(result.double)}; "
+        f"differing status/model/images_used: float32 {_counts(result.single)}, float64 {_counts(result.double)}; "
         f"decisions {result.decisions}, followed within rounding {len(result.followed)}, "
         f"disputed {len(result.disputed)}"
     )
 
 
 def _counts(labels: Labels) -> str:
-    return f"{labels.status}/{labels.model}/{labels.n_used}"
+    return f"{labels.status}/{labels.model}/{labels.images_used}"
 
 
 def find_replay(given: Path | None) -> Path:

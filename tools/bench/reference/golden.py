@@ -37,7 +37,7 @@ DOUBLE_TOLERANCE = 1e-9
 EXIT_DIFFERENT = 1
 CORNER = ROOT / "tests" / "data" / "corner"
 # This data is for the window method, which uses neither boxes nor the errors of an image.
-NO_BOX = "{.seen = 0}, {.pixel_px = 0}, 0"  # and from the first camera
+NO_BOX = "{.sides = 0}, {.pixel_sd_px = 0}, 0"  # and from the first camera
 VALID = {
     "GOE_HAS_POSITION": "x0_m",
     "GOE_HAS_LENGTH": "length_m",
@@ -290,7 +290,7 @@ def corner_header() -> str:
         bits = [_bits(number) for number in numbers]
         image = _image(frame)
         fresh = "true" if report.fresh else "false"
-        labels = f"GOE_{estimate.status.upper()}, GOE_MODEL_{estimate.model.upper()}, {estimate.n_used}, {fresh},"
+        labels = f"GOE_{estimate.status.upper()}, GOE_MODEL_{estimate.model.upper()}, {estimate.images_used}, {fresh},"
         lines = ["{" + image[0], *image[1:], f" {labels}", f" {' | '.join(valid) or '0u'},"]
         lines.append(f" {{{wrapped(bits, 8, '      ')}}}}}")
         rows.append("\n    ".join(lines))

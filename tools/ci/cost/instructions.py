@@ -23,14 +23,14 @@ PUBLIC = (
     "goe_hazard",
     "goe_rule_default",
     "goe_decide",
-    "goe_soonest_s",
+    "goe_earliest_tcpa_s",
     "goe_reset",
     "goe_status_text",
     "goe_reason_text",
     "goe_self_check",
 )
-METHODS = ("window", "refined")  # each track is flown with each, in this order
-UPDATES = {"refined": "goe_update", "window": "goe_update, window"}  # names of the figures
+METHODS = ("window", "filter")  # each track is flown with each, in this order
+UPDATES = {"filter": "goe_update", "window": "goe_update, window"}  # names of the figures
 LENS_TRACKS = "lens"  # prefix of the tracks with lens distortion
 WITH_LENS = "with lens distortion"
 
@@ -71,7 +71,7 @@ class Spread:
 
 @dataclass
 class Count:
-    """Cost of the calls: by public function; for goe_update without lens distortion, refined, also by module, and its
+    """Cost of the calls: by public function; for goe_update without lens distortion, filter, also by module, and its
     worst call by (module, function)."""
 
     functions: dict[str, Spread]
@@ -147,7 +147,7 @@ def count(calls: Sequence[Call]) -> Count:
         functions[name] = Spread.of([call.total for call in own if not call.track.startswith(LENS_TRACKS)])
         lens = [call.total for call in own if call.track.startswith(LENS_TRACKS)]
         functions[f"{name} {WITH_LENS}"] = Spread.of(lens)
-    plain = [call for call in updates if call.method == "refined" and not call.track.startswith(LENS_TRACKS)]
+    plain = [call for call in updates if call.method == "filter" and not call.track.startswith(LENS_TRACKS)]
     modules = sorted({module for call in plain for module, _ in call.parts})
     by_module = {
         module: Spread.of([sum(n for (m, _), n in call.parts.items() if m == module) for call in plain])

@@ -36,9 +36,9 @@ def spread(figures: Figures, *words: str) -> str:
 def target_row(preset: str, figures: Figures) -> str:
     size = number(figures, book.CODE, book.TOTAL) + number(figures, book.CONSTANTS, book.TOTAL)
     stack = f"{number(figures, book.STACK, 'goe_update')} ({number(figures, book.PAINTED, 'goe_update')})"
-    lens = number(figures, book.INSTRUCTIONS, f"{UPDATES['refined']} {WITH_LENS}", "max")
+    lens = number(figures, book.INSTRUCTIONS, f"{UPDATES['filter']} {WITH_LENS}", "max")
     return (
-        f"| {title(preset)} | {size} | {stack} | {spread(figures, book.INSTRUCTIONS, UPDATES['refined'])} | {lens} | "
+        f"| {title(preset)} | {size} | {stack} | {spread(figures, book.INSTRUCTIONS, UPDATES['filter'])} | {lens} | "
         f"{spread(figures, book.INSTRUCTIONS, UPDATES['window'])} |"
     )
 

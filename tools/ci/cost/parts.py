@@ -1,5 +1,5 @@
-"""Cost of a firmware without some parts of the library: GOE_WITH_WINDOW, GOE_WITH_REFINED, GOE_WITH_HAZARD, and
-GOE_WITH_MOVERS of the refined method.
+"""Cost of a firmware without some parts of the library: GOE_WITH_WINDOW, GOE_WITH_FILTER, GOE_WITH_HAZARD, and
+GOE_WITH_TARGET_MOTION of the filter method.
 
 Each combination of parts that lib/goe.h accepts is compiled for one target. There are no figures if the header has no
 such parts.
@@ -19,7 +19,7 @@ from bench.running import ROOT, LedgerError, output_of
 from .building import Build
 from .modules import bytes_of_object, plain_command, size_of_state
 
-PARTS = ("window", "refined", "hazard")
+PARTS = ("window", "filter", "hazard")
 PARTS_PRESET = "m4f-gcc-os"  # the smallest code for the project's usual processor
 
 
@@ -73,8 +73,8 @@ def measured_parts(built: Build, folder: Path, library: Path = ROOT / "lib") -> 
         return []
     sources = sorted(library.rglob("*.c"))
     chosen = combinations()
-    if "GOE_WITH_MOVERS" in (library / "goe.h").read_text(encoding="utf-8"):
-        chosen.append(("everything but movers", ["-DGOE_WITH_MOVERS=0"]))
+    if "GOE_WITH_TARGET_MOTION" in (library / "goe.h").read_text(encoding="utf-8"):
+        chosen.append(("everything but target_motion", ["-DGOE_WITH_TARGET_MOTION=0"]))
     return [
         Part(name, code_bytes(built, sources, definitions, folder), size_of_state(built, folder, definitions))
         for name, definitions in chosen

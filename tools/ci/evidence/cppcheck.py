@@ -20,7 +20,7 @@ from goe_tools.places import ROOT
 from .parts import NotHereError
 
 LIBRARY = ROOT / "lib"
-PARTS = ("WINDOW", "REFINED", "HAZARD", "MOVERS")
+PARTS = ("WINDOW", "FILTER", "HAZARD", "TARGET_MOTION")
 CONFIGURATIONS: dict[str, tuple[str, ...]] = {  # name: omitted parts
     "default": (),
     **{f"without {part}": (part,) for part in PARTS},

@@ -206,7 +206,7 @@ def rows_of(state: State, updates: int) -> list[Row]:
     counts = state.all_of("estimator")
     statuses = {name: count for name, count in counts.items() if name.startswith("status_")}
     reached = [name for name, count in statuses.items() if count >= LEAST_SEEN]
-    kinds = ("fresh_window", "fresh_refined", "fresh_window_with_refined")
+    kinds = ("fresh_window", "fresh_refined", "fresh_window_with_filter")
     fresh = sum(counts.get(name, 0.0) for name in kinds)
     goal = updates // SANITIZED_SHARE
     rows = [
@@ -214,7 +214,7 @@ def rows_of(state: State, updates: int) -> list[Row]:
             plain + sanitized + memory >= updates),
         Row("... of them under ASan and UBSan", number(sanitized), number(goal), sanitized >= goal),
         Row("... under MSan", number(memory), "some", memory > 0),
-        Row("... with method window, refined", f"{number(counts.get('updates_window', 0))}, "
+        Row("... with method window, filter", f"{number(counts.get('updates_window', 0))}, "
             f"{number(counts.get('updates_refined', 0))}", "both", None),
         Row("... with a new solution", number(fresh), "", None),
         Row("... with target motion estimated; with late poses detected",

@@ -55,7 +55,7 @@ def rows(outcomes: Iterable[Outcome], reasons: Reasons) -> list[Row]:
             f">= {100 * GOAL:.0f} %",
             killed >= GOAL * changed,
         ),
-        Row("... ... without the hash over the refined method's bits", percent(count[KILLED], changed), "", None),
+        Row("... ... without the hash over the filter method's bits", percent(count[KILLED], changed), "", None),
         Row("... ... by that hash alone", str(count[BY_HASH]), "", None),
         Row("mutants with the same object code", str(count[SAME_CODE]), "", None),
         Row("mutants that neither a unit test nor the probe detects", str(count[EQUIVALENT]), "", None),

@@ -59,7 +59,7 @@ FINDINGS = (
         "goe_campaign checks --out before it flies",
         (
             f"{CAMPAIGN}::test_where_nothing_can_be_written",
-            f"{CAMPAIGN}::test_places_that_are_taken_are_told_before_the_flights",
+            f"{CAMPAIGN}::test_places_that_are_taken_are_reported_before_the_flights",
         ),
     ),
     Finding(
@@ -80,8 +80,8 @@ FINDINGS = (
             f"{REPLAY}::test_file_size_limit_leaves_nothing",
             f"{SIM}::test_a_full_disk_leaves_nothing",
             f"{CAMPAIGN}::test_a_full_disk_leaves_nothing",
-            f"{AVOID}::test_what_cannot_be_printed_is_told",
-            f"{COMPANION_TESTS}::test_what_cannot_be_printed_is_told",
+            f"{AVOID}::test_output_that_cannot_be_printed_is_reported",
+            f"{COMPANION_TESTS}::test_output_that_cannot_be_printed_is_reported",
             f"{WHOLE}::test_output_that_nobody_takes",
         ),
     ),
@@ -90,7 +90,7 @@ FINDINGS = (
         (
             f"{REPLAY}::test_interrupt_leaves_nothing",
             f"{SIM}::test_interrupted_runs_leave_no_part_of_a_log",
-            f"{WHOLE}::test_what_is_not_finished_leaves_nothing",
+            f"{WHOLE}::test_an_unfinished_file_leaves_nothing",
             f"{WHOLE}::test_a_log_is_written_whole",
         ),
     ),

@@ -21,8 +21,8 @@ from .record import Result, Row
 TRIED = {False: 250, True: 6000}  # scenes for each case and domain; True: long run
 RANDOM_SHARE = 0.3  # of them at random, before the local search
 STEP, STEP_SHARE = 0.1, 0.35  # size of a step in the unit cube; share of the changed coordinates
-METHODS = ("refined", "window")
-GOALS = {(NEAR.name, "refined"): 0.5, (FAR.name, "refined"): 1.0}  # sigmas; results in lib/goe.h, Arithmetic
+METHODS = ("filter", "window")
+GOALS = {(NEAR.name, "filter"): 0.5, (FAR.name, "filter"): 1.0}  # sigmas; results in lib/goe.h, Arithmetic
 
 
 @dataclass

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from goe_tools.places import ROOT
 
-NEEDS = {"movers": ("refined",)}  # parts that require others
+NEEDS = {"target_motion": ("filter",)}  # parts that require others
 
 # Files that a package may contain from a folder; other files are build output or private.
 SUFFIXES = (".c", ".cmake", ".h", ".in", ".ino", ".py", ".pyi", ".rs", ".txt", ".typed", ".xml", ".yml")
@@ -24,7 +24,7 @@ def is_no_source(folder: str) -> bool:
 class Part:
     """A part of the library that may be left out: GOE_WITH_..."""
 
-    name: str  # movers
+    name: str  # target_motion
     text: str  # one line, from goe.h
 
     @property

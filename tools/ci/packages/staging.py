@@ -14,7 +14,7 @@ from .facts import Facts
 
 LINK = re.compile(r"\[([^\[\]]*)\]\((?!https?:|#)([^)#]+)(#[^)]*)?\)")
 SECTION = re.compile(r"^## ", re.MULTILINE)
-OF_THE_TREE = ("From this tree", "How it is checked")  # sections of a page that do not apply to a package
+OF_THE_TREE = ("From this tree", "Tests")  # sections of a page that do not apply to a package
 
 
 @dataclass(frozen=True)

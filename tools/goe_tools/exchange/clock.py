@@ -10,7 +10,7 @@ constant attitude error b:
 
 Each track has one P and one b, b with a prior. The rows of a track are whitened with the library's error model of
 boxes: white noise, plus an error proportional to the box that is correlated over about a second. The offset minimizes
-J(s), the sum of all squares, found on a grid and refined by parabolas. With the variance v of a row
+J(s), the sum of all squares, found on a grid and filter by parabolas. With the variance v of a row
 
     sigma = sqrt(2 v / J''(s))
 

@@ -139,7 +139,7 @@ def messages(log: ObservationLog, estimates: Estimates) -> Iterator[Message]:
 
 def write_mcap(path: Path, log: ObservationLog, estimates: Estimates) -> dict[str, int]:
     """Writes the file and returns the number of messages by topic."""
-    columns: dict[str, list[str]] = {"goe.Estimate": ["n_used", *NUMBERS, "suspect"]}
+    columns: dict[str, list[str]] = {"goe.Estimate": ["images_used", *NUMBERS, "suspect"]}
     if log.frames:
         columns["goe.Observation"] = list(observation_numbers(log.frames[0]))
     count: dict[str, int] = {}

@@ -184,7 +184,12 @@ def truth_message(t_s: float, truth: Truth) -> Json:
 
 
 def estimate_message(t_s: float, estimate: Estimate) -> Json:
-    words = {"timestamp": _time(t_s), "status": estimate.status, "model": estimate.model, "n_used": estimate.n_used}
+    words = {
+        "timestamp": _time(t_s),
+        "status": estimate.status,
+        "model": estimate.model,
+        "images_used": estimate.images_used,
+    }
     doubt = {"suspect": int(estimate.suspect), "reason": estimate.reason}  # plots need numbers
     return {**words, **estimate.values, **doubt}
 

@@ -65,22 +65,22 @@ class BoxOptions:
     stop_m: float = 12.0  # distance of the last image before the obstacle's middle is abeam
     ahead_m: tuple[float, float] = (200.0, 260.0)  # Z of the middle at the first image, from and to
     aside_m: tuple[float, float] = (-30.0, -8.0)  # X of it
-    box_px: float = 0.5  # of a side, white
-    box_share: float = 0.04  # of a side, share of the box's width or height, correlated in time
-    correlation_s: float = 1.0
-    attitude_bias_deg: float = 0.5  # each body axis
-    attitude_white_deg: float = 0.1
-    velocity_bias_m_s: float = 0.05  # north and east
-    position_walk_m: float = 0.05  # per sqrt(s), each axis
-    height_bias_m: float = 0.5
-    height_white_m: float = 0.0  # of the altimeter
+    box_noise_px: float = 0.5  # of a side, white
+    box_noise_rel: float = 0.04  # of a side, share of the box's width or height, correlated in time
+    box_correlation_time_s: float = 1.0
+    attitude_bias_sd_deg: float = 0.5  # each body axis
+    attitude_white_sd_deg: float = 0.1
+    velocity_bias_sd_m_s: float = 0.05  # north and east
+    position_walk_sd_m: float = 0.05  # per sqrt(s), each axis
+    height_bias_sd_m: float = 0.5
+    height_white_sd_m: float = 0.0  # of the altimeter
     altimeter: bool = True  # without one, the reported height is random
     ground_off_m: float = 0.0  # height of the obstacle's ground relative to the ground of the altimeter
 
 
 EXACT = BoxOptions(
-    box_px=0.0, box_share=0.0, attitude_bias_deg=0.0, attitude_white_deg=0.0, velocity_bias_m_s=0.0,
-    position_walk_m=0.0, height_bias_m=0.0,
+    box_noise_px=0.0, box_noise_rel=0.0, attitude_bias_sd_deg=0.0, attitude_white_sd_deg=0.0, velocity_bias_sd_m_s=0.0,
+    position_walk_sd_m=0.0, height_bias_sd_m=0.0,
 )  # fmt: skip
 
 
@@ -101,8 +101,8 @@ def _exact_boxes(pixel: np.ndarray) -> np.ndarray:
 def _detected(exact: np.ndarray, time_s: np.ndarray, options: BoxOptions, rng: np.random.Generator) -> np.ndarray:
     """Boxes (K, 4) with a detector's error."""
     size = np.tile(exact[:, 2:] - exact[:, :2], 2)
-    common = correlated(time_s, options.correlation_s, 4, rng)
-    return exact + options.box_share * size * common + options.box_px * rng.standard_normal(exact.shape)
+    common = correlated(time_s, options.box_correlation_time_s, 4, rng)
+    return exact + options.box_noise_rel * size * common + options.box_noise_px * rng.standard_normal(exact.shape)
 
 
 def clipped(box: np.ndarray, image_size_px: tuple[float, float]) -> np.ndarray:
@@ -118,13 +118,13 @@ def _estimated_pose(
     position: np.ndarray, attitude: np.ndarray, time_s: np.ndarray, options: BoxOptions, rng: np.random.Generator
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Position, attitude and height as estimated by the autopilot."""
-    bias = math.radians(options.attitude_bias_deg) * rng.standard_normal(3)
-    white = math.radians(options.attitude_white_deg) * rng.standard_normal((len(time_s), 3))
-    step = options.position_walk_m * np.sqrt(np.diff(time_s, prepend=time_s[0]))[:, None]
+    bias = math.radians(options.attitude_bias_sd_deg) * rng.standard_normal(3)
+    white = math.radians(options.attitude_white_sd_deg) * rng.standard_normal((len(time_s), 3))
+    step = options.position_walk_sd_m * np.sqrt(np.diff(time_s, prepend=time_s[0]))[:, None]
     estimated = position + np.cumsum(step * rng.standard_normal(position.shape), 0)
-    estimated[:, :2] += options.velocity_bias_m_s * rng.standard_normal(2) * time_s[:, None]
-    off = options.ground_off_m * rng.choice([-1.0, 1.0]) + options.height_bias_m * rng.standard_normal()
-    height = -position[:, 2] + off + options.height_white_m * rng.standard_normal(len(time_s))
+    estimated[:, :2] += options.velocity_bias_sd_m_s * rng.standard_normal(2) * time_s[:, None]
+    off = options.ground_off_m * rng.choice([-1.0, 1.0]) + options.height_bias_sd_m * rng.standard_normal()
+    height = -position[:, 2] + off + options.height_white_sd_m * rng.standard_normal(len(time_s))
     if not options.altimeter:
         height = np.full(len(time_s), rng.uniform(0.0, ANY_HEIGHT_M))
     return estimated, multiply(attitude, small_rotations(bias + white)), height

@@ -18,8 +18,9 @@ from .rotations import fold, level_axes, matrices
 
 KITTI_FOLDER = ROOT.parent / "shared" / "data" / "kitti"
 KITTI_NOISE = Noise(
-    pixel_px=0.7, size_share=0.025, correlation=0.54, shape_share=0.12, attitude_bias_deg=0.2, attitude_white_deg=0.03,
-    attitude_drift_deg=0.05, height_m=0.1, velocity_bias_m_s=0.05, position_walk_m=0.02, typical_size_m=3.0,
+    pixel_px=0.7, size_share=0.025, correlation=0.54, shape_error_rel=0.12, attitude_bias_sd_deg=0.2,
+    attitude_white_sd_deg=0.03,
+    attitude_walk_sd_deg=0.05, height_m=0.1, velocity_bias_sd_m_s=0.05, position_walk_sd_m=0.02, prior_width_m=3.0,
 )  # fmt: skip
 
 

@@ -19,11 +19,11 @@ def _believed(scene: Scene, noise: Noise, rng: np.random.Generator) -> tuple[np.
     if scene.believed is not None:
         return scene.believed
     t = scene.time_s
-    bias = math.radians(noise.attitude_bias_deg) * rng.standard_normal(3)
-    white = math.radians(noise.attitude_white_deg) * rng.standard_normal((len(t), 3))
-    step = noise.position_walk_m * np.sqrt(np.diff(t, prepend=t[0]))[:, None]
+    bias = math.radians(noise.attitude_bias_sd_deg) * rng.standard_normal(3)
+    white = math.radians(noise.attitude_white_sd_deg) * rng.standard_normal((len(t), 3))
+    step = noise.position_walk_sd_m * np.sqrt(np.diff(t, prepend=t[0]))[:, None]
     position = scene.position_ned_m + np.cumsum(rng.standard_normal((len(t), 3)) * step, 0)
-    position[:, :2] += noise.velocity_bias_m_s * rng.standard_normal(2) * (t - t[0])[:, None]
+    position[:, :2] += noise.velocity_bias_sd_m_s * rng.standard_normal(2) * (t - t[0])[:, None]
     height = scene.height_m + noise.height_m * rng.standard_normal()
     return position, multiply(scene.attitude, small_rotations(bias + white)), height
 

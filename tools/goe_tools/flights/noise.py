@@ -17,16 +17,16 @@ class Noise:
     rounding: bool = False  # to whole pixels
     size_share: float = 0.0  # of the obstacle's width in the image
     correlation: float = 0.0  # from image to image
-    shape_share: float = 0.0  # shape error of the disc model, share of the width
-    attitude_bias_deg: float = 0.0  # each body axis
-    attitude_white_deg: float = 0.0
-    attitude_drift_deg: float = 0.0  # per sqrt(s)
+    shape_error_rel: float = 0.0  # shape error of the disc model, share of the width
+    attitude_bias_sd_deg: float = 0.0  # each body axis
+    attitude_white_sd_deg: float = 0.0
+    attitude_walk_sd_deg: float = 0.0  # per sqrt(s)
     height_m: float = 0.0
-    velocity_bias_m_s: float = 0.0  # north and east
-    position_walk_m: float = 0.0  # per sqrt(s), each axis
+    velocity_bias_sd_m_s: float = 0.0  # north and east
+    position_walk_sd_m: float = 0.0  # per sqrt(s), each axis
     outliers: float = 0.0  # share of the points
     outlier_px: float = 15.0
-    typical_size_m: float = 6.0
+    prior_width_m: float = 6.0
 
     @property
     def sigma_px(self) -> float:
@@ -35,7 +35,8 @@ class Noise:
 
 
 FIELD = Noise(
-    attitude_bias_deg=0.5, attitude_white_deg=0.1, height_m=0.5, velocity_bias_m_s=0.05, position_walk_m=0.05,
+    attitude_bias_sd_deg=0.5, attitude_white_sd_deg=0.1, height_m=0.5, velocity_bias_sd_m_s=0.05,
+    position_walk_sd_m=0.05,
     outliers=0.02,
 )  # fmt: skip
 NOISES = {

@@ -19,12 +19,14 @@ from .simulated import IMAGE_RATE_HZ, MIN_IMAGES, pinhole
 RECORDED_FOLDER = ROOT.parent / "shared" / "data" / "flights"
 RECORDED_NOISE = {  # a user's configuration for these autopilots
     "px4": Noise(
-        attitude_bias_deg=1.2, attitude_white_deg=0.15, attitude_drift_deg=0.3, height_m=0.7, velocity_bias_m_s=0.05,
-        position_walk_m=0.05,
+        attitude_bias_sd_deg=1.2, attitude_white_sd_deg=0.15, attitude_walk_sd_deg=0.3, height_m=0.7,
+        velocity_bias_sd_m_s=0.05,
+        position_walk_sd_m=0.05,
     ),
     "arduplane": Noise(
-        attitude_bias_deg=0.3, attitude_white_deg=0.05, attitude_drift_deg=0.05, height_m=0.5, velocity_bias_m_s=0.05,
-        position_walk_m=0.05,
+        attitude_bias_sd_deg=0.3, attitude_white_sd_deg=0.05, attitude_walk_sd_deg=0.05, height_m=0.5,
+        velocity_bias_sd_m_s=0.05,
+        position_walk_sd_m=0.05,
     ),
 }  # fmt: skip
 

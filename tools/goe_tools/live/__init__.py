@@ -1,6 +1,6 @@
-"""The page in which the library runs, compiled to WebAssembly.
+"""The live page: the library in a browser, compiled to WebAssembly.
 
 modules  builds the modules of port/wasm with CMake
-page     puts modules, scripts and style of port/wasm into one file
+page     combines modules, scripts and style of port/wasm in one file
 command  the command: python -m goe_tools live
 """

@@ -30,6 +30,6 @@ def run(arguments: argparse.Namespace) -> int:
     write_whole(arguments.out, text)
     print(
         f"{arguments.out}: {len(text.encode('utf-8')):,} bytes; bytes of WebAssembly: library {len(modules.goe):,}, "
-        f"flight {len(modules.flight):,}, the tests' logs and their replay {len(modules.golden):,}"
+        f"flight {len(modules.flight):,}, test logs and their replay {len(modules.golden):,}"
     )
     return 0

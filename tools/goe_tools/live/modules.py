@@ -15,7 +15,7 @@ NEEDED = ("cmake", "ninja", "clang-19", "wasm-ld-19", "wasm-opt")  # of Debian's
 
 @dataclass(frozen=True)
 class Modules:
-    """The modules as bytes: the library, the page's flight, the replay of the tests' logs."""
+    """The modules as bytes: the library, the flight, the replay of the test logs."""
 
     goe: bytes
     flight: bytes
@@ -23,15 +23,15 @@ class Modules:
 
 
 def missing() -> list[str]:
-    """What a build needs and this machine has not."""
+    """The missing programs for a build."""
     return [name for name in NEEDED if shutil.which(name) is None]
 
 
 def build(folder: Path) -> Modules:
-    """Builds in ``folder``. ValueError: a tool is missing, or the build failed."""
+    """Builds in ``folder``. ValueError: a program is missing, or the build failed."""
     absent = missing()
     if absent:
-        raise ValueError(f"needs {', '.join(absent)}, which tools/setup.sh installs")
+        raise ValueError(f"needs {', '.join(absent)}, which tools/setup.sh --demo installs")
     for command in (
         ["cmake", "--preset", PRESET, "-B", str(folder)],
         ["cmake", "--build", str(folder), "--target", "goe_wasm", "goe_wasm_flight", "goe_wasm_golden"],
@@ -43,6 +43,6 @@ def build(folder: Path) -> Modules:
 
 
 def read(folder: Path) -> Modules:
-    """The modules of a folder that :func:`build` has filled."""
+    """The modules in a folder of :func:`build`."""
     place = folder / "port" / "wasm"
     return Modules(*((place / f"{name}.wasm").read_bytes() for name in ("goe", "flight", "golden")))

@@ -1,4 +1,4 @@
-"""The page: scripts, style and modules of port/wasm in one file that needs nothing but itself."""
+"""The page: scripts, style and modules of port/wasm in one file, which fetches nothing."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ def script_name(path: Path) -> str:
 
 
 def joined(first: Path) -> str:
-    """A module and all that it imports as one script: each in a function of its own, which returns what it exports.
-    ValueError: a file has an import or export that is not of the one plain form."""
+    """A module and all its imports as one script: each in its own function, which returns the exports.
+    ValueError: a file has an import or export of another form than the supported one."""
     order: list[Path] = []
     texts: dict[Path, str] = {}
 
@@ -56,12 +56,12 @@ def wrapped(path: Path, text: str) -> str:
 
 
 def golden_hash() -> str:
-    """The hash that every target gives."""
+    """The hash of the output on every target."""
     return GOLDEN_HASH.read_text(encoding="utf-8").split()[0]
 
 
 def page(modules: Modules) -> str:
-    """The whole page. Its content security policy lets this one script run and nothing be fetched."""
+    """The whole page. Its content security policy permits this one script and no request."""
     script = f"\n{joined(FIRST_SCRIPT)}\n"
     digest = base64.b64encode(hashlib.sha256(script.encode("utf-8")).digest()).decode("ascii")
     folder = PORT / "page"

@@ -22,7 +22,7 @@ QUANTITIES = (
     "center_n_m",
     "center_e_m",
 )
-LABELS = ("t_s", "id", "status", "model", "n_used")
+LABELS = ("t_s", "id", "status", "model", "images_used")
 
 
 def sigma_name(quantity: str) -> str:
@@ -41,7 +41,7 @@ class Estimate:
 
     status: str
     model: str = "none"
-    n_used: int = 0
+    images_used: int = 0
     values: dict[str, float] = field(default_factory=dict)
     suspect: bool = False
     reason: str = "none"  # why it is suspect; "late" also without suspicion
@@ -52,7 +52,7 @@ def _estimate(row: Row, path: Path, line: int) -> tuple[float, int, Estimate]:
     estimate = Estimate(
         row["status"],
         row["model"],
-        read_integer(row["n_used"], path, line, "n_used"),
+        read_integer(row["images_used"], path, line, "images_used"),
         values,
         suspect=row.get("suspect") == "1",  # output before 0.3 has neither column
         reason=row.get("reason") or "none",

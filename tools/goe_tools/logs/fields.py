@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import IO
 
+from ..renamed import names as renamed_names
 from .progress import Progress
 
 INTEGER_MIN, INTEGER_MAX = -(2**63), 2**63 - 1  # range of the programs' reader
@@ -96,6 +97,9 @@ def _missing(header: list[str], name: str, known: Sequence[str]) -> str:
     for delimiter, plural in DELIMITERS.items():
         if len(header) == 1 and delimiter in header[0]:
             return f"column is missing: {plural} separate the columns; there must be commas, and points in the numbers"
+    old = [before for before in header if renamed_names().get(before) == name]
+    if old:
+        return f"unknown column {old[0]}: now {name}"
     instead = _nearest(name, [other for other in header if other not in known])
     return f"column is missing; is '{instead}' meant to be it?" if instead else "column is missing"
 

@@ -1,7 +1,8 @@
 """The Cramer-Rao bound: the smallest one-sigma of any unbiased estimator of the obstacle.
 
 The bound uses all images and the configured noise: pixels, attitude (constant and white), height, velocity. It leaves
-out the random walk of the position (``position_walk_m``) and the drift of the attitude: they can only make an estimator
+out the random walk of the position (``position_walk_sd_m``) and the drift of the attitude: they can only make an
+estimator
 worse, so the figure stays a lower bound.
 
     python -m goe_tools bound DIR
@@ -38,11 +39,11 @@ NOISE_OPTIONS = {
     "pixel": ("pixel_px", "PX", "one sigma of an image point"),
     "size-share": ("size_share", "X", "... plus this share of the obstacle's width in the image"),
     "correlation": ("correlation", "R", "correlation of the image points' errors from image to image"),
-    "shape-share": ("shape_share", "X", "shape error of the disc model, share of the width"),
-    "attitude-bias": ("attitude_bias_deg", "DEG", "constant error of the attitude, each axis"),
-    "attitude-white": ("attitude_white_deg", "DEG", "error of the attitude in each image"),
+    "shape-share": ("shape_error_rel", "X", "shape error of the disc model, share of the width"),
+    "attitude-bias": ("attitude_bias_sd_deg", "DEG", "constant error of the attitude, each axis"),
+    "attitude-white": ("attitude_white_sd_deg", "DEG", "error of the attitude in each image"),
     "height": ("height_m", "M", "constant error of the height"),
-    "velocity": ("velocity_bias_m_s", "MPS", "constant error of the velocity over ground"),
+    "velocity": ("velocity_bias_sd_m_s", "MPS", "constant error of the velocity over ground"),
 }
 
 

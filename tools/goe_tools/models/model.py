@@ -338,7 +338,7 @@ def covariances(view: View, slopes: np.ndarray, state: np.ndarray, noise: Noise)
     result = np.zeros((images, ROWS, ROWS))
     across = _line_directions(view, state)
     own = np.einsum("kni,knij,knj->kn", across, spread[:, :3], across)
-    share = np.hypot(noise.size_share, 0.0 if view.box else noise.shape_share)
+    share = np.hypot(noise.size_share, 0.0 if view.box else noise.shape_error_rel)
     own += (share * view.width[:, None]) ** 2
     result[:, range(3), range(3)] = own
     for number, feature in enumerate(BASES):
@@ -346,15 +346,15 @@ def covariances(view: View, slopes: np.ndarray, state: np.ndarray, noise: Noise)
         result[:, rows, rows] = spread[:, feature]
     result *= (1 + noise.correlation) / (1 - noise.correlation)
     shaken = slopes[..., :3]
-    return result + np.radians(noise.attitude_white_deg) ** 2 * shaken @ np.swapaxes(shaken, -1, -2)
+    return result + np.radians(noise.attitude_white_sd_deg) ** 2 * shaken @ np.swapaxes(shaken, -1, -2)
 
 
 def prior_sigmas(noise: Noise, box: bool) -> np.ndarray:
     """(12,): sigma of each state before the first image."""
     sigma = np.full(len(STATES), WEAK_SIGMA)
-    sigma[:3] = max(np.radians(noise.attitude_bias_deg), KNOWN_SIGMA)
+    sigma[:3] = max(np.radians(noise.attitude_bias_sd_deg), KNOWN_SIGMA)
     sigma[DH] = max(noise.height_m, KNOWN_SIGMA)
-    sigma[[VX, VZ]] = max(noise.velocity_bias_m_s, KNOWN_SIGMA)
+    sigma[[VX, VZ]] = max(noise.velocity_bias_sd_m_s, KNOWN_SIGMA)
     if not box:
         sigma[[SX, SZ]] = KNOWN_SIGMA
     return sigma

@@ -52,9 +52,9 @@ LEVEL_MIN = 1e-6  # horizontal part of a normal
 EXACT_ROUNDS = 60
 EXACT = 1e-15  # focal lengths
 SECTION_OF = {  # section of each setting; default: navigation
-    **dict.fromkeys(("box_px", "box_share", "correlation_s", "cut_noise"), "detector"),
-    **dict.fromkeys(("border_share", "cut_share"), "camera"),
-    **dict.fromkeys(("typical_size_m", "gate_sigma", "huber_sigma"), "refined"),
+    **dict.fromkeys(("box_noise_px", "box_noise_rel", "box_correlation_time_s", "truncation_noise_rel"), "detector"),
+    **dict.fromkeys(("border_rel", "truncation_rel"), "camera"),
+    **dict.fromkeys(("prior_width_m", "gate_sigma", "huber_sigma"), "filter"),
 }
 
 
@@ -62,28 +62,28 @@ SECTION_OF = {  # section of each setting; default: navigation
 class ErrorModel:
     """The configured errors of boxes and navigation; the defaults are the library's."""
 
-    box_px: float = 1.0  # of a side, white
-    box_share: float = 0.07  # of a side, share of the box's width or height, correlated ...
-    correlation_s: float = 1.2  # ... over this time
-    cut_noise: float = 1.0  # of every side of a box cut by the border, same share
-    border_share: float = 0.012  # sides nearer to the border are not used, share of the image's width
-    cut_share: float = 0.04  # a left or right side nearer to it marks the box as cut
-    attitude_bias_deg: float = 0.5
-    attitude_white_deg: float = 0.1
-    attitude_drift_deg: float = 0.0  # per sqrt(s)
-    height_bias_m: float = 0.5
-    ground_m: float = 2.0  # of the obstacle's terrain height
-    velocity_bias_m_s: float = 0.05
-    position_walk_m: float = 0.05  # per sqrt(s)
-    position_white_m: float = 0.0
-    typical_size_m: float = 6.0
+    box_noise_px: float = 1.0  # of a side, white
+    box_noise_rel: float = 0.07  # of a side, share of the box's width or height, correlated ...
+    box_correlation_time_s: float = 1.2  # ... over this time
+    truncation_noise_rel: float = 1.0  # of every side of a box cut by the border, same share
+    border_rel: float = 0.012  # sides nearer to the border are not used, share of the image's width
+    truncation_rel: float = 0.04  # a left or right side nearer to it marks the box as cut
+    attitude_bias_sd_deg: float = 0.5
+    attitude_white_sd_deg: float = 0.1
+    attitude_walk_sd_deg: float = 0.0  # per sqrt(s)
+    height_bias_sd_m: float = 0.5
+    terrain_height_sd_m: float = 2.0  # of the obstacle's terrain height
+    velocity_bias_sd_m_s: float = 0.05
+    position_walk_sd_m: float = 0.05  # per sqrt(s)
+    position_white_sd_m: float = 0.0
+    prior_width_m: float = 6.0
     gate_sigma: float = 5.0
     huber_sigma: float = 2.5
     disc: bool = False  # depth equals width
 
     @property
     def height_sd_m(self) -> float:
-        return float(np.hypot(self.height_bias_m, self.ground_m))
+        return float(np.hypot(self.height_bias_sd_m, self.terrain_height_sd_m))
 
     def settings(self) -> dict[str, float]:
         """The library's settings, by name."""
@@ -136,8 +136,8 @@ def measured_sides(
             distance = share * image_size_px[0]
             return (size > 0) & ((sides < distance) | (sides > size - 1 - distance))
 
-        cut = near(errors.cut_share)[:, [BOX_LEFT, BOX_RIGHT]].any(1)
-        sides[near(errors.border_share)] = np.nan
+        cut = near(errors.truncation_rel)[:, [BOX_LEFT, BOX_RIGHT]].any(1)
+        sides[near(errors.border_rel)] = np.nan
     return sides, cut | ~np.isfinite(sides[:, [BOX_LEFT, BOX_RIGHT]]).all(1)
 
 

@@ -7,7 +7,7 @@ sides, and p the prior sigmas (attitude, height, velocity),
     bound = (J' N^-1 J + diag(p^-2))^-1
 
     N = white noise of each side
-      + s_i s_j exp(-|t_i - t_j|/tau)     for the same side in the images i and j, s = box_share * size of the box
+      + s_i s_j exp(-|t_i - t_j|/tau)     for the same side in the images i and j, s = box_noise_rel * size of the box
       + attitude^2 J_b J_b' + position^2 J_p J_p'     white from image to image, common to the sides of an image
 
 As in ``bound``, the random walk of the position and the drift of the attitude are left out, since they can only
@@ -82,11 +82,17 @@ def noise_of_rows(rows: list[tuple[Sight, Row]], state: np.ndarray, errors: Erro
     size = np.array([box_size(sight, state, row.side % 2) for sight, row in rows])
     cut = np.array([sight.cut for sight, _ in rows])
     between = np.abs(time_s[:, None] - time_s)
-    correlation = np.exp(-between / errors.correlation_s) if errors.correlation_s > 0 else (between == 0).astype(float)
-    share = errors.box_share * size
-    white = (errors.box_px / focal_px(rows[0][0].camera)[side]) ** 2 + np.where(cut, errors.cut_noise * size, 0.0) ** 2
-    moved = np.radians(errors.attitude_white_deg) ** 2 * slope[:, :3] @ slope[:, :3].T
-    moved += errors.position_white_m**2 * slope[:, PX:] @ slope[:, PX:].T
+    correlation = (
+        np.exp(-between / errors.box_correlation_time_s)
+        if errors.box_correlation_time_s > 0
+        else (between == 0).astype(float)
+    )
+    share = errors.box_noise_rel * size
+    white = (errors.box_noise_px / focal_px(rows[0][0].camera)[side]) ** 2 + np.where(
+        cut, errors.truncation_noise_rel * size, 0.0
+    ) ** 2
+    moved = np.radians(errors.attitude_white_sd_deg) ** 2 * slope[:, :3] @ slope[:, :3].T
+    moved += errors.position_white_sd_m**2 * slope[:, PX:] @ slope[:, PX:].T
     same_side, same_image = side[:, None] == side, between == 0
     common = np.where(same_side, share[:, None] * share * correlation, 0.0)
     return np.diag(white) + common + np.where(same_image, moved, 0.0)
@@ -95,10 +101,10 @@ def noise_of_rows(rows: list[tuple[Sight, Row]], state: np.ndarray, errors: Erro
 def prior_sigmas(state: np.ndarray, errors: ErrorModel) -> np.ndarray:
     """(12,): sigmas of the states and the velocity over ground; a disc is as deep as it is wide."""
     sigma = np.full(COUNT, WEAK_SIGMA)
-    sigma[:3] = max(np.radians(errors.attitude_bias_deg), KNOWN_SIGMA)
+    sigma[:3] = max(np.radians(errors.attitude_bias_sd_deg), KNOWN_SIGMA)
     sigma[G] = max(errors.height_sd_m * state[Q], KNOWN_SIGMA)
     sigma[[S, C]] = KNOWN_SIGMA
-    sigma[[VX, VZ]] = max(errors.velocity_bias_m_s, KNOWN_SIGMA)
+    sigma[[VX, VZ]] = max(errors.velocity_bias_sd_m_s, KNOWN_SIGMA)
     return sigma
 
 

@@ -5,7 +5,8 @@ information instead of a covariance. One linearized update per image, at the pre
 
     r = measured - predicted(x)          J = d predicted / d state              (``prism.row_of``)
 
-A side's error has a white part and a correlated part: a first-order Gauss-Markov process with the sigma s = box_share *
+A side's error has a white part and a correlated part: a first-order Gauss-Markov process with the sigma
+s = box_noise_rel *
 size of the box, which decays by f = exp(-t/tau) from image to image. Given the state, the past residuals determine it:
 m - F (x' - x) if the state becomes x', with the remaining variance V.
 
@@ -60,7 +61,7 @@ DEPTH_LIMIT = 2.0  # of |s|
 AHEAD_MIN = 0.02  # of the middle, units of Z0
 RAY_AHEAD_MIN = 0.02
 GROUND_SIGMAS = 3.0  # least distance of the foot below the horizon for a range from flat ground
-FOOT_SHARE = 0.6  # of box_share of the width, part of that sigma
+FOOT_SHARE = 0.6  # of box_noise_rel of the width, part of that sigma
 NEAR_SIDE = 0.5  # of the width: the foot is nearer than the middle
 RANGE_MIN_M, RANGE_MAX_M = 1.0, 1e6
 NO_ALTIMETER_M = 50.0  # from this sigma of the height on the first box determines it
@@ -186,13 +187,13 @@ class PrismFilter:
     def _first_range_m(self, sight: Sight, size: float, foot: np.ndarray | None) -> float:
         """From flat ground, if the foot is clearly below the horizon, otherwise from the prior width."""
         errors = self.errors
-        attitude = np.radians([errors.attitude_bias_deg, errors.attitude_white_deg])
-        own = [errors.box_px / sight.camera.fy, FOOT_SHARE * errors.box_share * size]
+        attitude = np.radians([errors.attitude_bias_sd_deg, errors.attitude_white_sd_deg])
+        own = [errors.box_noise_px / sight.camera.fy, FOOT_SHARE * errors.box_noise_rel * size]
         clear = GROUND_SIGMAS * float(np.linalg.norm([*attitude, *own]))
         high = sight.height_m > GROUND_SIGMAS * errors.height_sd_m
         if foot is not None and foot[1] > clear and high:
             return sight.height_m / foot[1] * (1 + NEAR_SIDE * size)
-        return errors.typical_size_m / size
+        return errors.prior_width_m / size
 
     def start(self, in_t: Sight) -> bool:
         """Starts with the first image that measures left and right; Z then points at the middle between them."""
@@ -231,8 +232,8 @@ class PrismFilter:
         """(10,) sigmas of the first guess."""
         errors, q = self.errors, self.state[Q]
         sd = np.empty(COUNT)
-        sd[:3] = np.radians(errors.attitude_bias_deg)
-        sd[2] = np.hypot(sd[2], HEADING_ARM * errors.velocity_bias_m_s)
+        sd[:3] = np.radians(errors.attitude_bias_sd_deg)
+        sd[2] = np.hypot(sd[2], HEADING_ARM * errors.velocity_bias_sd_m_s)
         sd[G] = max(errors.height_sd_m * q, GROUND_MIN)
         sd[[A, Q, W]] = 1.0, 2.0 * q, 2.5 * width
         sd[E] = 10 * max(abs(self.state[E]), width)
@@ -250,7 +251,7 @@ class PrismFilter:
 
     def _pass_time(self, span_s: float) -> None:
         """The position walks along X and Z in turn: a step along Z rescales the lengths, which are in units of Z0."""
-        drift, walk = np.radians(self.errors.attitude_drift_deg), self.errors.position_walk_m * self.state[Q]
+        drift, walk = np.radians(self.errors.attitude_walk_sd_deg), self.errors.position_walk_sd_m * self.state[Q]
         noise = np.zeros(C)
         noise[BX : BX + 3] = drift**2
         self.gained[BX : BX + 3] += drift**2 * span_s
@@ -277,20 +278,20 @@ class PrismFilter:
         side = np.array([row.side for row in rows])
         slope = np.array([row.slope for row in rows])
         size = np.array([box_size(sight, self.state, row.side % 2) for row in rows])
-        own = (errors.box_px / focal_px(sight.camera)[side]) ** 2 + (SCATTER_SHARE * size) ** 2
-        own += (errors.cut_noise * size) ** 2 if sight.cut else 0.0
+        own = (errors.box_noise_px / focal_px(sight.camera)[side]) ** 2 + (SCATTER_SHARE * size) ** 2
+        own += (errors.truncation_noise_rel * size) ** 2 if sight.cut else 0.0
         ahead = max(1 - sight.moved_m[2] * self.state[Q], AHEAD_MIN)
         own += (slope[:, Q] * sight.moved_m[2] * q_variance / ahead) ** 2
-        position_sd = errors.position_white_m * np.sqrt(1 + q_variance / self.state[Q] ** 2)
+        position_sd = errors.position_white_sd_m * np.sqrt(1 + q_variance / self.state[Q] ** 2)
         residual = np.array([sight.side[row.side] - row.predicted for row in rows])
         about = slope[:, :3] @ sight.axes_from_body.T
         return Rows(side, residual, slope[:, :COUNT], own, about, position_sd * slope[:, PX:])
 
     def _whiten(self, sight: Sight, span_s: float, rows: Rows | None) -> None:
         errors = self.errors
-        share = np.exp(-span_s / errors.correlation_s) if errors.correlation_s > 0 else 0.0
+        share = np.exp(-span_s / errors.box_correlation_time_s) if errors.box_correlation_time_s > 0 else 0.0
         for side, memory in enumerate(self.memory):
-            memory.predict(share, (errors.box_share * box_size(sight, self.state, side % 2)) ** 2)
+            memory.predict(share, (errors.box_noise_rel * box_size(sight, self.state, side % 2)) ** 2)
         for i, side in enumerate(() if rows is None else rows.side):
             memory = self.memory[side]
             rows.residual[i] -= memory.value
@@ -300,7 +301,7 @@ class PrismFilter:
     def _innovation2(self, rows: Rows, weight: np.ndarray) -> float:
         """Normalized square of a weighted sum of residuals, without the contribution of a walk along Z."""
         slope = weight @ rows.slope
-        white = np.radians(self.errors.attitude_white_deg)
+        white = np.radians(self.errors.attitude_white_sd_deg)
         variance = slope @ (self.settled + np.diag(self.gained)) @ slope + weight**2 @ rows.own
         variance += white**2 * np.sum((weight @ rows.about) ** 2) + np.sum((weight @ rows.shift) ** 2)
         return float((weight @ rows.residual) ** 2 / variance)
@@ -360,7 +361,7 @@ class PrismFilter:
         if self.state is None:
             if not self.start(in_t):
                 return False
-        elif in_t.time_s - self.time_s < EARLY_SHARE * self.errors.correlation_s:
+        elif in_t.time_s - self.time_s < EARLY_SHARE * self.errors.box_correlation_time_s:
             return False
         self.flown_m += float(np.linalg.norm((in_t.moved_m - self.last_m)[[0, 2]]))
         self.last_m = in_t.moved_m
@@ -386,7 +387,7 @@ class PrismFilter:
         if not kept.any():
             self.scatter.take_fit(RATIO_MOST)
             return False
-        white = np.radians(self.errors.attitude_white_deg)
+        white = np.radians(self.errors.attitude_white_sd_deg)
         shared = white**2 * rows.about @ rows.about.T + rows.shift @ rows.shift.T
         self._learn(rows, shared)
         nis = self._nis(rows, shared)
@@ -406,14 +407,16 @@ class PrismFilter:
         variance = np.einsum("ij,jk,ik->i", slopes, self.full_covariance(), slopes) * self.scatter.factor()
         span_s = in_t.time_s - self.start_s
         path_m = max(float(np.linalg.norm((in_t.moved_m - self.origin_m)[[0, 2]])), PATH_MIN_M)
-        share = errors.velocity_bias_m_s * span_s / path_m
+        share = errors.velocity_bias_sd_m_s * span_s / path_m
         above_m = max(abs(values[3]), abs(values[3] - in_t.given_height_m))
         variance += (share * np.array([values[1], values[1], values[2], above_m])) ** 2
         before_s = self.start_s - self.first_s  # X0 and Z0 count from the track's first image
         way_m = float(np.linalg.norm((in_t.moved_m - self.origin_m)[[0, 2]]))
         straight = way_m / self.flown_m if self.flown_m > way_m else 1.0  # no scaling for a path that leads back
-        variance[:2] += (errors.velocity_bias_m_s * span_s) ** 2 * (1 - straight**2)
-        variance[:2] += errors.position_walk_m**2 * (span_s + before_s) + (errors.velocity_bias_m_s * before_s) ** 2
+        variance[:2] += (errors.velocity_bias_sd_m_s * span_s) ** 2 * (1 - straight**2)
+        variance[:2] += (
+            errors.position_walk_sd_m**2 * (span_s + before_s) + (errors.velocity_bias_sd_m_s * before_s) ** 2
+        )
         variance += self._no_ellipse(values, in_t)
         values[:2] += self.origin_m[[0, 2]]
         return values, np.sqrt(variance)

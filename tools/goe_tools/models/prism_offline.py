@@ -186,8 +186,8 @@ class Track:
         rows = [(s, Row(int(i), float(p), d)) for s, i, p, d in zip(self.sight, self.side, predicted, slope)]
         result = noise_of_rows(rows, state[: len(STATES)], self.errors)
         passed = np.minimum(self.since_s[:, None], self.since_s)
-        result += self.errors.position_walk_m**2 * passed * (slope[:, PX:] @ slope[:, PX:].T)
-        drift = np.radians(self.errors.attitude_drift_deg)
+        result += self.errors.position_walk_sd_m**2 * passed * (slope[:, PX:] @ slope[:, PX:].T)
+        drift = np.radians(self.errors.attitude_walk_sd_deg)
         return result + drift**2 * passed * (slope[:, :3] @ slope[:, :3].T)
 
     def priors(self, state: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -81,15 +81,15 @@ def box_rows(flight: Flight, errors: ErrorModel, with_truth: bool) -> Rows | Non
     turn, place = DEG * slope[:, :3], slope[:, PX:]
     own = 1.0 / focal_px(flight.camera)[side]
     effects = {
-        "detector.box_px": Effect(own[:, None], np.eye(len(own))),
-        "navigation.attitude_white_deg": Effect(turn, same),
-        "navigation.attitude_drift_deg": Effect(turn, passed),
-        "navigation.attitude_bias_deg": Effect(turn),
-        "navigation.velocity_bias_m_s": Effect(-time_s[:, None] * slope[:, [PX, PX + 2]]),
-        "navigation.position_walk_m": Effect(place, passed),
-        "navigation.position_white_m": Effect(place, same),
-        "navigation.height_bias_m": Effect(slope[:, [G]] * state[Q]),
+        "detector.box_noise_px": Effect(own[:, None], np.eye(len(own))),
+        "navigation.attitude_white_sd_deg": Effect(turn, same),
+        "navigation.attitude_walk_sd_deg": Effect(turn, passed),
+        "navigation.attitude_bias_sd_deg": Effect(turn),
+        "navigation.velocity_bias_sd_m_s": Effect(-time_s[:, None] * slope[:, [PX, PX + 2]]),
+        "navigation.position_walk_sd_m": Effect(place, passed),
+        "navigation.position_white_sd_m": Effect(place, same),
+        "navigation.height_bias_sd_m": Effect(slope[:, [G]] * state[Q]),
     }
-    fading = {"detector.box_share": Fading("detector.correlation_s", size, side)}
+    fading = {"detector.box_noise_rel": Fading("detector.box_correlation_time_s", size, side)}
     image = np.unique(time_s, return_inverse=True)[1]
     return Rows(flight.name, time_s, image, track.measured - at, slope[:, unknown], effects, fading).only(uncut)

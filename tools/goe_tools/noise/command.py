@@ -14,6 +14,7 @@ from rich.console import Console
 from rich.table import Table
 from tqdm import tqdm
 
+from .. import renamed
 from ..flights.flight import Flight
 from ..models.prism import ErrorModel
 from .boxes import box_rows
@@ -24,23 +25,29 @@ from .rows import Rows
 from .tracks import box_tracks, point_tracks
 
 GIVEN = {  # the library's defaults
-    "detector.box_px": 1.0, "detector.box_share": 0.07, "detector.correlation_s": 1.2, "detector.point_px": 0.5,
-    "detector.point_share": 0.0, "navigation.attitude_white_deg": 0.1, "navigation.attitude_bias_deg": 0.5,
-    "navigation.attitude_drift_deg": 0.0, "navigation.velocity_bias_m_s": 0.05, "navigation.position_walk_m": 0.05,
-    "navigation.position_white_m": 0.0, "navigation.height_bias_m": 0.5, "navigation.ground_m": 2.0,
+    "detector.box_noise_px": 1.0, "detector.box_noise_rel": 0.07, "detector.box_correlation_time_s": 1.2,
+    "detector.point_noise_px": 0.5,
+    "detector.point_noise_rel": 0.0, "navigation.attitude_white_sd_deg": 0.1, "navigation.attitude_bias_sd_deg": 0.5,
+    "navigation.attitude_walk_sd_deg": 0.0, "navigation.velocity_bias_sd_m_s": 0.05,
+    "navigation.position_walk_sd_m": 0.05,
+    "navigation.position_white_sd_m": 0.0, "navigation.height_bias_sd_m": 0.5, "navigation.terrain_height_sd_m": 2.0,
 }  # fmt: skip
 RANGES = {  # of the library
-    "detector.box_px": (0.05, 100.0), "detector.box_share": (0.0, 1.0), "detector.point_px": (0.05, 100.0),
-    "detector.point_share": (0.0, 1.0), "navigation.attitude_white_deg": (1e-4, 30.0),
-    "navigation.attitude_bias_deg": (1e-3, 30.0), "navigation.velocity_bias_m_s": (0.0, 100.0),
-    "navigation.height_bias_m": (1e-3, 1e3),
+    "detector.box_noise_px": (0.05, 100.0), "detector.box_noise_rel": (0.0, 1.0),
+    "detector.point_noise_px": (0.05, 100.0),
+    "detector.point_noise_rel": (0.0, 1.0), "navigation.attitude_white_sd_deg": (1e-4, 30.0),
+    "navigation.attitude_bias_sd_deg": (1e-3, 30.0), "navigation.velocity_bias_sd_m_s": (0.0, 100.0),
+    "navigation.height_bias_sd_m": (1e-3, 1e3),
 }  # fmt: skip
-WHITE = "navigation.attitude_white_deg"
-FIRST = {"boxes": ("detector.box_px", "detector.box_share", WHITE), "points": ("detector.point_px", WHITE)}
-WITH_TRUTH = ("navigation.attitude_bias_deg", "navigation.height_bias_m", "navigation.velocity_bias_m_s")
+WHITE = "navigation.attitude_white_sd_deg"
+FIRST = {
+    "boxes": ("detector.box_noise_px", "detector.box_noise_rel", WHITE),
+    "points": ("detector.point_noise_px", WHITE),
+}
+WITH_TRUTH = ("navigation.attitude_bias_sd_deg", "navigation.height_bias_sd_m", "navigation.velocity_bias_sd_m_s")
 LEAST_JUDGED = 4  # tracks in each half
 COVER_LOW, COVER_HIGH, COVER_ROUNDS = -4.0, 1.0, 8  # logarithms of the factor, and halvings
-HEIGHT, GROUND = "navigation.height_bias_m", "navigation.ground_m"
+HEIGHT, GROUND = "navigation.height_bias_sd_m", "navigation.terrain_height_sd_m"
 
 
 @dataclass
@@ -57,7 +64,7 @@ class Material:
 
 def _error_model(given: dict[str, float]) -> ErrorModel:
     """The configured errors on which the rows of boxes depend."""
-    return ErrorModel(height_bias_m=given[HEIGHT], ground_m=given[GROUND])
+    return ErrorModel(height_bias_sd_m=given[HEIGHT], terrain_height_sd_m=given[GROUND])
 
 
 def _boxes(logs: Sequence[Path], given: dict[str, float], truth: bool, whole: bool) -> Material:
@@ -99,7 +106,7 @@ def gather(logs: Sequence[Path], given: dict[str, float], truth: bool, whole: bo
 
 
 def fitted(material: Material, given: dict[str, float]) -> Fitted:
-    """``navigation.height_bias_m`` includes the terrain height, which images cannot separate from it."""
+    """``navigation.height_bias_sd_m`` includes the terrain height, which images cannot separate from it."""
     if not material.rows:
         raise ValueError(f"no track has enough images ({material.left_out} are too short or fit no obstacle)")
     start = dict(given)
@@ -168,6 +175,8 @@ def line_of(chosen: dict[str, float]) -> str:
 
 def _setting(text: str) -> tuple[str, float]:
     name, equals, value = text.partition("=")
+    if name in renamed.names():
+        raise argparse.ArgumentTypeError(f"unknown setting {name}: now {renamed.names()[name]}")
     if not equals or name not in GIVEN:
         raise argparse.ArgumentTypeError(f"'{text}' is not NAME=VALUE with one of {', '.join(GIVEN)}")
     try:

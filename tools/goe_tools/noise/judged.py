@@ -18,7 +18,7 @@ JUDGED = {"X0": X0, "Z0": Z0, "H": HEIGHT}
 def outcome_of(flight: Flight, settings: dict[str, float]) -> BoxOutcome:
     """Errors and sigmas of X0, Z0 and H in all images with an answer."""
     track = estimate(flight, {**camera_settings(flight), **settings})
-    judged = track.valid & (track.method == METHODS["refined"])[:, None]
+    judged = track.valid & (track.method == METHODS["filter"])[:, None]
     judged[:, [i for i in range(6) if i not in JUDGED.values()]] = False
     error, sigma = (np.where(judged, a, np.nan) for a in (track.values - flight.truth.values, track.sigma))
     return BoxOutcome(flight, error, sigma, track.suspect)

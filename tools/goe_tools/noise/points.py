@@ -56,13 +56,13 @@ def point_rows(flight: Flight) -> Rows | None:
     since = np.where(time_s > 0.0, time_s, 1.0)[:, None]  # no random walk yet at the start
     turn = DEG * slope[:, :3]
     effects = {
-        "detector.point_px": Effect(own[used][:, None], np.eye(len(image))),
-        "detector.point_share": Effect(width[used][:, None], np.eye(len(image))),
-        "navigation.attitude_white_deg": Effect(turn, same),
-        "navigation.attitude_drift_deg": Effect(turn, passed),
-        "navigation.attitude_bias_deg": Effect(turn),
-        "navigation.velocity_bias_m_s": Effect(slope[:, [VX, VZ]]),
-        "navigation.position_walk_m": Effect(slope[:, [VX, VZ]] / since, passed),
-        "navigation.height_bias_m": Effect(slope[:, [DH]]),
+        "detector.point_noise_px": Effect(own[used][:, None], np.eye(len(image))),
+        "detector.point_noise_rel": Effect(width[used][:, None], np.eye(len(image))),
+        "navigation.attitude_white_sd_deg": Effect(turn, same),
+        "navigation.attitude_walk_sd_deg": Effect(turn, passed),
+        "navigation.attitude_bias_sd_deg": Effect(turn),
+        "navigation.velocity_bias_sd_m_s": Effect(slope[:, [VX, VZ]]),
+        "navigation.position_walk_sd_m": Effect(slope[:, [VX, VZ]] / since, passed),
+        "navigation.height_bias_sd_m": Effect(slope[:, [DH]]),
     }
     return Rows(flight.name, time_s, image, left[used], np.zeros((len(image), 0)), effects, {})

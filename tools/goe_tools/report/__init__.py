@@ -1,22 +1,28 @@
-"""The campaign's report: the paper's results and ours side by side, as one HTML page and as a table for the terminal.
+"""The report: how early, how certain, how many collisions; all goals; the paper's campaign. HTML pages and plain text.
 
-data        what goe_campaign wrote
-columns     a CSV file by columns
-goals_file  what the goals command wrote
-avoid_file  what goe_avoid wrote
-statistics  ranges, verdicts, comparisons of studies
-refined     the same of the refined method
-rare        how often what must not happen does: on the page
-rare_record the events, their counts, the file that keeps them
-rare_command flies, in many processes, and goes on where a record ends
-attack_lines the names of the lines and figures of hostile flights
-attacks     hostile flights of the goals: where the sigma holds, and where not
-avoid       the flight layer's orders, flown: collisions with and without
-style       colours, sizes, names
-prose       sentences that follow from the numbers
-figures     the paper's figures 5 to 14 and our own
-page        the HTML page and the files beside it
-terminal    Table 3 as plain text
+data         reads the folder of goe_campaign
+columns      reads a CSV file by columns
+goals_file   reads the file of the goals command
+avoid_file   reads the file of goe_avoid
+statistics   ranges, verdicts, comparisons of studies
+refined      the same for the default method
+boxes        upright boxes by roll amplitude
+rare         rare events for the page
+rare_record  the events, their counts, the file that contains them
+rare_command the command rare: many flights in many processes; continues a record
+attack_lines names of the lines and figures of hostile flights
+attacks      hostile flights of the goals: where the sigma holds, and where not
+avoid        the flight layer's orders: collisions with and without them
+style        colors, sizes, names
+prose        sentences computed from the numbers
+figures      the figures of all pages
+answers      content of the first page
+goals_page   content of the page with all goals
+paper_page   content of the page on the paper's campaign
+page         renders and writes the pages and the figures
+pages        templates and style of the pages
+summary      a few lines of plain text
+terminal     Table 3 as plain text
 paper_table3 the paper's Table 3
-command     writes the page, prints the table
+command      the command report
 """

@@ -1,4 +1,4 @@
-"""The flight layer's orders, flown: collisions and closest distances with and without them, false orders."""
+"""The flight layer's orders: collisions and closest distances with and without them, false orders."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ KIND_NAMES = {"mast": "Mast", "building": "Building", "truck": "Truck, on approa
 
 @dataclass(frozen=True)
 class Courses:
-    """The collision courses of a kind. Closest distances, m, and the orders' time ahead, s, ascending."""
+    """The collision courses of one kind of obstacle. Closest distances, m, and orders' time ahead, s, ascending."""
 
     kind: str
     runs: int
     collided_without: int
     collided_with: int
-    collided_late: int  # with the orders carried out, and the order was late
+    collided_late: int  # with the orders followed, and the order was late
     closest_without_m: np.ndarray
     closest_with_m: np.ndarray
     ahead_s: np.ndarray
@@ -37,7 +37,7 @@ class Passes:
 
 
 def quantile(ascending: np.ndarray, share: float) -> float:
-    """As goe_avoid takes it: the run of that rank."""
+    """As in goe_avoid: the value of the run with that rank."""
     return float(ascending[int(share * (len(ascending) - 1) + 0.5)]) if len(ascending) else math.nan
 
 
@@ -52,7 +52,7 @@ def _courses(kind: str, runs: Avoid) -> Courses:
 
 
 def courses(avoid: Avoid) -> list[Courses]:
-    """By kind, of those that were flown."""
+    """For each kind that was flown."""
     found = [_courses(kind, avoid.flown(COLLISION, kind)) for kind in KINDS]
     return [row for row in found if row.runs]
 
@@ -63,7 +63,7 @@ def passes(avoid: Avoid) -> list[Passes]:
 
 
 def setup(avoid: Avoid) -> dict[str, str]:
-    """What all runs have in common, as text; without passes ``pass_m`` is empty."""
+    """The values that all runs share, as text; without passes ``pass_m`` is empty."""
     away = avoid.flown(PASS)["pass_m"]
     return {
         "delay_ms": f"{1e3 * avoid['delay_s'][0]:g}", "margin_m": f"{avoid['margin_m'][0]:g}",
@@ -95,7 +95,7 @@ def heads(avoid: Avoid) -> list[str]:
 
 
 def _cells(texts: tuple[str, ...], red: tuple[int, ...] = ()) -> list[dict[str, str]]:
-    """red: the cells whose number shall be 0, by place."""
+    """red: the cells whose number should be 0, by index."""
     return [{"text": t, "css": "miss" if i in red and t not in ("", "0") else ""} for i, t in enumerate(texts)]
 
 
@@ -114,27 +114,27 @@ def _pass_cells(row: Passes | None) -> list[dict[str, str]]:
 
 
 def table(avoid: Avoid) -> list[dict[str, object]]:
-    """For the page: a line for each kind that was flown, cells by heads(); empty where there is nothing to tell."""
+    """For the page: a line for each kind that was flown, cells by heads(); empty if there is no number."""
     of_kind, away = {row.kind: row for row in courses(avoid)}, {row.kind: row for row in passes(avoid)}
-    told: list[dict[str, object]] = []
+    lines: list[dict[str, object]] = []
     for kind in KINDS:
         if kind in of_kind or kind in away:
             cells = _course_cells(of_kind.get(kind)) if of_kind else []
             cells += _pass_cells(away.get(kind)) if away else []
-            told.append({"title": KIND_NAMES[kind], "cells": cells})
-    return told
+            lines.append({"title": KIND_NAMES[kind], "cells": cells})
+    return lines
 
 
 def _collisions(found: list[Courses]) -> str:
     runs, without = sum(row.runs for row in found), sum(row.collided_without for row in found)
     collided, late = sum(row.collided_with for row in found), sum(row.collided_late for row in found)
     said = (
-        f"if nobody reacts, {without:,} of {plural(runs, 'collision course')} {'ends' if without == 1 else 'end'} in a "
-        "collision; if the orders are carried out, "
+        f"without goe, {without:,} of {plural(runs, 'collision course')} {'ends' if without == 1 else 'end'} in a "
+        "collision; with goe's orders followed, "
     )
     if collided == 0:
         least = min(float(row.closest_with_m[0]) for row in found)
-        return said + f"none does, and the closest stays {one_decimal(least)}\u00a0m away"
+        return said + f"none does, and the closest aircraft stays {one_decimal(least)}\u00a0m away"
     where = ", ".join(f"{row.kind} {row.collided_with:,}" for row in found if row.collided_with)
     after = f"; {late:,} after a late order" if late else ""
     return said + f"{collided:,} {'does' if collided == 1 else 'do'} ({where}{after})"
@@ -149,7 +149,7 @@ def _false_orders(found: list[Passes], pass_m: str) -> str:
 
 
 def sentence(avoid: Avoid) -> str:
-    """What came of it, from the numbers."""
+    """The result in words, from the numbers."""
     found, away = courses(avoid), passes(avoid)
     said = [_collisions(found)] if found else []
     said += [_false_orders(away, setup(avoid)["pass_m"])] if away else []

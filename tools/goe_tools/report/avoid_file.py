@@ -1,4 +1,4 @@
-"""Reads what ``goe_avoid --csv FILE`` wrote: the flight layer's orders, carried out and not, run by run."""
+"""Reads the file of ``goe_avoid --csv FILE``: every run with the flight layer's orders followed and without them."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ COLLISION, PASS = COURSES = ("collision", "pass")
 NO_ORDER = "none"
 ACTIONS = (NO_ORDER, "left", "right", "climb", "go_around", "hold")
 LABELS = {"kind": KINDS, "course": COURSES, "action": ACTIONS}
-SETUP = ("delay_s", "margin_m", "collision_m", "pass_m")  # alike in every run
+SETUP = ("delay_s", "margin_m", "collision_m", "pass_m")  # the same in every run
 NUMBERS = ("seed", "delay_s", "margin_m", "collision_m", "closest_without_m", "suspect", "assessed")
 FLAGS = ("late", "collided_without", "confident")
-OF_COURSE = {  # what a run of the other course has not: numbers, flags
+OF_COURSE = {  # numbers and flags that only runs of this course have
     COLLISION: (("closest_with_m",), ("collided_with",)),
     PASS: (("pass_m",), ("false_order",)),
 }
@@ -26,7 +26,7 @@ OF_COURSE = {  # what a run of the other course has not: numbers, flags
 
 @dataclass(frozen=True)
 class Avoid:
-    """Columns are arrays of one length; text in LABELS, float64 otherwise, NaN where the field is empty."""
+    """Columns are arrays of one length; text in LABELS, float64 otherwise, NaN for an empty field."""
 
     columns: dict[str, np.ndarray]
 
@@ -40,7 +40,7 @@ class Avoid:
         return Avoid({name: values[mask] for name, values in self.columns.items()})
 
     def flown(self, course: str, kind: str | None = None) -> Avoid:
-        """The runs of a course; kind None: of every kind."""
+        """The runs of a course; kind None: of all kinds."""
         of_kind = np.ones(len(self), dtype=bool) if kind is None else self["kind"] == kind
         return self.where((self["course"] == course) & of_kind)
 
@@ -58,8 +58,8 @@ class _Check:
         bad = np.flatnonzero(~good)
         if len(bad):
             value = self.columns[name][bad[0]]
-            told = f"{value:g}" if isinstance(value, float) else repr(str(value))
-            raise LogError(self.path, int(bad[0]) + 2, name, reason.format(value=told))
+            text = f"{value:g}" if isinstance(value, float) else repr(str(value))
+            raise LogError(self.path, int(bad[0]) + 2, name, reason.format(value=text))
 
     def number(self, name: str, where: np.ndarray) -> None:
         values = self.columns[name]
@@ -93,8 +93,8 @@ def read_avoid(path: Path) -> Avoid:
 def _check_fields(check: _Check) -> None:
     everywhere = np.ones(len(check.columns["kind"]), dtype=bool)
     for name, values in LABELS.items():
-        told = ", ".join(values[:-1]) + " or " + values[-1]
-        check.all(name, np.isin(check.columns[name], values), f"{{value}} is not {told}")
+        allowed = ", ".join(values[:-1]) + " or " + values[-1]
+        check.all(name, np.isin(check.columns[name], values), f"{{value}} is not {allowed}")
     for name in NUMBERS:
         check.number(name, everywhere)
     for name in FLAGS:
@@ -113,14 +113,14 @@ def _check_fields(check: _Check) -> None:
 
 
 def _check_orders(check: _Check) -> None:
-    """What one column says of another."""
+    """Agreement between columns."""
     columns = check.columns
     ordered = columns["action"] != NO_ORDER
     check.all("ahead_s", ordered | np.isnan(columns["ahead_s"]), "{value}, but there was no order")
     check.all("ahead_s", ~ordered | np.isfinite(columns["ahead_s"]), "empty, but there was an order")
     check.all("late", ordered | (columns["late"] == 0.0), "{value}, but there was no order")
     wrong = np.isnan(columns["false_order"]) | (columns["false_order"] == ordered)
-    check.all("false_order", wrong, "{value}, but the action tells otherwise")
+    check.all("false_order", wrong, "{value}, but the action contradicts it")
     check.all("suspect", columns["suspect"] <= columns["assessed"], "{value}, more than were assessed")
     runs = list(zip(columns["kind"].tolist(), columns["course"].tolist(), columns["seed"].tolist()))
     first = {run: i for i, run in reversed(list(enumerate(runs)))}

@@ -1,4 +1,4 @@
-"""Upright boxes from a rolling aircraft: what both methods make of them, by roll."""
+"""Upright boxes from a rolling aircraft: errors and coverage of both methods, by roll amplitude."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from .data import COVERED, Campaign, Cases
 from .paper_table3 import FRACTION
 from .style import number
 
-ALIKE = 1.15  # errors whose ratio is within this are called alike
+ALIKE = 1.15  # errors with a smaller ratio count as equal
 
 
 @dataclass(frozen=True)
 class Answers:
-    """By quantity: root mean square error, median over the flights, m; share of the answers within two of their own
-    sigmas, mean over the flights, percent."""
+    """By quantity: root mean square error, median over the flights, m; share of the estimates within 2 of their own
+    sigma, mean over the flights, percent."""
 
     error_m: dict[str, float]
     covered: dict[str, float]
@@ -41,7 +41,7 @@ def _answers(runs: Cases) -> Answers:
 
 
 def by_roll(campaign: Campaign) -> list[RollRow]:
-    """By ascending roll; empty if the campaign did not fly them."""
+    """By ascending roll amplitude; empty if the campaign has no such flights."""
     if campaign.refined is None:
         return []
     window, refined = (cases.select(study="boxes", fraction=FRACTION) for cases in (campaign.cases, campaign.refined))
@@ -52,13 +52,14 @@ def by_roll(campaign: Campaign) -> list[RollRow]:
     return rows
 
 
-def _span(values: list[float]) -> str:
+def span(values: list[float]) -> str:
+    """The range of values as text: 91 to 95."""
     low, high = number(min(values)), number(max(values))
     return low if low == high else f"{low} to {high}"
 
 
 def sentences(rows: list[RollRow]) -> list[str]:
-    """What is seen, from the numbers."""
+    """The result in words, from the numbers."""
     if not rows:
         return []
     level, most = rows[0], rows[-1]
@@ -66,16 +67,16 @@ def sentences(rows: list[RollRow]) -> list[str]:
     if len(rows) > 1:
         before, after = level.refined.error_m["z0"], most.refined.error_m["z0"]
         ratio = after / before if before > 0.0 else float("nan")
-        effect = "changes little for" if 1.0 / ALIKE <= ratio <= ALIKE else "helps" if ratio < 1.0 else "harms"
+        effect = "hardly changes" if 1.0 / ALIKE <= ratio <= ALIKE else "reduces" if ratio < 1.0 else "increases"
         said.append(
-            f"Roll {effect} refined: its error of Z₀ is {number(before)} m at {level.roll_deg:g}° of roll and "
+            f"Roll {effect} the error of goe's initial range Z₀: {number(before)} m at {level.roll_deg:g}° of roll, "
             f"{number(after)} m at {most.roll_deg:g}°."
         )
     shares = [[share for row in rows for share in of(row).covered.values()] for of in (_refined, _window)]
     errors = [[of(row).error_m["z0"] for row in rows] for of in (_refined, _window)]
     said.append(
-        f"Two of its own sigmas hold {_span(shares[0])} % of refined's answers and {_span(shares[1])} % of the window "
-        f"method's, whose Z₀ is {_span(errors[1])} m off."
+        f"{span(shares[0])} % of goe's estimates lie within 2 of their own σ of the truth. Of the window method's "
+        f"estimates {span(shares[1])} % do; its error of Z₀ is {span(errors[1])} m."
     )
     return said
 

@@ -11,7 +11,7 @@ from ..logs.fields import LogError, read_records
 
 
 def read_columns(path: Path, text: Iterable[str]) -> dict[str, np.ndarray]:
-    """Arrays of one length: text where named so, float64 otherwise, NaN where the field is empty."""
+    """Arrays of one length: text for the columns in ``text``, float64 otherwise, NaN for an empty field."""
     lines, rows = [], []
     for line, fields in read_records(path):
         if rows and len(fields) != len(rows[0]):

@@ -1,4 +1,4 @@
-"""Reads the folder that goe_campaign wrote: cases.csv, campaign.json, series/*.csv."""
+"""Reads the folder of goe_campaign: cases.csv, campaign.json, series/*.csv."""
 
 from __future__ import annotations
 
@@ -35,8 +35,8 @@ def _required() -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class Cases:
-    """Rows of cases.csv. Columns are arrays of one length; text in LABELS, float64 otherwise, NaN where the
-    field is empty."""
+    """Rows of cases.csv. Columns are arrays of one length; text in LABELS, float64 otherwise, NaN for an
+    empty field."""
 
     columns: dict[str, np.ndarray]
 
@@ -58,14 +58,14 @@ class Cases:
         return self.where(mask)
 
     def levels(self, name: str) -> list[Any]:
-        """The values a column takes, ascending."""
+        """The distinct values of a column, ascending."""
         values = self[name]
         if values.dtype.kind == "f":
             return [float(value) for value in np.unique(values[np.isfinite(values)])]
         return [str(value) for value in np.unique(values)]
 
     def keys(self, names: Sequence[str] = SAME_CASE) -> list[tuple[Any, ...]]:
-        """What identifies each row's case across studies."""
+        """The key of each row's case, the same in all studies."""
         return list(zip(*(self[name].tolist() for name in names)))
 
 
@@ -74,11 +74,11 @@ class Campaign:
     folder: Path
     cases: Cases
     facts: dict[str, Any]  # campaign.json
-    refined: Cases | None = None  # the refined method's rows, if the campaign has any
+    refined: Cases | None = None  # rows of the filter method, if the campaign has any
     goals: Goals | None = None
-    avoid: Avoid | None = None  # what goe_avoid wrote
-    rare: Record | None = None  # what the rare command wrote
-    approach: Path | None = None  # a log to begin the page with
+    avoid: Avoid | None = None  # runs of goe_avoid
+    rare: Record | None = None  # the record of the rare command
+    approach: Path | None = None  # the log that the first page shows
 
     def series(self, case: int, model: str) -> Cases | None:
         """The time series of a case of the paper's study (first seed), or None if it was not written."""
@@ -98,8 +98,8 @@ def read_campaign(
     rare: Path | None = None,
     approach: Path | None = None,
 ) -> Campaign:
-    """Reads cases.csv and campaign.json, the goals' file, that of goe_avoid and the record of rare events if there are
-    any. ``cases`` are the rows of one method."""
+    """Reads cases.csv and campaign.json, and the goals' file, goe_avoid's file and the record of rare events if they
+    are given. ``cases``: the rows of one method."""
     if not folder.is_dir():
         raise LogError(folder, 0, "", "no such folder")
     path = folder / "cases.csv"
@@ -115,7 +115,7 @@ def read_campaign(
         if len(missing):
             raise LogError(path, int(missing[0]) + 2, name, "empty")
     rows = Cases(columns)
-    refined = rows.select(method="refined")
+    refined = rows.select(method="filter")
     return Campaign(
         folder, rows.select(method=method), _read_facts(folder / "campaign.json"), refined if len(refined) else None,
         read_goals(goals) if goals else None, read_avoid(avoid) if avoid else None,

@@ -1,4 +1,4 @@
-"""Reads what ``python -m bench goals --json FILE`` wrote: every goal's figures, wanted and reached."""
+"""Reads the file of ``python -m bench goals --json FILE``: every goal's required and measured figures."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from typing import Any
 
 from ..logs.fields import JSON_BYTES_MAX, LogError, read_text
 
-QUANTITIES = ("X0", "Z0", "orientation", "W", "L", "H")  # as the file names them, in the order of its tables
+QUANTITIES = ("X0", "Z0", "orientation", "W", "L", "H")  # names in the file, in the order of its tables
 
 
 @dataclass(frozen=True)
 class GoalRow:
-    """One line: figures by name, NaN where there is none. ``low`` and ``high`` hold for the ``asked`` ones; a line
-    without any is told for information and has ``met`` None."""
+    """One line: figures by name, NaN: none. ``low`` and ``high``: limits of the figures in ``asked``. A line without
+    limits is for information and has ``met`` None."""
 
     group: str
     name: str
@@ -39,7 +39,7 @@ class GoalRow:
 @dataclass(frozen=True)
 class Goals:
     rows: tuple[GoalRow, ...]
-    quick: bool  # fewer flights than the full count
+    quick: bool  # fewer flights than a full run
     date: str = ""  # of the run
 
     @property
@@ -51,7 +51,7 @@ class Goals:
         return tuple(dict.fromkeys(row.group for row in self.rows))
 
     def find(self, group: str, name: str) -> GoalRow | None:
-        """The first line of a group whose name begins so."""
+        """The first line of a group whose name begins with ``name``."""
         return next((row for row in self.rows if row.group == group and row.name.startswith(name)), None)
 
 
@@ -62,20 +62,20 @@ def read_goals(path: Path) -> Goals:
         raise LogError(path, error.lineno, "", error.msg) from None
     if not isinstance(content, dict) or not isinstance(content.get("goals"), list) or not content["goals"]:
         raise LogError(path, 1, "goals", "no list of goals; goals --json writes one")
-    rows = tuple(_row(path, number, told) for number, told in enumerate(content["goals"], start=1))
+    rows = tuple(_row(path, number, entry) for number, entry in enumerate(content["goals"], start=1))
     quick = bool(content.get("quick", False))
     if quick:
         rows = tuple(replace(row, asked=(), met=None) for row in rows)  # too few flights for a verdict
     return Goals(rows, quick, str(content.get("date", "")))
 
 
-def _row(path: Path, number: int, told: Any) -> GoalRow:
+def _row(path: Path, number: int, entry: Any) -> GoalRow:
     try:
-        low, high = told["wanted"] if told["wanted"] is not None else (None, None)
-        values = {str(name): _number(value, math.nan) for name, value in told["values"].items()}
+        low, high = entry["wanted"] if entry["wanted"] is not None else (None, None)
+        values = {str(name): _number(value, math.nan) for name, value in entry["values"].items()}
         row = GoalRow(
-            str(told["group"]), str(told["name"]), str(told["unit"]), values, _number(low, -math.inf),
-            _number(high, math.inf), tuple(told["asked"]), told["met"],
+            str(entry["group"]), str(entry["name"]), str(entry["unit"]), values, _number(low, -math.inf),
+            _number(high, math.inf), tuple(entry["asked"]), entry["met"],
         )  # fmt: skip
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         reason = f"{error} is missing" if isinstance(error, KeyError) else str(error)

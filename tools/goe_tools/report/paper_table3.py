@@ -1,4 +1,4 @@
-"""The paper's Table 3, and how its ranges are made of errors."""
+"""The paper's Table 3, and the range of a set of errors."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-MOST = 0.75  # share of the cases that "most of the values" means
-FRACTION = 0.4  # part of a run's solved images, the last ones, that the statistics are over
+MOST = 0.75  # share of the cases that counts as "most of the values"
+FRACTION = 0.4  # part of a run's solved images, at its end, that the statistics cover
 TABLE3_QUANTITIES = ("z0", "x0", "width", "length", "height")
 
 

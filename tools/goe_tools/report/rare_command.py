@@ -1,8 +1,8 @@
-"""The command ``rare``: flies ``goe_avoid`` many times and keeps what rarely happens.
+"""The command ``rare``: runs ``goe_avoid`` many times and records rare events.
 
     python -m goe_tools rare --flights N --out FILE [--jobs N | --scheduler ADDRESS]
 
-A file that is there is continued, if its first flights come out as they did: whoever stops it loses the last seconds.
+It continues an existing file if its first flights still give the same result. An interruption loses a few seconds.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ FLIGHTS_OF_CHUNK = CHUNK_RUNS * len(KINDS) * sum(FLIGHTS_OF_RUN.values())
 
 
 def fly(program: Path, first_seed: int) -> Counts:
-    """CHUNK_RUNS runs of each kind and course."""
+    """CHUNK_RUNS runs of each kind of obstacle and course."""
     with tempfile.TemporaryDirectory() as folder:
         rows = Path(folder) / "runs.csv"
         command = [str(program), "--runs", str(CHUNK_RUNS), "--seed", str(first_seed), "--csv", str(rows)]
@@ -55,9 +55,9 @@ def fly(program: Path, first_seed: int) -> Counts:
 def version_of(program: Path) -> str:
     if not program.exists():
         raise FileNotFoundError(f"{program} is not built (cmake --build build)")
-    said = subprocess.run([str(program), "--version"], capture_output=True, text=True, check=True).stdout
-    found = re.search(r"[0-9]+\.[0-9]+\.[0-9]+", said)
-    return found[0] if found else said.strip()
+    text = subprocess.run([str(program), "--version"], capture_output=True, text=True, check=True).stdout
+    found = re.search(r"[0-9]+\.[0-9]+\.[0-9]+", text)
+    return found[0] if found else text.strip()
 
 
 def begun(path: Path, program: Path, version: str, flight_hash: str) -> Record:
@@ -65,17 +65,17 @@ def begun(path: Path, program: Path, version: str, flight_hash: str) -> Record:
         return Record(version, flight_hash)
     record = read_record(path)
     if (record.version, record.flight_hash) != (version, flight_hash):
-        told = f"is of version {record.version} and hash {record.flight_hash}, this is {version} and {flight_hash}"
-        raise ValueError(f"{path}: {told}; name another file")
+        theirs, ours = f"version {record.version}, hash {record.flight_hash}", f"version {version}, hash {flight_hash}"
+        raise ValueError(f"{path} has {theirs}; this program has {ours}; name another file")
     if fly(program, FIRST_SEED) != record.first:
         raise ValueError(
-            f"{path}: its first flights come out otherwise now: the program has changed; name another file"
+            f"{path}: its first flights now give another result, so the program has changed; name another file"
         )
     return record
 
 
 def print_record(record: Record) -> None:
-    print(f"{flights(record.counts)} flights, all of it simulation; 95 % intervals by Clopper and Pearson")
+    print(f"{flights(record.counts)} simulated flights; 95 % intervals after Clopper and Pearson")
     for course, kinds in record.counts.items():
         for kind, of in kinds.items():
             for name in EVENTS[course]:
@@ -84,10 +84,8 @@ def print_record(record: Record) -> None:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--flights", type=int, required=True, metavar="N", help="how many in all, those of FILE included"
-    )
-    parser.add_argument("--out", type=Path, required=True, metavar="FILE", help="the record; continued if it is there")
+    parser.add_argument("--flights", type=int, required=True, metavar="N", help="total number, including those in FILE")
+    parser.add_argument("--out", type=Path, required=True, metavar="FILE", help="the record; continued if it exists")
     parser.add_argument("--program", type=Path, default=PROGRAM, help=argparse.SUPPRESS)
     add_workers(parser)
 

@@ -1,4 +1,4 @@
-"""Events of ``goe_avoid``'s runs, counted, and the file that keeps the counts."""
+"""Counts of events in the runs of ``goe_avoid``, and the file that contains them."""
 
 from __future__ import annotations
 
@@ -13,26 +13,26 @@ from ..logs.fields import JSON_BYTES_MAX, LogError, read_text
 from ..logs.whole_file import write_whole
 from .avoid_file import COLLISION, KINDS, PASS, Avoid
 
-FIRST_SEED = 1_000_001  # far from those that tests, demo and README fly
-WARNED_S = 3.0  # a first order later than this before the obstacle warns nobody
-EVENTS = {  # by course: what is counted, of how many flights each run has of it
+FIRST_SEED = 1_000_001  # far from the seeds of tests, demo and README
+WARNED_S = 3.0  # a first order less than this before the obstacle is too late
+EVENTS = {  # by course: the events that are counted
     COLLISION: ("unwarned", "collided", "confident"),
     PASS: ("false_order", "confident"),
 }
 FLIGHTS_OF_RUN = {COLLISION: 2, PASS: 1}  # a collision course is flown with and without the orders
-TAIL = 0.025  # beyond either end of an interval of 95 %
+TAIL = 0.025  # probability beyond each end of a 95 % interval
 
 Counts = dict[str, dict[str, dict[str, int]]]  # course, kind, event or "runs"
 
 
 def events_of(avoid: Avoid) -> Counts:
-    """Per course and kind: the runs, and in how many of them each event happened.
+    """Per course and kind: the number of runs, and of those with each event.
 
-    doomed       it would have collided without orders
-    unwarned     it would have collided, and the first order came less than WARNED_S ahead or never
-    collided     it did, with the orders carried out
+    doomed       a collision without orders
+    unwarned     a collision without orders, and the first order came less than WARNED_S ahead or never
+    collided     a collision with the orders followed
     false_order  an order on a pass at twice the margin
-    confident    the obstacle's middle was five of its own sigmas off in five assessments on end, and not suspect
+    confident    the obstacle's center was wrong by more than 5 sigma in five consecutive assessments, not suspect
     """
     counts: Counts = {}
     for course, names in EVENTS.items():
@@ -62,7 +62,7 @@ def added(one: Counts, other: Counts) -> Counts:
 
 
 def out_of(of: dict[str, int], event: str) -> int:
-    """The runs in which the event could have happened."""
+    """The number of runs in which the event was possible."""
     return of["doomed"] if event == "unwarned" else of["runs"]
 
 
@@ -71,8 +71,8 @@ def flights(counts: Counts) -> int:
 
 
 def interval(times: int, runs: int) -> tuple[float, float]:
-    """Of a share, by Clopper and Pearson: each end is missed with at most TAIL, whatever the share is."""
-    from scipy.stats import beta  # here: it takes its time to start
+    """Of a share, after Clopper and Pearson: the true share lies beyond each end with a probability of at most TAIL."""
+    from scipy.stats import beta  # here, because the import is slow
 
     low = float(beta.ppf(TAIL, times, runs - times + 1)) if times > 0 else 0.0
     high = float(beta.ppf(1.0 - TAIL, times + 1, runs - times)) if times < runs else 1.0
@@ -81,14 +81,14 @@ def interval(times: int, runs: int) -> tuple[float, float]:
 
 @dataclass
 class Record:
-    """Runs with the seeds FIRST_SEED on, by one version of library and flight layer."""
+    """Runs from the seed FIRST_SEED on, with one version of library and flight layer."""
 
     version: str
-    flight_hash: str  # of the layer's bits
+    flight_hash: str  # of the flight layer's output
     date: str = ""
     runs: int = 0  # of each kind and course
     counts: Counts = field(default_factory=dict)
-    first: Counts = field(default_factory=dict)  # of the first runs alone, to be flown again
+    first: Counts = field(default_factory=dict)  # of the first runs alone, for a check
 
     def write(self, path: Path) -> None:
         write_whole(path, json.dumps(asdict(self), indent=1) + "\n")
@@ -97,13 +97,13 @@ class Record:
 def read_record(path: Path) -> Record:
     text = read_text(path, JSON_BYTES_MAX)
     try:
-        told: Any = json.loads(text)
-        record = Record(**told)
+        content: Any = json.loads(text)
+        record = Record(**content)
         for course, names in EVENTS.items():
             for kind in KINDS:
                 of = record.counts[course][kind]
                 if of["runs"] != record.runs or not all(0 <= of[name] <= of["runs"] for name in names):
-                    raise ValueError(f"{course}, {kind}: counts that cannot be")
+                    raise ValueError(f"{course}, {kind}: impossible counts")
     except (KeyError, TypeError, ValueError) as error:
         raise LogError(path, 0, "", f"not a record of rare events: {error}") from None
     return record

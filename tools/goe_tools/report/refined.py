@@ -1,4 +1,4 @@
-"""What the refined method's rows and the goals come to: Table 3 once more, studies, early warning, rivals."""
+"""Results of the default method (filter): Table 3, studies; and of the goals: early warning, bounds, other methods."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from . import statistics as st
 from .data import Campaign, Cases
 from .goals_file import QUANTITIES, GoalRow, Goals
 
-FIVEFOLD = 5.0  # what is wanted of every cell of Table 3
+FIVEFOLD = 5.0  # goal for every cell of Table 3: so many times narrower than the paper's range
 BOXES = ("building", "truck", "long-truck")
 KINDS = ("boxes", "cylinders", "parked cars")
 MOMENTS = ("all answers", "first answers", "at the end")
-GROUPS = {  # beginnings of the goals' groups, and what they are
+GROUPS = {  # beginnings of the goals' groups, and their titles
     "gauss0.3": "Gaussian pixel noise, 0.3 px",
     "gauss1": "Gaussian pixel noise, 1 px",
     "rounding": "Whole pixels",
@@ -43,20 +43,20 @@ def group_title(group: str) -> str:
 
 @dataclass(frozen=True)
 class Trio:
-    """A number of Table 3: the paper's range, the window method's and the refined method's (percent; height m)."""
+    """A number of Table 3: the paper's range, the window method's and the filter method's (percent; height m)."""
 
     obstacle: str
-    model: str  # the paper's row; "box": refined alone, told that it is a box
+    model: str  # the paper's row; "box": filter alone, configured for a box
     quantity: str
     paper: t3.PaperRange | None
     window: float
     refined: float
-    runs: int  # of the refined method, those that have the quantity
-    without: int  # those that do not
+    runs: int  # of the filter method, with the quantity
+    without: int  # ... and without it
 
     @property
     def factor(self) -> float:
-        """How many times refined is inside the paper's range, at least so where the paper's values lie beyond it."""
+        """How many times narrower than the paper's range; a lower limit if the paper's values lie beyond it."""
         return self.paper.value / self.refined if self.paper and self.refined > 0.0 else math.nan
 
 
@@ -77,11 +77,11 @@ def _trio(campaign: Campaign, obstacle: str, model: str, quantity: str) -> Trio 
 
 
 def table3(campaign: Campaign) -> list[tuple[str, str, list[Trio | None]]]:
-    """Rows (obstacle, model, cells in the order of TABLE3_QUANTITIES): the paper's, then boxes told to be boxes."""
+    """Rows (obstacle, model, cells in the order of TABLE3_QUANTITIES): the paper's, then boxes configured as such."""
     if campaign.refined is None:
         return []
-    told = [(o, "box") for o in BOXES if len(refined_runs(campaign.refined, o, "box"))]
-    rows = (*t3.PAPER_TABLE3, *told)
+    configured = [(o, "box") for o in BOXES if len(refined_runs(campaign.refined, o, "box"))]
+    rows = (*t3.PAPER_TABLE3, *configured)
     return [(o, m, [_trio(campaign, o, m, q) for q in t3.TABLE3_QUANTITIES]) for o, m in rows]
 
 
@@ -92,14 +92,14 @@ def papers(campaign: Campaign) -> list[Trio]:
 
 @dataclass(frozen=True)
 class StudyRow:
-    """Root mean square errors, medians over the runs, by quantity: window, refined."""
+    """Root mean square errors, medians over the runs, by quantity: window, filter."""
 
     label: str
     errors: dict[str, tuple[float, float]]
 
 
 def studies(campaign: Campaign) -> list[StudyRow]:
-    """Straight flight first; boxes and cylinder together, the switching window method against the refined one."""
+    """Straight flight first; boxes and cylinder together, the switching window method and the filter."""
     if campaign.refined is None:
         return []
     window, refined = (_of_auto(cases) for cases in (campaign.cases, campaign.refined))
@@ -121,7 +121,7 @@ def _of_auto(cases: Cases) -> Cases:
 
 
 def early_rows(goals: Goals) -> dict[str, dict[str, GoalRow]]:
-    """By noise: seconds before abeam by obstacle, for each way to tell ("refined, own 2 sigma", ...)."""
+    """By noise: seconds before abeam by obstacle, for each criterion ("filter, own 2 sigma", ...)."""
     found: dict[str, dict[str, GoalRow]] = {}
     for row in goals.rows:
         if row.group.startswith("early"):
@@ -156,7 +156,7 @@ def nees_rows(goals: Goals) -> list[GoalRow]:
 
 @dataclass(frozen=True)
 class Flags:
-    """Moving cars told apart: percent caught at each percent of false flags; the flag as the library raises it."""
+    """Detection of moving cars: percent detected at each percent of false flags; the library's own flag."""
 
     false: tuple[float, ...]
     caught: tuple[float, ...]
@@ -170,7 +170,7 @@ def flags(goals: Goals) -> Flags | None:
     if curve is None:
         return None
     points = sorted((float(name.rstrip("% ")), value) for name, value in curve.values.items())
-    area = goals.find(curve.group, "misfit as a flag")
+    area = goals.find(curve.group, "NIS ratio as a flag")
     default = goals.find(curve.group, "flagged as suspect with the default threshold")
     return Flags(
         tuple(x for x, _ in points), tuple(y for _, y in points),
@@ -181,7 +181,7 @@ def flags(goals: Goals) -> Flags | None:
 
 @dataclass(frozen=True)
 class Rival:
-    """Median errors at the end of the flights that it answers, and the share of those in percent, by quantity."""
+    """Median errors at the end of the flights with an estimate, and the percentage of those flights, by quantity."""
 
     name: str
     errors: dict[str, float]
@@ -190,7 +190,7 @@ class Rival:
 
 
 def rivals(goals: Goals) -> dict[str, list[Rival]]:
-    """By noise, refined and window first."""
+    """By noise, filter and window first."""
     found: dict[str, list[Rival]] = {}
     for row in goals.rows:
         noise, _, rest = row.name.partition(", median error, ")

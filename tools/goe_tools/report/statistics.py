@@ -1,4 +1,4 @@
-"""What the campaign's rows come to: Table 3, its verdicts, comparisons of studies, rank correlations."""
+"""Statistics of the campaign: Table 3, its verdicts, comparisons of studies, rank correlations."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ import numpy as np
 from .data import IN_PERCENT, SAME_CASE, Campaign, Cases
 from .paper_table3 import FRACTION, PAPER_TABLE3, TABLE3_QUANTITIES, PaperRange, holding_range
 
-ROUNDING = 1.25  # the paper's ranges are round numbers read off plots: this much wider still counts as reproduced
-MUCH = 0.5  # half the paper's range or less counts as better
+ROUNDING = 1.25  # the paper's ranges are round numbers: a range up to so many times wider counts as reproduced
+MUCH = 0.5  # of the paper's range; narrower counts as better
 
 BETTER, REPRODUCED, MEANS_ONLY, WORSE, NOT_IN_PAPER = (
     "better",
@@ -24,31 +24,30 @@ BETTER, REPRODUCED, MEANS_ONLY, WORSE, NOT_IN_PAPER = (
 )
 
 
-# flown by the paper, but not in its table; "switching": disc and line solutions of a run together
+# flown in the paper, but not in its table; "switching": disc and line solutions of a run together
 ALSO_FLOWN = (("building", "disc"), ("building", "switching"), ("truck", "switching"), ("long-truck", "switching"))
 MODEL_IN_CASES = {"disc": "disc", "line": "line", "switching": "auto"}
-PURE = 0.999  # share of line solutions from which on a run counts as line throughout
+PURE = 0.999  # share of line solutions above which a run counts as line only
 
 
 def column(quantity: str, measure: str) -> str:
-    """The column of cases.csv in Table 3's unit: percent of the truth for what the paper gives in percent."""
+    """The column of cases.csv in Table 3's unit: percent of the truth for quantities with percentages in the paper."""
     return f"{quantity}_{measure}" + ("_pct" if quantity in IN_PERCENT else "")
 
 
 @dataclass(frozen=True)
 class Errors:
-    """A quantity's mean errors and two sigmas over a set of runs, in Table 3's unit; runs without a value are
-    left out."""
+    """A quantity's mean errors and 2 sigma over a set of runs, in Table 3's unit, without runs that have no value."""
 
     runs: Cases
     mean: np.ndarray
     two_sigma: np.ndarray
     without_estimate: int
-    without_percent: int  # estimate there, but the truth is 0
+    without_percent: int  # with an estimate, but the truth is 0
 
     @property
     def extent(self) -> np.ndarray:
-        """How far from 0 the bar mean +- two sigma reaches."""
+        """Largest distance from 0 of the bar mean +- 2 sigma."""
         return np.abs(self.mean) + self.two_sigma
 
 
@@ -62,44 +61,44 @@ def errors_of(runs: Cases, quantity: str) -> Errors:
 
 
 def line_apart(cases: Cases) -> bool:
-    """Whether the campaign gives the line solutions of the switching runs (auto) statistics of their own (line)."""
+    """Whether the campaign has separate statistics (line) of the line solutions of the switching runs (auto)."""
     return bool(np.any(cases["model"] == "line"))
 
 
 def flown_runs(cases: Cases, obstacle: str, model: str, fraction: float = FRACTION) -> Cases:
-    """The paper-study rows of a model; the line's are those of the switching runs where it has none of its own."""
+    """The paper-study rows of a model; for the line those of the switching runs if it has no rows of its own."""
     name = MODEL_IN_CASES[model] if model != "line" or line_apart(cases) else "auto"
     return cases.select(study="paper", obstacle=obstacle, model=name, fraction=fraction)
 
 
 def paper_runs(cases: Cases, obstacle: str, model: str, fraction: float = FRACTION) -> Cases:
-    """The runs behind a row of Table 3. For the line model: those in which the line was solved at all."""
+    """The runs of a row of Table 3. For the line model: those with a line solution."""
     runs = flown_runs(cases, obstacle, model, fraction)
     return runs.where((runs["used"] > 0) & ~(runs["fresh_line_share"] <= 0.0)) if model == "line" else runs
 
 
 @dataclass(frozen=True)
 class Cell:
-    """One number of Table 3, the paper's and ours (percent, or metres for the height)."""
+    """One number of Table 3, the paper's and the window method's (percent; meters for the height)."""
 
     obstacle: str
     model: str
     quantity: str
     paper: PaperRange | None
     errors: Errors
-    bars: float  # range that holds the bars of MOST of the runs
-    means: float  # range that holds the means of MOST of the runs
+    bars: float  # range that contains the bars of MOST of the runs
+    means: float  # range that contains the means of MOST of the runs
     verdict: str
 
     @property
     def outside(self) -> np.ndarray:
-        """Which runs' bars leave the paper's range."""
+        """The runs whose bars leave the paper's range."""
         assert self.paper is not None
         return self.errors.extent > self.paper.value
 
     @property
     def factor(self) -> float:
-        """Our range in multiples of the paper's."""
+        """The range in multiples of the paper's."""
         return self.bars / self.paper.value if self.paper else math.nan
 
 
@@ -116,7 +115,7 @@ def judge(paper: PaperRange | None, errors: Errors) -> str:
 
 
 def make_cell(cases: Cases, obstacle: str, model: str, quantity: str, fraction: float = FRACTION) -> Cell | None:
-    """None where the model has no such quantity: no length from a disc."""
+    """None if the model has no such quantity: a disc has no length."""
     if quantity == "length" and model == "disc":
         return None
     paper = PAPER_TABLE3.get((obstacle, model), {}).get(quantity)
@@ -133,12 +132,12 @@ def table3(cases: Cases, fraction: float = FRACTION) -> list[tuple[str, str, lis
 
 
 def first_seed(cases: Cases) -> Cases:
-    """The paper flew every case once; so do the figures."""
+    """The figures show one run per case, as the paper's do."""
     return cases.select(seed=min(cases.levels("seed"))) if len(cases) else cases
 
 
 def rank_correlation(a: np.ndarray, b: np.ndarray) -> float:
-    """Spearman's: of the ranks, ties share their mean rank. NaN for fewer than 5 pairs or no variation."""
+    """Spearman's; ties share their mean rank. NaN for fewer than 5 pairs or no variation."""
     there = np.isfinite(a) & np.isfinite(b)
     a, b = a[there], b[there]
     if len(a) < 5 or np.all(a == a[0]) or np.all(b == b[0]):
@@ -164,7 +163,7 @@ FACTORS = {
 
 @dataclass(frozen=True)
 class Driver:
-    """The level of a factor at which runs leave a range most often, and the others."""
+    """The level of a factor at which runs leave a range most often, compared with the other levels."""
 
     factor: str
     level: float
@@ -179,8 +178,8 @@ class Driver:
 
 
 def strongest_driver(runs: Cases, outside: np.ndarray, least: float = 0.3) -> Driver | None:
-    """Where the runs outside a range gather, if they do: the share outside there is at least ``least`` above
-    the rest's."""
+    """The level at which the share of runs outside a range is highest, if it exceeds the share at the other levels by
+    at least ``least``."""
     found: list[Driver] = []
     for factor in FACTORS:
         levels = runs.levels(factor)
@@ -200,7 +199,7 @@ STUDY_QUANTITIES = ("z0", "x0", "width", "length", "height", "orientation")
 
 @dataclass(frozen=True)
 class Variant:
-    """One setting of a study beyond the paper's: all its runs of one fraction."""
+    """One setting of a study beyond the paper: all its runs of one fraction."""
 
     study: str
     label: str
@@ -208,7 +207,7 @@ class Variant:
 
 
 def variants(cases: Cases, model: str = "auto") -> list[Variant]:
-    """In the order of STUDIES. The cylinder has only the disc and goes with both models."""
+    """In the order of STUDIES. The cylinder has only the disc and belongs to both models."""
     found = []
     for study in STUDIES:
         rows = cases.select(study=study, fraction=FRACTION)
@@ -242,7 +241,7 @@ def median_rmse(runs: Cases, quantity: str) -> float:
 
 
 def like_for_like(cases: Cases, runs: Cases) -> Cases:
-    """The paper-study runs of the same cases, which the variant is to be compared with."""
+    """The paper-study runs of the same cases, for comparison with the variant."""
     paper = cases.select(study="paper", fraction=FRACTION)
     wanted = set(runs.keys(SAME_CASE))
     return paper.where(np.array([key in wanted for key in paper.keys(SAME_CASE)], dtype=bool))
@@ -254,8 +253,8 @@ CONDITIONING_FACTORS = ("window", "side_m", "alpha_deg", "fps_hz")
 
 
 def nominal_rows(rows: Cases, factor: str, others: Sequence[str] = CONDITIONING_FACTORS) -> Cases:
-    """The rows that vary ``factor`` alone: every other setting at the value it has most often (of several
-    such, the middle one), if the factor still varies then; all rows otherwise."""
+    """The rows that vary ``factor`` alone: every other setting has its most frequent value (of several such, the
+    middle one). All rows if the factor does not vary among these."""
     mask = np.ones(len(rows), dtype=bool)
     for name in others:
         if name == factor:
@@ -281,8 +280,8 @@ def quartiles_by(rows: Cases, factor: str, values: np.ndarray) -> tuple[np.ndarr
 
 
 def campaign_counts(campaign: Campaign) -> dict[str, Any]:
-    """What the page's head tells: what goe_campaign counted and printed; otherwise from the rows, where an image that
-    two runs saw counts twice."""
+    """The counts of goe_campaign; if they are missing, counts of the rows, in which an image of two runs counts
+    twice."""
     whole = campaign.cases.select(fraction=max(campaign.cases.levels("fraction")))
     flights = set(whole.keys(("study", "case", "seed", "path", "speed_profile", "wind", "noise", "roll_deg")))
     return {

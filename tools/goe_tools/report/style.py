@@ -1,5 +1,5 @@
-"""Colours, names and sizes of the report. The colours are of Okabe and Ito's set, which the colour-blind can
-tell apart."""
+"""Colors, names and sizes of the report. The colors are from the set of Okabe and Ito, which color-blind readers can
+distinguish."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ import math
 from typing import Any
 
 INK, SOFT, FAINT, BAND = "#1c2430", "#5b6673", "#c9d0d8", "#eef2f6"
-PAPER_COLOUR = "#8a94a0"
-WINDOW_COLOUR, REFINED_COLOUR, REFINED_PALE, MISSED = "#8a94a0", "#0072B2", "#8cc0e0", "#a33400"
+PAPER_COLOR = "#8a94a0"
+WINDOW_COLOR, REFINED_COLOR, REFINED_PALE, MISSED = "#8a94a0", "#0072B2", "#8cc0e0", "#a33400"
 MISSED_PALE = "#f2cdbd"
 
 OBSTACLES = ("cylinder", "building", "truck", "long-truck")
 NAMES = {"cylinder": "Cylinder", "building": "Building", "truck": "Truck", "long-truck": "Long truck"}
-COLOURS = {"cylinder": "#0072B2", "building": "#D55E00", "truck": "#009E73", "long-truck": "#AA4499"}
+COLORS = {"cylinder": "#0072B2", "building": "#D55E00", "truck": "#009E73", "long-truck": "#AA4499"}
 MARKERS = {"cylinder": "o", "building": "s", "truck": "^", "long-truck": "D"}
 
 QUANTITY_NAMES = {
@@ -25,10 +25,10 @@ QUANTITY_NAMES = {
     "orientation": "orientation",
 }
 SYMBOLS = {"z0": "Z₀", "x0": "X₀", "width": "W", "length": "L", "height": "H", "orientation": "β"}
-GOAL_SYMBOLS = {"X0": "X₀", "Z0": "Z₀", "orientation": "β", "W": "W", "L": "L", "H": "H"}  # as the goals name them
+GOAL_SYMBOLS = {"X0": "X₀", "Z0": "Z₀", "orientation": "β", "W": "W", "L": "L", "H": "H"}  # names in the file of goals
 UNITS = {"z0": "%", "x0": "%", "width": "%", "length": "%", "height": "m", "orientation": "deg"}
 
-WIDE_IN, NARROW_IN = 9.6, 4.2  # figure widths: shown at about 100 px per inch, wide and on a phone
+WIDE_IN, NARROW_IN = 9.6, 3.8  # figure widths at about 100 px per inch: wide page, phone
 DPI = 144  # of the PNG files
 
 RC: dict[str, Any] = {
@@ -63,7 +63,7 @@ RC: dict[str, Any] = {
 
 
 def number(value: float, digits: int = 2) -> str:
-    """A value with so many significant digits, without an exponent: 0.043, 1.2, 23, 340."""
+    """A value with ``digits`` significant digits, without an exponent: 0.043, 1.2, 23, 340."""
     if not math.isfinite(value):
         return "–"
     if value == 0.0:

@@ -17,7 +17,7 @@ from .style import NAMES, number
 HEADINGS = ("Z0 %", "X0 %", "W %", "L %", "H m")
 MARKS = {st.BETTER: "+", st.REPRODUCED: "=", st.MEANS_ONLY: "~", st.WORSE: "!", st.NOT_IN_PAPER: " "}
 MIN_WIDTH = 78
-SHORT = {"switching": "auto"}  # so that the table keeps to its width
+SHORT = {"switching": "auto"}  # keeps the table within its width
 
 
 def print_table3(campaign: Campaign, console: Console | None = None) -> None:
@@ -33,9 +33,9 @@ def print_table3(campaign: Campaign, console: Console | None = None) -> None:
     for obstacle, model, cells in rows:
         table.add_row(f"{NAMES[obstacle]}/{SHORT.get(model, model)}", *(_cell_text(cell) for cell in cells))
         if (obstacle, model) in refined:
-            table.add_row("  refined", *(_refined_text(cell) for cell in refined[obstacle, model]), style="bold")
-    title = "Table 3, errors within ±: paper / window (ours)"
-    console.print(f"{title}; refined ×times better" if refined else title, style="bold")
+            table.add_row("  filter", *(_refined_text(cell) for cell in refined[obstacle, model]), style="bold")
+    title = "Table 3, range of most errors: paper / window method"
+    console.print(f"{title}; filter ×times narrower" if refined else title, style="bold")
     console.print(table)
     _print_verdicts(console, rows)
     if refined:
@@ -48,15 +48,15 @@ def _print_verdicts(console: Console, rows: list[tuple[str, str, list[st.Cell | 
         f"+ half the paper's range or less ({count[st.BETTER]})   = reproduced ({count[st.REPRODUCED]})   "
         f"~ means only ({count[st.MEANS_ONLY]})\n"
         f"! not reproduced ({count[st.WORSE]})   >: most values lie outside\n"
-        f"ours: mean ± two sigma of {t3.MOST:.0%} of the cases, last {t3.FRACTION:.0%} of the solved images;\n"
-        "simulation"
+        f"window method: mean ± 2 sigma of {t3.MOST:.0%} of the cases, last {t3.FRACTION:.0%} of the\n"
+        "solved images; simulation"
     )
 
 
 def _print_refined(console: Console, cells: list[rf.Trio]) -> None:
     fivefold, better = (sum(cell.factor >= least for cell in cells) for least in (rf.FIVEFOLD, 1.0))
     console.print(
-        f"refined, the default method: better than the paper in {better} of {len(cells)} numbers,\n"
+        f"filter, the default method: better than the paper in {better} of {len(cells)} numbers,\n"
         f"at least {rf.FIVEFOLD:g} times in {fivefold} (× how many times narrower than the paper's range)"
     )
 

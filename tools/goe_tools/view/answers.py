@@ -1,6 +1,6 @@
-"""The library's estimates of each obstacle of a log, image by image, and ``goe_decide`` for the present velocity.
+"""The library's estimate of each obstacle of a log, image by image, and the decision of ``goe_decide``.
 
-The library runs through the Python package, bit for bit as in goe_replay. NaN: not valid, unknown.
+The library runs through the Python package, bit for bit as in goe_replay. NaN: not valid, not known.
 """
 
 from __future__ import annotations
@@ -19,19 +19,19 @@ from .motion import Motion
 
 MODEL_NAMES = {0: "none", 2: "disc", 3: "line", 4: "box", 5: "prism"}
 MODEL_SETTINGS = {"auto": 1, "disc": 2, "line": 3}
-SETTING_GROUPS = ("navigation", "detector", "refined", "window")  # groups that --set accepts, as in goe_replay
-TIME_UNKNOWN_S = -(2.0**63) * 1e-6  # becomes GOE_TIME_UNKNOWN in microseconds
-MISFIT_MAX = 1.9  # default of refined.misfit_max
+SETTING_GROUPS = ("navigation", "detector", "filter", "window")  # --set may change these, as in goe_replay
+TIME_UNKNOWN_S = -(2.0**63) * 1e-6  # in the library's microseconds: GOE_TIME_UNKNOWN
+MISFIT_MAX = 1.9  # default of filter.nis_ratio_max
 QUANTITIES = ("x0_m", "z0_m", "orientation_deg", "width_m", "length_m", "height_m")
 OF_POSITION = ("x_m", "z_m", "x_sd_m", "z_sd_m")
-HAZARD = ("time_s", "miss_m", "clearance_m", "time_sd_s", "miss_sd_m", "clearance_sd_m", "violation")
+HAZARD = ("tcpa_s", "dcpa_m", "clearance_m", "tcpa_sd_s", "dcpa_sd_m", "clearance_sd_m", "conflict_probability")
 
 
 @dataclass(frozen=True)
 class Options:
     """Options of the replay. ``settings``: by name, as for goe_replay's --set."""
 
-    method: str = "refined"
+    method: str = "filter"
     model: str = "auto"
     window: int | None = None
     settings: dict[str, float] = field(default_factory=dict)
@@ -41,9 +41,8 @@ class Options:
 
 @dataclass
 class Answers:
-    """Answers for one obstacle over K images. ``column`` contains arrays (K,) with the names of goe_replay and
-    goe_hazard_t, in meters, degrees, seconds; ``covariance`` (K, 5, 5) of x, z, orientation, width, length in meters
-    and rad, 0 if not valid."""
+    """Of one obstacle over K images. ``column``: by goe_replay's names and those of goe_hazard_t, (K,) each, meters,
+    degrees, seconds. ``covariance``: (K, 5, 5) of x, z, orientation, width, length in meters and rad, 0: not valid."""
 
     id: int
     moment: np.ndarray  # (K,) index into Motion
@@ -54,10 +53,10 @@ class Answers:
     fresh: np.ndarray
     age_s: np.ndarray
     heading_rad: np.ndarray  # of T's Z axis, clockwise from north
-    camera_ne_m: np.ndarray  # (K, 2) camera position at the latest image that was not refused
+    camera_ne_m: np.ndarray  # (K, 2) camera position at the latest image that was not rejected
     column: dict[str, np.ndarray]
     covariance: np.ndarray
-    act: np.ndarray  # (K,) the decision rule's answer is to act now
+    act: np.ndarray  # (K,) the decision is: act now
 
     def __len__(self) -> int:
         return len(self.moment)
@@ -68,7 +67,7 @@ class Answers:
         return np.isfinite(self.column["z_m"])
 
     def taken(self, keep: np.ndarray) -> Answers:
-        """The answers of the images in ``keep``."""
+        """Only the images in ``keep``."""
         changes: dict[str, object] = {}
         for f in dataclasses.fields(self):
             value = getattr(self, f.name)
@@ -89,7 +88,7 @@ def _of_camera(camera: Camera, owner: str) -> dict[str, float]:
 
 
 def settings_of(log: ObservationLog, options: Options) -> dict[str, float]:
-    """The library's settings by name, as goe_replay configures them for the log and the options."""
+    """The library's settings by name, as goe_replay sets them for the log and the options."""
     values = _of_camera(log.camera, "camera")
     if log.camera2 is not None:
         values |= _of_camera(log.camera2, "more_cameras[0]")
@@ -102,8 +101,7 @@ def settings_of(log: ObservationLog, options: Options) -> dict[str, float]:
 
 
 def _unusable(frame: Frame) -> bool:
-    """Whether a side of the box is given but not a number: the library refuses the image, the package reads it as
-    absent."""
+    """A side of the box is given but not a number: the library rejects the image; the package would ignore the side."""
     return frame.box_px is not None and any(side is not None and not math.isfinite(side) for side in frame.box_px)
 
 
@@ -130,7 +128,7 @@ def _images(frames: Sequence[Frame], velocity_m_s: np.ndarray, options: Options)
 
 
 def _columns(track: library.Track) -> dict[str, np.ndarray]:
-    """Columns with goe_replay's names, degrees."""
+    """By goe_replay's names, degrees."""
     column: dict[str, np.ndarray] = {}
     for i, name in enumerate(QUANTITIES):
         scale = math.degrees(1.0) if name.endswith("_deg") else 1.0
@@ -138,7 +136,7 @@ def _columns(track: library.Track) -> dict[str, np.ndarray]:
         column[name], column[f"{stem}_sd_{unit}"] = scale * track.values[:, i], scale * track.sigma[:, i]
     located = np.isfinite(column["z0_m"])
     column |= {name: np.where(located, track.more[name], np.nan) for name in OF_POSITION}
-    column["misfit"] = np.where(track.misfit > 0.0, track.misfit, np.nan)
+    column["nis_ratio"] = np.where(track.nis_ratio > 0.0, track.nis_ratio, np.nan)
     column["latency_s"] = track.more["latency_s"]
     for axis in ("north", "east"):
         column[f"velocity_{axis}_m_s"] = track.more[f"velocity_{axis}_m_s"]
@@ -152,8 +150,8 @@ def _columns(track: library.Track) -> dict[str, np.ndarray]:
 
 
 def _covariance(track: library.Track, column: dict[str, np.ndarray]) -> np.ndarray:
-    """(K, 5, 5) of x, z (now), orientation, width, length: goe_covariance, but with the sigmas of x and z in place of
-    those of x0 and z0, which do not include the drift of the aircraft's position since then."""
+    """(K, 5, 5) of x, z (now), orientation, width, length: goe_covariance, with the sigmas of x and z instead of those
+    of x0 and z0, which do not contain the drift of the aircraft's position since then."""
     result = track.covariance[:, :5, :5].copy()
     with np.errstate(invalid="ignore", divide="ignore"):
         for i, name in enumerate(("x", "z")):
@@ -165,7 +163,7 @@ def _covariance(track: library.Track, column: dict[str, np.ndarray]) -> np.ndarr
 
 
 def _taken_cameras(motion: Motion, moment: np.ndarray, status: np.ndarray) -> np.ndarray:
-    """(K, 2): camera position at the latest image that was not refused."""
+    """(K, 2): the camera position at the latest image that was not rejected."""
     refused = [int(number) for number in library.package().Status if not number.is_image_taken]
     taken = ~np.isin(status, refused)
     latest = np.maximum.accumulate(np.where(taken, np.arange(len(moment)), 0))
@@ -185,7 +183,9 @@ def answers_of(log: ObservationLog, motion: Motion, options: Options) -> list[An
         progress.show(done)
         done += len(indices)
         frames, moment = [log.frames[i] for i in indices], motion.of_frame[indices]
-        with np.errstate(over="ignore", invalid="ignore"):  # values beyond float32 become infinite, and are refused
+        with np.errstate(
+            over="ignore", invalid="ignore"
+        ):  # a number beyond float32 becomes infinite, and the library rejects it
             track = library.run(_images(frames, motion.velocity_m_s[moment], options), settings)
         column = _columns(track)
         result.append(Answers(

@@ -1,4 +1,4 @@
-"""Charts over time, shared by the page and the picture."""
+"""The charts over time, for the page and the picture."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from .answers import MISFIT_MAX, Answers, Options
 from .outline import SIGMAS
 from .words import NOTHING, measured
 
-RARE, WIDE = 0.02, 0.12  # shares of values and of bands that may be outside an axis, at each end
+RARE, WIDE = 0.02, 0.12  # shares of values and of bands that may lie outside an axis, at each end
 PADDING, SMALLEST = 0.06, 0.5
 
 
 @dataclass(frozen=True)
 class Chart:
-    """A quantity over time. ``key``: its column in ``Answers``, and in the truth if known; ``sigma``: the column of its
-    one-sigma, empty if it has none. ``scale``: from the column's unit to the displayed one."""
+    """A quantity over time. ``key``: its column in ``Answers``, and in the truth if known there; ``sigma``: the column
+    of its 1 sigma, empty if it has none. ``scale``: from the column's unit to the displayed one."""
 
     key: str
     title: str
@@ -28,37 +28,39 @@ class Chart:
     sigma: str = ""
     scale: float = 1.0
     least: float | None = None  # a physical limit of the value, for the band
-    limit: float | None = None  # drawn as a line
-    floor: float | None = None  # the axis extends at least from here ...
+    limit: float | None = None  # a horizontal line
+    floor: float | None = None  # the axis reaches at least from here ...
     ceiling: float | None = None  # ... to here
 
 
 CHARTS = (
-    Chart("z_m", "Distance ahead", "m", "along the direction of flight, to the reference position", "z_sd_m"),
-    Chart("x_m", "Distance aside", "m", "right of the direction of flight; negative: left", "x_sd_m"),
+    Chart("z_m", "Distance ahead", "m", "along the direction of flight, to the reference point", "z_sd_m"),
+    Chart("x_m", "Distance to the side", "m", "right of the direction of flight; negative: left", "x_sd_m"),
     Chart("width_m", "Width", "m", "of the front; a disc's diameter", "width_sd_m", least=0.0),
     Chart("height_m", "Height", "m", "top above ground", "height_sd_m", least=0.0),
     Chart("length_m", "Length", "m", "of the side", "length_sd_m", least=0.0),
-    Chart("orientation_deg", "Orientation", "°", "side from the direction of flight, clockwise",
+    Chart("orientation_deg", "Orientation", "°", "of the side from the direction of flight, clockwise",
           "orientation_sd_deg"),
-    Chart("time_s", "Closest approach in", "s", "at the present velocity", "time_sd_s", least=0.0),
-    Chart("miss_m", "Distance then", "m", "horizontal, to the outline; 0: over it", "miss_sd_m", least=0.0),
-    Chart("clearance_m", "Height over top then", "m", "negative: below the top", "clearance_sd_m"),
-    Chart("violation", "Too close, probability", "%", "of violating both margins", "", 100.0, floor=0.0,
-          ceiling=100.0),
-    Chart("misfit", "Misfit", "", "of the residuals; 1: as configured; line: suspect above it",
+    Chart("tcpa_s", "Time to closest approach", "s", "on the present course", "tcpa_sd_s", least=0.0),
+    Chart("dcpa_m", "Distance at closest approach", "m", "to the outline, horizontally; 0: above it", "dcpa_sd_m",
+          least=0.0),
+    Chart("clearance_m", "Height above the top then", "m", "at closest approach; negative: below the top",
+          "clearance_sd_m"),
+    Chart("conflict_probability", "Conflict probability", "%", "that margin and clearance are both violated", "", 100.0,
+          floor=0.0, ceiling=100.0),
+    Chart("nis_ratio", "NIS ratio", "", "residuals over the settings' noise; 1: as expected; suspect above the line",
           limit=MISFIT_MAX, floor=0.0),
 )  # fmt: skip
 
 
 def charts_of(options: Options) -> tuple[Chart, ...]:
-    """The charts of a replay; the misfit's limit comes from its settings."""
-    limit = options.settings.get("refined.misfit_max", MISFIT_MAX)
-    return tuple(dataclasses.replace(c, limit=limit) if c.key == "misfit" else c for c in CHARTS)
+    """The charts of a replay, with the NIS ratio's limit from its settings."""
+    limit = options.settings.get("filter.nis_ratio_max", MISFIT_MAX)
+    return tuple(dataclasses.replace(c, limit=limit) if c.key == "nis_ratio" else c for c in CHARTS)
 
 
 def text(chart: Chart, answers: Answers, k: int) -> str:
-    """The value for one image: "473 ± 12 m"."""
+    """The value in one image: "473 ± 12 m"."""
     value = chart.scale * float(answers.column[chart.key][k])
     if not math.isfinite(value):
         return NOTHING
@@ -73,8 +75,8 @@ def text(chart: Chart, answers: Answers, k: int) -> str:
 
 
 def axis_range(chart: Chart, answers: Answers, truth: dict[str, np.ndarray]) -> tuple[float, float] | None:
-    """Range that covers values, truth and most of the band, so that the first guesses do not flatten the rest; None
-    without values."""
+    """Contains the values, the truth and most of the band, but not the largest early bands; None: there are no
+    values."""
     value = chart.scale * answers.column[chart.key]
     known = value[np.isfinite(value)]
     if not len(known):

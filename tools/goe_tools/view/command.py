@@ -6,6 +6,7 @@ import argparse
 from collections.abc import Callable
 from pathlib import Path
 
+from .. import renamed
 from ..logs.obslog import LogError, ObservationLog, read_log, read_truth
 from ..logs.whole_file import log_files, write_whole
 from .answers import SETTING_GROUPS, Options
@@ -30,6 +31,8 @@ def _number(low: float, high: float) -> Callable[[str], float]:
 
 def _setting(text: str) -> tuple[str, float]:
     name, equals, value = text.partition("=")
+    if name in renamed.names():
+        raise argparse.ArgumentTypeError(f"unknown setting {name}: now {renamed.names()[name]}")
     if not equals or name.split(".")[0] not in SETTING_GROUPS:
         groups = ", ".join(f"{group}.…" for group in SETTING_GROUPS)
         raise argparse.ArgumentTypeError(f"'{text}' is not NAME=VALUE of a setting in {groups}")
@@ -39,22 +42,29 @@ def _setting(text: str) -> tuple[str, float]:
         raise argparse.ArgumentTypeError(f"{name}: '{value}' is not a number") from None
 
 
+def _method(text: str) -> str:
+    now = renamed.names().get(f"--method {text}")
+    if now:
+        raise argparse.ArgumentTypeError(f"unknown value {text}: now {now}")
+    return text
+
+
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Options of replay and decision rule, which ``options_of`` reads."""
+    """Options of replay and decision, which ``options_of`` reads."""
     add = parser.add_argument
-    add("--method", choices=("refined", "window"), default="refined", help="as goe_replay's")
+    add("--method", type=_method, choices=("filter", "window"), default="filter", help="as goe_replay's")
     add("--model", choices=("auto", "disc", "line"), default="auto", help="as goe_replay's")
-    add("--window", type=int, metavar="N", help="image points in the window, as in goe_replay")
+    add("--window", type=int, metavar="N", help="as goe_replay's: images in the window")
     add(
         "--set",
         type=_setting,
         action="append",
         default=[],
         metavar="NAME=VALUE",
-        help="as in goe_replay; may be repeated",
+        help="as goe_replay's; may be repeated",
     )
-    add("--margin", type=_number(0.0, 1e4), default=15.0, metavar="M", help="least horizontal distance (default 15)")
-    add("--clearance", type=_number(0.0, 1e4), default=10.0, metavar="M", help="least height over the top (default 10)")
+    add("--margin", type=_number(0.0, 1e4), default=15.0, metavar="M", help="too close: to the side (default 15 m)")
+    add("--clearance", type=_number(0.0, 1e4), default=10.0, metavar="M", help="... and above the top (default 10 m)")
 
 
 def options_of(arguments: argparse.Namespace) -> Options:
@@ -66,27 +76,32 @@ def options_of(arguments: argparse.Namespace) -> Options:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add("log", type=Path, metavar="LOG", help="folder with camera.ini, frames.csv and, if known, truth.csv")
-    add("--truth", type=Path, metavar="FILE", help="in place of LOG/truth.csv")
+    add("--truth", type=Path, metavar="FILE", help="truth instead of LOG/truth.csv")
     add(
         "--out",
         type=Path,
         metavar="PAGE",
         help=f"page to write (default {DEFAULT_PAGE}, unless --png or --svg is given)",
     )
-    add("--png", type=Path, metavar="FILE", help="picture of one moment: map, and distance ahead over time")
-    add("--svg", type=Path, metavar="FILE", help="the same; follows the reader's light or dark theme")
+    add("--png", type=Path, metavar="FILE", help="picture of one moment: map, distance and size over time")
+    add("--svg", type=Path, metavar="FILE", help="the same; follows the reader's color scheme")
     add("--theme", choices=("light", "dark"), default="light", help="of the PNG (default light)")
     add("--at", type=_number(-1e12, 1e12), metavar="S", help="time shown first, and in the picture (default: midway)")
-    add("--id", type=int, metavar="N", help="obstacle shown first, and in the picture (default: most answers)")
+    add(
+        "--id",
+        type=int,
+        metavar="N",
+        help="obstacle shown first, and in the picture (default: the one with most estimates)",
+    )
     add_options(parser)
     add(
         "--rows", type=_number(2, 1e5), default=MOST_ROWS, metavar="N",
-        help=f"most images in the page; more are thinned (default {MOST_ROWS})",
+        help=f"largest number of images on the page (default {MOST_ROWS}); of more, some are left out",
     )  # fmt: skip
 
 
 def read(arguments: argparse.Namespace) -> ObservationLog:
-    """The log with the truth that the options select."""
+    """The log, with the truth of --truth if given."""
     log = read_log(arguments.log)
     if not log.frames:
         raise LogError(arguments.log / "frames.csv", 0, "", "there are no rows")
@@ -94,18 +109,18 @@ def read(arguments: argparse.Namespace) -> ObservationLog:
         log.truth = read_truth(arguments.truth)
         strange = sorted(log.truth.keys() - {frame.id for frame in log.frames})
         if len(strange) == len(log.truth):
-            raise LogError(arguments.truth, 0, "id", "no id of an obstacle in the log")
+            raise LogError(arguments.truth, 0, "id", "of no obstacle of the log")
     return log
 
 
 def write(path: Path, content: bytes, arguments: argparse.Namespace) -> None:
-    """Writes the file completely or not at all."""
+    """Whole or not at all."""
     write_whole(path, content, [*log_files(arguments.log), arguments.truth])
     print(f"{path}: {len(content) / 1e3:,.0f} kB")
 
 
 def moment_of(story: Story, time_s: float) -> int:
-    """The latest moment of the log that is not after a time."""
+    """The last moment at or before a time within the log."""
     first_s, last_s = float(story.time_s[0]), float(story.time_s[-1])
     if not first_s <= time_s <= last_s:
         raise ValueError(f"--at: {time_s:g} s is not in the log, which goes from {first_s:g} to {last_s:g} s")
@@ -121,7 +136,7 @@ def write_outputs(story: Story, arguments: argparse.Namespace) -> None:
 
         write(page, render(story, chosen, first).encode("utf-8"), arguments)
     if arguments.png or arguments.svg:
-        from .picture import png, svg  # imported here: the drawing modules load slowly
+        from .picture import png, svg  # here, because the import is slow
 
         if arguments.png:
             write(arguments.png, png(story, chosen, first, arguments.theme), arguments)
@@ -136,6 +151,6 @@ def run(arguments: argparse.Namespace) -> int:
     write_outputs(story, arguments)
     answered = sum(int(track.answers.answered.sum()) for track in story.tracks)
     if not answered:
-        print(f"{arguments.log}: no row gave an answer")
+        print(f"{arguments.log}: no row gave an estimate")
         return EXIT_NO_ANSWER
     return 0

@@ -1,7 +1,7 @@
-"""The aircraft's motion over a log: one entry for each time at which an image was taken.
+"""The aircraft's motion over a log: one entry for each time with an image.
 
-Frames: NED earth, meters. Known jumps of the autopilot's filter are removed, so the path continues as it was flown
-from the first image's origin; an unknown jump splits it.
+Frames: NED earth, meters. Known jumps of the autopilot's filter are removed, so the path continues as flown, relative
+to the first image's origin. An unknown jump interrupts the path.
 """
 
 from __future__ import annotations
@@ -16,30 +16,29 @@ from ..flights.rotations import matrices, mounting
 from ..logs.obslog import Camera, Frame, ObservationLog
 from ..models.model import undistort
 
-VELOCITY_OVER_S = 1.0  # averaging time of the aircraft's velocity, at least two images
-QUATERNION_OFF = 0.01  # error of the norm that the library refuses
-POSITION_MAX_M = 1e6  # the library's limit
-LEVEL_MIN = 0.2  # horizontal share of a line of sight; with less it has no direction on the map
+VELOCITY_OVER_S = 1.0  # averaging time of the velocity, or else the last two images
+QUATERNION_OFF = 0.01  # limit of the library
+POSITION_MAX_M = 1e6  # limit of the library
+LEVEL_MIN = 0.2  # horizontal share of a line of sight; below, it has no direction on the map
 
 
 @dataclass
 class Motion:
-    """Over M moments. ``of_frame`` (rows,) gives the moment of each row of the log."""
+    """Over M moments. ``of_frame``: (rows,) the moment of each row of the log."""
 
     time_s: np.ndarray  # (M,) rising
-    camera_ne_m: np.ndarray  # (M, 2); interpolated if missing in the log
+    camera_ne_m: np.ndarray  # (M, 2); interpolated if the log has none
     down_m: np.ndarray  # (M,)
-    velocity_m_s: np.ndarray  # (M, 3) north, east, down; NaN: unknown
+    velocity_m_s: np.ndarray  # (M, 3) north, east, down; NaN: not known
     look_rad: np.ndarray  # (M, 2) azimuths, clockwise from north, of the image's left and right border; NaN: none
     broken: np.ndarray  # (M,) the path does not continue from the moment before
     reset: np.ndarray  # (M,) the filter's reset count changed
     of_frame: np.ndarray
-    shift_m: np.ndarray  # (rows, 3) subtracted from the position of each row
+    shift_m: np.ndarray  # (rows, 3) sum of the jumps, subtracted from the position of each row
 
 
 def shown_times(frames: Sequence[Frame]) -> np.ndarray:
-    """(rows,) time at which a row is shown: its own, or the latest of its track before it if its time is missing or
-    decreases."""
+    """(rows,) the time of a row; that of its track's latest row before it if it has none, or an earlier one."""
     times = np.array([frame.t_s for frame in frames], float)
     first = float(times[np.isfinite(times)].min()) if np.isfinite(times).any() else 0.0
     latest: dict[int, float] = {}
@@ -51,8 +50,8 @@ def shown_times(frames: Sequence[Frame]) -> np.ndarray:
 
 
 def _jumps(frames: Sequence[Frame], order: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(rows, 3) sum of the known jumps up to each row; (rows,) whether the count changed there, and whether the jump is
-    unknown. Tracks share the filter: a jump counts once."""
+    """(rows, 3) sum of the known jumps up to each row; (rows,) whether the count changed there, and whether by an
+    unknown jump. Tracks share the filter: a jump counts once."""
     shift, reset, unknown = np.zeros((len(frames), 3)), np.zeros(len(frames), bool), np.zeros(len(frames), bool)
     total, count = np.zeros(3), None
     for i in order:
@@ -67,7 +66,7 @@ def _jumps(frames: Sequence[Frame], order: np.ndarray) -> tuple[np.ndarray, np.n
 
 
 def _filled(time_s: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """(M, n): interpolates rows with a NaN over time; zero if there is no good row."""
+    """(M, n): rows with a NaN are interpolated in time; zero if all are NaN."""
     good = np.isfinite(values).all(1)
     if not good.any():
         return np.zeros_like(values)
@@ -75,8 +74,7 @@ def _filled(time_s: np.ndarray, values: np.ndarray) -> np.ndarray:
 
 
 def velocities(time_s: np.ndarray, position_m: np.ndarray, broken: np.ndarray) -> np.ndarray:
-    """(M, 3): mean velocity over the last ``VELOCITY_OVER_S``, or since the previous image; NaN at the start of a
-    path."""
+    """(M, 3): mean velocity over ``VELOCITY_OVER_S``, or since the previous image; NaN at the start of a path."""
     result = np.full((len(time_s), 3), np.nan)
     starts = np.flatnonzero(broken)
     since = np.searchsorted(time_s, time_s - VELOCITY_OVER_S - 1e-9)
@@ -89,11 +87,11 @@ def velocities(time_s: np.ndarray, position_m: np.ndarray, broken: np.ndarray) -
 
 
 def border_rays(camera: Camera) -> np.ndarray:
-    """(2, 3): rays in body axes through the middle of the image's left and right border."""
+    """(2, 3): body axes, through the centers of the image's left and right border."""
     pixels = np.array([[0.0, 0.5 * camera.height], [camera.width, 0.5 * camera.height]])
     try:
         points, _ = undistort(camera, pixels)
-    except np.linalg.LinAlgError:  # outside the valid field of the lens model
+    except np.linalg.LinAlgError:  # outside the lens model's range
         points = (pixels - [camera.cx, camera.cy]) / [camera.fx, camera.fy]
     return np.column_stack([points, np.ones(2)]) @ mounting(camera).T
 
@@ -106,7 +104,7 @@ def _azimuths(rays: np.ndarray) -> np.ndarray:
 
 
 def motion_of(log: ObservationLog) -> Motion:
-    """The motion of a log with at least one row."""
+    """Of a log with at least one row."""
     frames = log.frames
     cameras = [log.camera, log.camera2 or log.camera]
     shown = shown_times(frames)
@@ -128,7 +126,7 @@ def motion_of(log: ObservationLog) -> Motion:
     eye = position + np.einsum("kij,kj->ki", rotation, offsets[number])
     look = _azimuths(np.einsum("kij,kbj->kbi", rotation, rays[number]))
     at, camera_at, look_at = (np.full((count, n), np.nan) for n in (3, 3, 2))
-    for i in order[::-1]:  # among several rows at one time the first good one wins
+    for i in order[::-1]:  # of several rows at one time the first good one counts
         if good[i]:
             at[of_frame[i]], camera_at[of_frame[i]], look_at[of_frame[i]] = position[i], eye[i], look[i]
     broken, resets = np.zeros(count, bool), np.zeros(count, bool)

@@ -1,10 +1,10 @@
-"""The outline of an estimate from above, as in goe_hazard, and its two-sigma region.
+"""The outline of an estimate from above, as goe_hazard uses it, and its 2-sigma region.
 
-Outline: the box; for discs, upright boxes and estimates without orientation or length, the circle of the width about
-the reference position. Region: the hull of the two-sigma ellipses of the outline's points (a box's corners, points of a
-circle), each to first order from the covariance of x, z, orientation, width, length.
+Outline: the box; without orientation or length, and for discs and upright boxes, the circle of its width around the
+reference point. Region: the hull of the 2-sigma ellipses of the outline's points (a box's corners, points of a
+circle), each to the first order from the covariance of x, z, orientation, width, length.
 
-Axes: those of T (x right, z forward) from the camera, meters.
+Axes: T's, (x right, z forward) from the camera, meters.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ CORNERS = np.array([[-0.5, 0.0], [0.5, 0.0], [0.5, 1.0], [-0.5, 1.0]])  # across
 
 @dataclass
 class Outlines:
-    """Over K images; NaN without an outline. A row has either a circle or corners."""
+    """Over K images; NaN: none. A row has a circle or corners."""
 
     circle: np.ndarray  # (K, 3) x, z, radius
     corner: np.ndarray  # (K, 4, 2)
@@ -62,8 +62,7 @@ def _rim_slopes(count: int) -> np.ndarray:
 
 
 def _directions(spread: np.ndarray, size: np.ndarray) -> np.ndarray:
-    """(K, REGION_POINTS, 2): outward normals, chosen so that the hull's points are evenly spaced, also for a thin
-    region."""
+    """(K, REGION_POINTS, 2): outward normals for evenly distributed points of the hull, also of a long thin one."""
     shape = spread + (size**2)[:, None, None] * np.eye(2)
     variance, axes = np.linalg.eigh(shape)
     narrow = _rim(REGION_POINTS) @ (axes / np.sqrt(np.maximum(variance, TINY_M**2))[:, None]).transpose(0, 2, 1)
@@ -71,7 +70,7 @@ def _directions(spread: np.ndarray, size: np.ndarray) -> np.ndarray:
 
 
 def hull(points: np.ndarray, spreads: np.ndarray, size: np.ndarray) -> np.ndarray:
-    """(K, REGION_POINTS, 2): points on the hull of the two-sigma ellipses about points (K, P, 2) with covariances
+    """(K, REGION_POINTS, 2): points on the hull of the 2-sigma ellipses around points (K, P, 2) with covariances
     (K, P, 2, 2); ``size`` (K,) of the outline, m."""
     normal = _directions(spreads[:, 0], size)
     pushed = np.einsum("kpij,kdj->kdpi", spreads, normal)
@@ -85,8 +84,8 @@ def hull(points: np.ndarray, spreads: np.ndarray, size: np.ndarray) -> np.ndarra
 def outlines(
     column: dict[str, np.ndarray], model: list[str], covariance: np.ndarray, spare_m: np.ndarray | float = 0.0
 ) -> Outlines:
-    """Outlines from the columns x_m, z_m, orientation_deg, width_m, length_m. ``spare_m``: least radius of a circle
-    that replaces a box, or of one without a width."""
+    """Of the columns x_m, z_m, orientation_deg, width_m, length_m. ``spare_m``: least radius of a circle that
+    represents a box, or without a known width."""
     x, z = column["x_m"], column["z_m"]
     angle, width, length = np.radians(column["orientation_deg"]), column["width_m"], column["length_m"]
     count, there = len(x), np.isfinite(z)
@@ -112,7 +111,7 @@ def _hull(points: np.ndarray, slopes: np.ndarray, covariance: np.ndarray, size: 
 
 
 def nearest_on_outline(point: np.ndarray, circle: np.ndarray, corner: np.ndarray) -> np.ndarray:
-    """(K, 2): the point of each row's outline nearest to ``point`` (K, 2); the point itself if inside."""
+    """(K, 2): of each row's outline, the point nearest to ``point`` (K, 2); the point itself inside."""
     result = np.full(point.shape, np.nan)
     middle, radius = circle[:, :2], circle[:, 2]
     away = point - middle

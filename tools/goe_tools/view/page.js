@@ -7,8 +7,8 @@
   const CIRCLE_POINTS = 60;
   const MAP_MARGIN = { l: 46, r: 8, t: 8, b: 30 };
   const CLOSE_STEPS_M = [8, 15, 25, 40, 65, 100, 160, 250, 400, 650, 1000];
-  const GONE_S = 1; // an obstacle without an image for this long is out of view
-  const PAGE_SHARE = 20; // steps of PageUp and PageDown through the whole log
+  const GONE_S = 1; // an obstacle without an image for longer is out of view
+  const PAGE_SHARE = 20; // number of PageDown steps through the whole log
   const state = { moment: 0, track: 0, view: "whole", playing: false };
   let story, plots = [];
 
@@ -52,11 +52,11 @@
 
   /* ----------------------------------------------------------------------------------------------------- charts -- */
 
-  /* Runs [first, last] of indices for which matches() is true. */
-  function runs(count, matches) {
+  /* Runs [first, last] of indices for which test() is true. */
+  function runs(count, test) {
     const found = [];
     for (let k = 0; k < count; k++) {
-      if (!matches(k)) continue;
+      if (!test(k)) continue;
       if (found.length && found[found.length - 1][1] === k - 1) found[found.length - 1][1] = k;
       else found.push([k, k]);
     }
@@ -89,7 +89,7 @@
     const c = track.columns, t = Array.from(c.time), traces = [];
     const quiet = { mode: "lines", hoverinfo: "skip" };
     const value = c[chart.key];
-    if (chart.key === "misfit") {
+    if (chart.key === "nis_ratio") {
       traces.push({ ...quiet, ...doubtful(track, own.range), fill: "toself", fillcolor: color("suspect-pale"), line: { width: 0 } });
     }
     if (chart.sigma) {
@@ -138,7 +138,7 @@
       plot.on("plotly_click", (event) => goTo(momentAt(event.points[0].x)));
       plots.push({ chart, own, plot, output: panel.querySelector("output") });
     });
-    $("absent").textContent = absent.length ? `Never known in this log: ${absent.join(", ")}.` : "";
+    $("absent").textContent = absent.length ? `Never estimated in this log: ${absent.join(", ")}.` : "";
   }
 
   function moveCursors(row, now) {
@@ -179,10 +179,10 @@
   const region = (track, k) => polygon(track.columns.region, k, track.columns.region.length / (2 * track.columns.time.length));
   const rowAt = (track, moment) => track.columns.rowAt[moment];
 
-  /* Middle of a closed polygon, whose first and last points are equal. */
+  /* Of a closed polygon: its first point is also its last. */
   const middleOf = (points) => [0, 1].map((i) => points.slice(1).reduce((sum, p) => sum + p[i], 0) / (points.length - 1));
 
-  /* The path of a moving outline until then, and its place then. */
+  /* The path of a moving outline until the closest approach, and its position then. */
   function passing(there, moved) {
     const [x, y] = middleOf(there);
     return [[[x, y], moved], there.map((p) => [p[0] + moved[0] - x, p[1] + moved[1] - y])];
@@ -226,18 +226,18 @@
   function mapParts(moment) {
     const track = story.tracks[state.track], row = rowAt(track, moment), at = pair(story.moments.path, moment);
     const others = story.tracks.filter((other) => other !== track && rowAt(other, moment) >= 0);
-    const there = row >= 0 ? outline(track, row) : [], exists = known(there);
-    const closest = exists ? pair(track.columns.closest, row) : [NaN, NaN], nearest = exists ? pair(track.columns.nearest, row) : [NaN, NaN];
+    const there = row >= 0 ? outline(track, row) : [], located = known(there);
+    const closest = located ? pair(track.columns.closest, row) : [NaN, NaN], nearest = located ? pair(track.columns.nearest, row) : [NaN, NaN];
     const ahead = known([closest]);
     const [vx, vy] = pair(story.moments.velocity, moment);
     return {
       wedge: lines([wedge(moment, reachOf(moment))]),
       otherRegions: lines(others.map((o) => region(o, rowAt(o, moment)))),
       others: lines(others.map((o) => outline(o, rowAt(o, moment)))),
-      region: lines(exists ? [region(track, row)] : []),
+      region: lines(located ? [region(track, row)] : []),
       later: path(moment, story.moments.time.length - 1),
       flown: path(0, moment),
-      outline: lines(exists ? [there] : []),
+      outline: lines(located ? [there] : []),
       truths: lines(story.tracks.map((t) => (t.truth.length ? t.truth.concat([t.truth[0]]) : []))),
       course: lines(ahead ? [[at, closest], ...passing(there, pair(track.columns.moved, row))] : []),
       miss: lines(ahead ? [[closest, nearest]] : []),
@@ -281,14 +281,14 @@
     return extent(there.concat(region(track, row), [pair(story.moments.path, moment)], known([closest]) ? [closest] : [], track.truth));
   }
 
-  /* ... of the close view: about the obstacle's last place, in steps, to show how the region shrinks. */
+  /* ... of the close view: around the obstacle's last position, in steps, to show how the region shrinks. */
   function closeBounds(moment) {
     const track = story.tracks[state.track], row = rowAt(track, moment);
-    const there = row >= 0 ? outline(track, row) : [], exists = known(there);
-    const [x0, x1, y0, y1] = exists ? extent(there) : [0, 0, 0, 0];
+    const there = row >= 0 ? outline(track, row) : [], located = known(there);
+    const [x0, x1, y0, y1] = located ? extent(there) : [0, 0, 0, 0];
     const [x, y] = track.anchor ?? [0.5 * (x0 + x1), 0.5 * (y0 + y1)];
     const reach = (points) => Math.max(0, ...points.map((p) => Math.max(Math.abs(p[0] - x), Math.abs(p[1] - y))));
-    const needed = reach(exists ? there.concat(region(track, row), track.truth) : track.truth);
+    const needed = reach(located ? there.concat(region(track, row), track.truth) : track.truth);
     const half = CLOSE_STEPS_M.find((step) => step >= needed) ?? needed;
     return [x - half, x + half, y - half, y + half];
   }
@@ -351,12 +351,12 @@
 
   function say(row, now) {
     const track = story.tracks[state.track];
-    const place = row < 0 ? "No detection yet" : track.place[row], age = row < 0 ? 0 : now - track.columns.time[row];
+    const place = row < 0 ? "Not detected yet" : track.place[row], age = row < 0 ? 0 : now - track.columns.time[row];
     $("place").textContent = place;
     $("approach").textContent = row < 0 ? "" : track.approach[row];
     const odds = row < 0 ? NaN : (track.columns.violation ?? [])[row];
     const act = row >= 0 && track.columns.act[row] > 0;
-    if (odds >= 1) $("approach").textContent += `. Too close: ${odds.toFixed(0)} %${act ? ": act now" : ""}`;
+    if (odds >= 1) $("approach").textContent += `. Conflict probability ${odds.toFixed(0)} %${act ? ": act now" : ""}`;
     $("approach").parentElement.classList.toggle("too-close", act);
     const late = age > 0.05 ? `No image of it for ${age.toFixed(1)} s. ` : "";
     $("state").textContent = row < 0 ? "" : late + track.state[row];
@@ -409,7 +409,7 @@
 
   const restartClock = () => { clock = { at: performance.now(), from: story.moments.time[state.moment] }; };
 
-  /* The answers over time, above the slider. */
+  /* Above the slider: when there is an estimate. */
   function drawStrip() {
     const track = story.tracks[state.track], count = story.moments.time.length, strip = $("strip"), rects = [];
     const kind = (moment) => {
@@ -455,7 +455,7 @@
     for (const drawn of document.querySelectorAll(".js-plotly-plot svg, #js-plotly-tester")) drawn.setAttribute("aria-hidden", "true");
   }
 
-  /* Another obstacle: at the present time, or, if it is out of view then, at its first answers. */
+  /* Another obstacle: at the present time, or, if it is out of view then, at its own first moment. */
   function choose(index) {
     const track = story.tracks[index], row = rowAt(track, state.moment);
     if (row < 0 || story.moments.time[state.moment] - track.columns.time[row] > GONE_S) state.moment = track.first;

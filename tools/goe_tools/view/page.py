@@ -1,8 +1,8 @@
-"""The page: one file that contains plotly.js and the numbers, both compressed; it loads nothing else.
+"""The page: one file that contains plotly.js and the numbers, both compressed; it fetches nothing.
 
-The whole plotly.js (MIT) comes from the pinned Python package ``plotly``: 4.8 MB, or 2.0 MB after deflate and base64.
-The browser inflates it with DecompressionStream (Chromium 80, Firefox 113, Safari 16.4). Numbers are the library's
-float32 values, of at most ``story.MOST_ROWS`` images, under 1 MB.
+plotly.js (MIT) comes from the pinned Python package ``plotly``: 4.8 MB, after deflate and base64 2.0 MB.
+The browser inflates it by DecompressionStream (Chromium 80, Firefox 113, Safari 16.4). Numbers are the
+library's float32, of at most ``story.MOST_ROWS`` images, under 1 MB.
 """
 
 from __future__ import annotations
@@ -25,10 +25,11 @@ from .charts import Chart, axis_range, charts_of, text
 from .story import Story, Track, map_bounds
 
 LEVEL = 9  # of deflate
+TALL = 0.6  # width over height of the flight on the map; below, the map is tall
 
 
 class Numbers:
-    """Concatenates arrays as float32 and returns their places."""
+    """Concatenated arrays as float32, with the start of each."""
 
     def __init__(self) -> None:
         self.parts: list[np.ndarray] = []
@@ -104,7 +105,7 @@ def _story_data(story: Story, chosen: Track, first: int, numbers: Numbers) -> di
 
 @lru_cache(maxsize=1)
 def _plotly() -> Markup:
-    """plotly.js, packed."""
+    """plotly.js, compressed."""
     try:
         from plotly.offline import get_plotlyjs
     except ImportError:
@@ -113,30 +114,38 @@ def _plotly() -> Markup:
 
 
 def _facts(story: Story) -> list[str]:
-    """The sentences at the foot of the page."""
+    """The sentences in the page's footer."""
     options = story.options
     shown = sum(len(track.answers) for track in story.tracks)
     facts = [f"{story.rows:,} rows of {len(story.tracks):,} obstacle{'s' if len(story.tracks) != 1 else ''}."]
     if shown < story.rows:
         facts.append(
-            f"{shown:,} of them are shown, evenly over time, plus changes of answer, model, suspicion or reset."
+            f"{shown:,} of them are shown: evenly distributed, and those with a change of estimate, model, suspicion "
+            "or filter reset."
         )
     changed = ", ".join(f"{name}={value:g}" for name, value in options.settings.items())
     facts.append(
-        f"Replayed with the method {options.method}, model {options.model}{', with ' + changed if changed else ''}."
+        f"Replayed with method {options.method}, model {options.model}{', with ' + changed if changed else ''}."
     )
     rule = package().DecisionRule()
     facts.append(
-        f"Too close: within {options.margin_m:g} m horizontally and {options.clearance_m:g} m over the top. "
-        f"Both are multiplied by {rule.doubt:g} while the answer is suspect and grow by {rule.drift_m_s:g} m "
-        f"for each second of its age. Act now: the library's decision rule, from {100.0 * rule.violation_max:g} % on, "
-        f"if the aircraft may reach the obstacle within {rule.act_s:g} s."
+        f"Conflict: less than {options.margin_m:g} m to the side and {options.clearance_m:g} m above the top. Both "
+        f"distances are {rule.suspect_factor:g} times as large while the estimate is suspect, and grow by "
+        f"{rule.stale_growth_m_s:g} m for each second of its age. Act now: decision of goe_decide(), "
+        f"if the conflict probability is at least {100.0 * rule.conflict_probability_max:g} % "
+        f"and the obstacle may be reached within {rule.act_within_s:g} s."
     )
     return facts
 
 
+def _is_tall(story: Story) -> bool:
+    """Whether the map of the whole flight fits into half of the map card's width."""
+    left, right, bottom, top = map_bounds(story)
+    return right - left < TALL * (top - bottom)
+
+
 def render(story: Story, chosen: Track, first: int) -> str:
-    """The page's text. ``first``: the moment shown first."""
+    """The page's text. ``first``: the initial moment."""
     numbers = Numbers()
     data = json.dumps(
         _story_data(story, chosen, first, numbers), ensure_ascii=False, separators=(",", ":"), allow_nan=False
@@ -156,6 +165,7 @@ def render(story: Story, chosen: Track, first: int) -> str:
         summary=words.place(chosen.answers, row),
         answered=any(track.answers.answered.any() for track in story.tracks),
         truth=any(track.truth for track in story.tracks),
+        tall=_is_tall(story),
         facts=_facts(story),
         style=Markup((folder / "page.css").read_text(encoding="utf-8")),
         script=Markup((folder / "page.js").read_text(encoding="utf-8")),

@@ -1,12 +1,14 @@
-"""One moment of a log as a picture: the map, a close view of the obstacle, distance ahead and size over time.
+"""One moment of a log as a picture: a map, a close map of the obstacle, distance and size over time.
 
-PNG, light or dark; SVG, which follows the reader's theme (prefers-color-scheme), by default light.
+PNG: light or dark, wide or for phones. SVG: follows the reader's color scheme (prefers-color-scheme), otherwise light.
 """
 
 from __future__ import annotations
 
 import math
 import re
+import textwrap
+from dataclasses import dataclass
 from io import BytesIO
 
 import matplotlib
@@ -16,7 +18,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Polygon
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch, Polygon
 
 from . import words
 from .charts import CHARTS, Chart, axis_range
@@ -34,11 +37,13 @@ DARK = {
 }  # fmt: skip
 THEMES = {"light": LIGHT, "dark": DARK}
 SIZE_IN, DPI_SVG, DPI_PNG = (8.0, 5.2), 100, 200  # the SVG is 800 px wide
-EARLIER = (0.0, 0.25, 0.55)  # moments whose regions are also shown, as shares of the answered time before
+NARROW_IN = (3.8, 8.4)
+NARROW_LETTERS = 42  # of a line, narrow
+EARLIER = (0.0, 0.25, 0.55)  # shares of the time with estimates before the moment: earlier regions shown
 CIRCLE_POINTS = 60
 LEAST_M = 12.0  # half the width of the close view
 LOOK_STEPS = 24
-LINE_PT = 900.0  # font size times number of letters of a bold line across the width
+LINE_PT = 900.0  # font size times letters of a bold line that fills the width
 
 
 def style(theme: dict[str, str]) -> dict[str, object]:
@@ -59,7 +64,7 @@ def style(theme: dict[str, str]) -> dict[str, object]:
 
 
 def outline_points(track: Track, k: int) -> np.ndarray:
-    """(P, 2) of the estimate's outline; NaN without one."""
+    """(P, 2) of the estimate's outline; NaN if there is none."""
     x, y, radius = track.circle[k]
     if not math.isfinite(x):
         return track.corner[k]
@@ -76,7 +81,7 @@ def _area(ax: Axes, points: np.ndarray, fill: str, alpha: float, edge: str, edge
 
 
 def _earlier_rows(track: Track, row: int) -> list[int]:
-    """Rows of earlier answers, whose regions show the development."""
+    """Rows of earlier estimates whose regions are drawn, too."""
     answered = np.flatnonzero(track.answers.answered[: row + 1])
     if len(answered) < 2:
         return []
@@ -142,18 +147,18 @@ def _draw_flight(ax: Axes, story: Story, track: Track, moment: int, theme: dict[
     ax.plot(x, y, marker=arrow, markersize=10, color=theme["own"], markeredgecolor=theme["panel"], zorder=7)
 
 
-def _same_scale(ax: Axes, bounds: tuple[float, ...] | list[float], padding: float = 1.12) -> None:
-    """Axis limits that include left, right, bottom and top, with the same scale on both axes."""
+def _same_scale(ax: Axes, bounds: tuple[float, ...] | list[float], margin: float = 1.12) -> None:
+    """Axis limits that contain left, right, bottom, top with one scale on both axes."""
     box = ax.get_window_extent()
     x0, x1, y0, y1 = bounds
-    scale = padding * max((x1 - x0) / box.width, (y1 - y0) / box.height, 1e-3)
+    scale = margin * max((x1 - x0) / box.width, (y1 - y0) / box.height, 1e-3)
     x, y = 0.5 * (x0 + x1), 0.5 * (y0 + y1)
     ax.set_xlim(x - 0.5 * scale * box.width, x + 0.5 * scale * box.width)
     ax.set_ylim(y - 0.5 * scale * box.height, y + 0.5 * scale * box.height)
 
 
 def _close_bounds(track: Track, row: int) -> tuple[float, float, float, float] | None:
-    """Bounds about the obstacle, including outline, truth and region."""
+    """Around the obstacle: outline, truth and region."""
     if row < 0 or not track.answers.answered[row]:
         return None
     points = np.vstack([outline_points(track, row), track.region[row], track.truth_outline])
@@ -176,9 +181,9 @@ def _draw_chart(ax: Axes, chart: Chart, story: Story, track: Track, moment: int,
     answers, row = track.answers, int(track.row_at[moment])
     value = chart.scale * answers.column[chart.key]
     limits = axis_range(chart, answers, track.truth)
-    text = chart_text(chart, answers, row) if row >= 0 else words.NOTHING
+    shown = chart_text(chart, answers, row) if row >= 0 else words.NOTHING
     ax.set_title(chart.title, loc="left", fontsize=8.5, fontweight="bold", pad=4)
-    ax.set_title(text, loc="right", fontsize=8.5, fontweight="bold", color=theme["estimate"], pad=4)
+    ax.set_title(shown, loc="right", fontsize=8.5, fontweight="bold", color=theme["estimate"], pad=4)
     first, last = track.time_s[0], track.time_s[-1]
     ax.set_xlim(first - (0.0 if last > first else 0.5), last + 1e-6)
     ax.set_yticks([]) if limits is None else ax.set_ylim(*limits)
@@ -202,39 +207,85 @@ def _draw_chart(ax: Axes, chart: Chart, story: Story, track: Track, moment: int,
 # ---------------------------------------------------------------------------------------------------------- the whole
 
 
-def _legend(figure: Figure, theme: dict[str, str], truth: bool) -> None:
-    entries = [("flown", "own", "solid"), ("estimate, two sigma", "estimate", "solid")]
-    entries += [("truth", "true", "dashed")] if truth else []
-    entries.append(("closest approach", "course", "dashed"))
-    handles = [
-        matplotlib.lines.Line2D([], [], color=theme[color], linestyle=style, linewidth=1.8)
-        for _, color, style in entries
-    ]
+def _handles(theme: dict[str, str], truth: bool) -> list[Line2D | Patch]:
+    """The legend: every kind of line and area in the picture."""
+
+    def line(label: str, color: str, style: object = "solid", width: float = 1.8, **more: object) -> Line2D:
+        return Line2D([], [], color=theme[color], linestyle=style, linewidth=width, label=label, **more)
+
+    def area(label: str, color: str, alpha: float) -> Patch:
+        return Patch(facecolor=matplotlib.colors.to_rgba(theme[color], alpha), edgecolor=theme[color], label=label)
+
+    handles: list[Line2D | Patch] = [
+        line("flown path", "own"), line("later path", "own", (0, (1, 2)), 1.0), area("estimate", "estimate", 0.35),
+        area("2σ region or band (pale: earlier)", "estimate", 0.12), area("camera's view", "look", 0.22),
+    ]  # fmt: skip
+    if truth:
+        handles.append(line("truth", "true", (0, (3, 2)), 1.3))
+    closest = line("course, closest approach", "course", (0, (4, 2)), 1.4, marker="D", markersize=3.5)
+    return [*handles, closest, line("this moment", "ink", width=0.9)]
+
+
+def _legend(figure: Figure, theme: dict[str, str], truth: bool, narrow: bool) -> None:
+    handles = _handles(theme, truth)
     figure.legend(
-        handles, [name for name, _, _ in entries], loc="lower left", bbox_to_anchor=(0.028, 0.004), ncols=4,
-        frameon=False, fontsize=8, labelcolor=theme["soft"], handlelength=1.8, columnspacing=1.6,
+        handles=handles, loc="lower left", bbox_to_anchor=(0.02, 0.002), ncols=2 if narrow else 4, frameon=False,
+        fontsize=7.6, labelcolor=theme["soft"], handlelength=1.5, handletextpad=0.5, columnspacing=1.0,
+        labelspacing=0.35,
     )  # fmt: skip
 
 
 def _sentence(figure: Figure, track: Track, row: int, now: float, theme: dict[str, str]) -> None:
     answers = track.answers
-    place = words.place(answers, row) if row >= 0 else "No detection yet"
+    place = words.place(answers, row) if row >= 0 else words.NOT_YET
     figure.text(0.037, 0.955, place, fontsize=min(13.5, LINE_PT / len(place)), fontweight="bold", va="center")
     if row >= 0:
         figure.text(0.037, 0.905, words.approach(answers, row), fontsize=9.5, color=theme["course"], va="center")
         doubt = words.doubt(answers, row)
         figure.text(0.037, 0.867, doubt, fontsize=8.5, color=theme["suspect"], va="center", fontweight="bold")
-    figure.text(0.972, 0.905, f"{now:.1f} s", fontsize=9.5, color=theme["soft"], va="center", ha="right")
+    figure.text(0.972, 0.867, f"At {now:.1f} s. ± is 1σ.", fontsize=8.5, color=theme["soft"], va="center", ha="right")
 
 
-def draw(story: Story, track: Track, moment: int, theme: dict[str, str]) -> Figure:
-    figure = plt.figure(figsize=SIZE_IN, dpi=DPI_SVG)
+def _narrow_sentence(figure: Figure, track: Track, row: int, now: float, theme: dict[str, str]) -> None:
+    """The same in short lines."""
+    answers = track.answers
+    texts = [(words.place(answers, row) if row >= 0 else words.NOT_YET, "ink", "bold")]
+    if row >= 0:
+        texts += [(words.approach(answers, row), "course", "normal"), (words.doubt(answers, row), "suspect", "bold")]
+    texts.append((f"At {now:.1f} s. ± is 1σ.", "soft", "normal"))
+    y = 0.985
+    for text, color, weight in texts:
+        lines = textwrap.wrap(text.replace(words.HARD, " "), NARROW_LETTERS)
+        figure.text(0.04, y, "\n".join(lines), fontsize=9.2, color=theme[color], fontweight=weight, va="top")
+        y -= 0.0195 * len(lines) + (0.004 if lines else 0.0)
+
+
+@dataclass(frozen=True)
+class _Places:
+    """Left, bottom, width, height of the axes in shares of the figure."""
+
+    whole: tuple[float, float, float, float]
+    close: tuple[float, float, float, float]
+    ahead: tuple[float, float, float, float]
+    sizes: tuple[tuple[float, float, float, float], ...]
+
+
+WIDE = _Places(
+    (0.062, 0.165, 0.285, 0.632), (0.41, 0.165, 0.25, 0.265), (0.41, 0.545, 0.562, 0.24),
+    ((0.735, 0.335, 0.237, 0.095), (0.735, 0.165, 0.237, 0.095)),
+)  # fmt: skip
+NARROW = _Places(
+    (0.13, 0.475, 0.36, 0.325), (0.62, 0.475, 0.325, 0.325), (0.13, 0.335, 0.815, 0.09),
+    ((0.13, 0.23, 0.815, 0.055), (0.13, 0.125, 0.815, 0.055)),
+)  # fmt: skip
+
+
+def draw(story: Story, track: Track, moment: int, theme: dict[str, str], narrow: bool = False) -> Figure:
+    figure = plt.figure(figsize=NARROW_IN if narrow else SIZE_IN, dpi=DPI_SVG)
     row = int(track.row_at[moment])
-    bottom, top = 0.135, 0.785
-    whole = figure.add_axes((0.062, bottom, 0.285, top - bottom + 0.012))
-    close = figure.add_axes((0.41, bottom, 0.25, 0.28))
-    ahead = figure.add_axes((0.41, 0.525, 0.562, top - 0.525))
-    sizes = [figure.add_axes((0.735, y, 0.237, 0.105)) for y in (0.31, bottom)]
+    places = NARROW if narrow else WIDE
+    whole, close, ahead = (figure.add_axes(place) for place in (places.whole, places.close, places.ahead))
+    sizes = [figure.add_axes(place) for place in places.sizes]
     for ax in (whole, close):
         _draw_obstacle(ax, story, track, moment, theme)
         _draw_approach(ax, story, track, moment, theme)
@@ -243,7 +294,7 @@ def draw(story: Story, track: Track, moment: int, theme: dict[str, str]) -> Figu
     _same_scale(whole, map_bounds(story, track if story.brief(track) else None))
     near = _close_bounds(track, row)
     _same_scale(close, near or map_bounds(story), 1.06)
-    close.locator_params(axis="y", nbins=4)
+    close.locator_params(axis="y", nbins=7 if narrow else 4)
     whole.set_title("From above, m", loc="left", fontsize=8.5, fontweight="bold", pad=4)
     close.set_title("The obstacle, m", loc="left", fontsize=8.5, fontweight="bold", pad=4)
     charts = {chart.key: chart for chart in CHARTS}
@@ -252,15 +303,18 @@ def draw(story: Story, track: Track, moment: int, theme: dict[str, str]) -> Figu
     for ax, key in zip(sizes, ("width_m", "height_m")):
         _draw_chart(ax, charts[key], story, track, moment, theme)
         ax.xaxis.set_major_formatter("{x:g} s")
-    sizes[0].set_xticklabels([])
-    _sentence(figure, track, row, float(story.time_s[moment]), theme)
-    _legend(figure, theme, any(len(t.truth_outline) or t.truth for t in story.tracks))
+    for ax in (ahead, sizes[0]) if narrow else sizes[:1]:
+        ax.set_xticklabels([])
+    (_narrow_sentence if narrow else _sentence)(figure, track, row, float(story.time_s[moment]), theme)
+    _legend(figure, theme, any(len(t.truth_outline) or t.truth for t in story.tracks), narrow)
     return figure
 
 
-def _saved(story: Story, track: Track, moment: int, theme: dict[str, str], kind: str, dpi: int) -> bytes:
+def _saved(
+    story: Story, track: Track, moment: int, theme: dict[str, str], kind: str, dpi: int, narrow: bool = False
+) -> bytes:
     with plt.rc_context(style(theme)):
-        figure = draw(story, track, moment, theme)
+        figure = draw(story, track, moment, theme, narrow)
         file = BytesIO()
         nothing = {"Date": None, "Creator": None} if kind == "svg" else {"Software": None}
         figure.savefig(file, format=kind, dpi=dpi, metadata=nothing)
@@ -268,25 +322,23 @@ def _saved(story: Story, track: Track, moment: int, theme: dict[str, str], kind:
     return file.getvalue()
 
 
-def png(story: Story, track: Track, moment: int, theme: str = "light") -> bytes:
-    """1600 x 1040 px."""
-    return _saved(story, track, moment, THEMES[theme], "png", DPI_PNG)
+def png(story: Story, track: Track, moment: int, theme: str = "light", narrow: bool = False) -> bytes:
+    """1600 x 1040 px; narrow, for phones: 760 x 1680 px."""
+    return _saved(story, track, moment, THEMES[theme], "png", DPI_PNG, narrow)
 
 
 def _adapting(text: str, description: str) -> str:
-    """An SVG with variables as colors, which follow the reader's theme, and a description for screen readers."""
+    """An SVG with colors as variables, which follow the reader's color scheme, and a title for screen readers."""
     for name, color in LIGHT.items():
         text = re.sub(rf"\b(fill|stroke): {color}\b", rf"\1: {color}; \1: var(--{name})", text)
     rules = (" ".join(f"--{name}: {color};" for name, color in theme.items()) for theme in (LIGHT, DARK))
     style = "<style>:root {{ {} }} @media (prefers-color-scheme: dark) {{ :root {{ {} }} }}</style>".format(*rules)
-    text = text.replace("<svg ", '<svg role="img" aria-labelledby="said" ', 1)
-    return re.sub(r"(<svg [^>]*>)", rf'\1<title id="said">{description}</title>{style}', text, count=1)
+    text = text.replace("<svg ", '<svg role="img" aria-labelledby="title" ', 1)
+    return re.sub(r"(<svg [^>]*>)", rf'\1<title id="title">{description}</title>{style}', text, count=1)
 
 
 def svg(story: Story, track: Track, moment: int) -> bytes:
     """800 x 520 px."""
     row = int(track.row_at[moment])
-    said = "No detection yet"
-    if row >= 0:
-        said = f"{words.place(track.answers, row)}. {words.approach(track.answers, row)}"
-    return _adapting(_saved(story, track, moment, LIGHT, "svg", DPI_SVG).decode("utf-8"), said).encode("utf-8")
+    title = f"{words.place(track.answers, row)}. {words.approach(track.answers, row)}" if row >= 0 else words.NOT_YET
+    return _adapting(_saved(story, track, moment, LIGHT, "svg", DPI_SVG).decode("utf-8"), title).encode("utf-8")

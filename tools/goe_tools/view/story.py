@@ -1,7 +1,7 @@
 """A replayed log in the axes of the map, for page and picture.
 
-Map: from above, meters from the first camera position, the course of the first path up. A log too long for a page is
-thinned evenly over time; images with a change of answer, model, suspicion or reset are kept as far as possible.
+Map: from above, meters from the camera's first position, the course of the path upwards. If there are too many images,
+the story contains an even selection over time, and images with a change of estimate, model, suspicion or filter reset.
 """
 
 from __future__ import annotations
@@ -19,15 +19,15 @@ from .outline import nearest_on_outline, outlines
 from .truth import footprint, true_columns
 
 MOST_ROWS = 3000  # of all obstacles, on one page
-EARLY_REGIONS = 0.1  # share of the two-sigma regions that may extend beyond the map, at each side
+EARLY_REGIONS = 0.1  # share of the two-sigma regions that may reach beyond the map, at each side
 BRIEF = 0.4  # share of the flight
 COURSE_MIN_M = 1.0  # a shorter path has no course
-FIRST_LOOK, SIZED_FOR = 0.4, 0.05  # of the answered time: the moment shown first, and its delay after the first width
+FIRST_LOOK, SIZED_FOR = 0.4, 0.05  # of the time with estimates: the initial moment; least time after the first width
 
 
 @dataclass
 class Track:
-    """One obstacle in K images. Places on the map; NaN: none."""
+    """One obstacle, in K images. Positions on the map; NaN: none."""
 
     answers: Answers
     time_s: np.ndarray  # (K,)
@@ -39,8 +39,8 @@ class Track:
     region: np.ndarray  # (K, points, 2)
     closest: np.ndarray  # (K, 2) the aircraft at the predicted closest approach ...
     nearest: np.ndarray  # (K, 2) ... and the outline's nearest point to it then
-    moved: np.ndarray  # (K, 2) the outline's middle then, if the target motion is estimated
-    anchor: np.ndarray | None  # (2,) its last estimated or true place; None: it moves, or there is no answer
+    moved: np.ndarray  # (K, 2) the outline's middle then, if the obstacle moves and is followed
+    anchor: np.ndarray | None  # (2,) its true or last position; None: it moves, or there is no estimate
 
     @property
     def id(self) -> int:
@@ -65,11 +65,11 @@ class Story:
     options: Options
 
     def at(self, time_s: float) -> int:
-        """The latest moment not after a time; the first if there is none."""
+        """The last moment at or before a time; the first if there is none."""
         return max(int(np.searchsorted(self.time_s, time_s + 1e-9, side="right")) - 1, 0)
 
     def first_look(self, track: Track) -> int:
-        """The moment to show first: midway through the answers, once there is a width; or the last one."""
+        """The initial moment: midway through the images with estimates, once there is a width; or the last one."""
         answered, sized = (
             np.flatnonzero(f) for f in (track.answers.answered, np.isfinite(track.answers.column["width_m"]))
         )
@@ -80,7 +80,7 @@ class Story:
         return self.at(max(first + FIRST_LOOK * (last - first), from_s + SIZED_FOR * (last - first)))
 
     def chosen(self, key: int | None) -> Track:
-        """The requested obstacle, or the one with most answers."""
+        """The obstacle with this id, or the one with most estimates."""
         if key is not None:
             for track in self.tracks:
                 if track.id == key:
@@ -89,19 +89,19 @@ class Story:
         return max(self.tracks, key=lambda track: int(track.answers.answered.sum()))
 
     def brief(self, track: Track) -> bool:
-        """Whether the obstacle was detected during a small part of the flight only."""
+        """Whether the obstacle was detected only in a small part of the flight."""
         return bool(track.time_s[-1] - track.time_s[0] < BRIEF * (self.time_s[-1] - self.time_s[0]))
 
 
 def turned(points: np.ndarray, angle_rad: np.ndarray | float) -> np.ndarray:
-    """Converts points (..., 2) (right, ahead) from axes turned clockwise by an angle."""
+    """Points (..., 2) (right, ahead) of axes that are turned clockwise by an angle against those asked for."""
     c, s = np.cos(angle_rad), np.sin(angle_rad)
     x, y = points[..., 0], points[..., 1]
     return np.stack([x * c + y * s, y * c - x * s], -1)
 
 
 def _course(motion: Motion, answers: list[Answers]) -> float:
-    """Heading that is up on the map, rad: from the path's start to its end, or that of T, or of the velocity."""
+    """Heading of the map's upward direction, rad: from the path's start to its end, or that of T."""
     way = motion.camera_ne_m[-1] - motion.camera_ne_m[0]
     if np.hypot(*way) > COURSE_MIN_M:
         return math.atan2(way[1], way[0])
@@ -109,40 +109,39 @@ def _course(motion: Motion, answers: list[Answers]) -> float:
 
 
 def _changes(answers: Answers) -> np.ndarray:
-    """(K,): changes of answer, model, suspicion or reason."""
+    """(K,): whether estimate, model, suspicion or its cause begins or ends."""
     labels = list(zip(answers.answered, answers.model, answers.suspect, answers.reason))
     return np.array([k > 0 and labels[k] != labels[k - 1] for k in range(len(labels))], bool)
 
 
 def _spread(candidates: np.ndarray, count: int) -> np.ndarray:
-    """At most ``count`` of them, evenly spaced, including the first and the last."""
+    """Up to ``count`` of them, evenly distributed, including the first and the last."""
     if len(candidates) <= count:
         return candidates
     return candidates[np.unique(np.linspace(0, len(candidates) - 1, max(count, 2)).round().astype(int))]
 
 
 def kept_moments(motion: Motion, answers: list[Answers], most_rows: int) -> np.ndarray:
-    """Indices of the displayed moments: all, or so many that at most ``most_rows`` rows remain, plus one for an
-    obstacle that would have none."""
+    """Indices of the shown moments: all, or so many that at most ``most_rows`` rows remain, plus one of each obstacle
+    that would have none."""
     count, rows = len(motion.time_s), len(motion.of_frame)
     if rows <= most_rows:
         return np.arange(count)
-    limit = max(int(most_rows * count / rows), 2)
-    notable = motion.reset | motion.broken
+    most = max(int(most_rows * count / rows), 2)
+    changes = motion.reset | motion.broken
     for own in answers:
-        notable[own.moment[_changes(own)]] = True
-    events = _spread(np.flatnonzero(notable), limit // 2)
-    kept = np.union1d(_spread(np.arange(count), limit - len(events)), events)
+        changes[own.moment[_changes(own)]] = True
+    events = _spread(np.flatnonzero(changes), most // 2)
+    kept = np.union1d(_spread(np.arange(count), most - len(events)), events)
     left_out = [own.moment[-1] for own in answers if not np.isin(own.moment, kept).any()]
     return np.union1d(kept, left_out).astype(int)
 
 
-def _implied_radius(own: Answers, closest: np.ndarray, on_map: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-    """(K,): radius of the circle that goe_hazard uses without a width or length, computed from the distance that it
-    reports; 0: unknown."""
+def _spare_radius(own: Answers, closest: np.ndarray, on_map: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
+    """(K,): radius of goe_hazard's circle while width or length is unknown, from its distance; 0: unknown."""
     reference = on_map(np.stack([own.column["x_m"], own.column["z_m"]], -1))
-    radius = np.linalg.norm(closest - reference, axis=1) - own.column["miss_m"]
-    return np.where(own.column["miss_m"] > 0.0, np.maximum(radius, 0.0), 0.0)
+    radius = np.linalg.norm(closest - reference, axis=1) - own.column["dcpa_m"]
+    return np.where(own.column["dcpa_m"] > 0.0, np.maximum(radius, 0.0), 0.0)
 
 
 def _anchor(own: Answers, middle: np.ndarray, moves: np.ndarray, truth_outline: np.ndarray) -> np.ndarray | None:
@@ -159,18 +158,18 @@ def _track(
     own = own.taken(rows)
     turn = own.heading_rad - course
     eye = turned((own.camera_ne_m - origin)[:, ::-1], -course)
-    closest = eye + turned(motion.velocity_m_s[own.moment][:, 1::-1], -course) * own.column["time_s"][:, None]
+    closest = eye + turned(motion.velocity_m_s[own.moment][:, 1::-1], -course) * own.column["tcpa_s"][:, None]
     drift = np.stack([own.column["velocity_east_m_s"], own.column["velocity_north_m_s"]], -1)
     moves = drift.any(1)
-    by = np.where(moves[:, None], turned(drift, -course) * own.column["time_s"][:, None], 0.0)
+    by = np.where(moves[:, None], turned(drift, -course) * own.column["tcpa_s"][:, None], 0.0)
 
     def on_map(points: np.ndarray) -> np.ndarray:
         extra = (1,) * (points.ndim - 2)
         return turned(points, turn.reshape(-1, *extra)) + eye.reshape(-1, *extra, 2)
 
-    drawn = outlines(own.column, own.model, own.covariance, _implied_radius(own, closest - by, on_map))
-    circle = np.column_stack([on_map(drawn.circle[:, :2]), drawn.circle[:, 2]])
-    corner, region = on_map(drawn.corner), on_map(drawn.region)
+    shape = outlines(own.column, own.model, own.covariance, _spare_radius(own, closest - by, on_map))
+    circle = np.column_stack([on_map(shape.circle[:, :2]), shape.circle[:, 2]])
+    corner, region = on_map(shape.corner), on_map(shape.region)
     middle = np.where(np.isfinite(circle[:, :1]), circle[:, :2], corner.mean(1))
     outline = footprint(truth) if truth else np.empty((0, 2))
     outline_on_map = turned((outline - origin)[:, ::-1], -course)

@@ -1,9 +1,8 @@
-"""The correct value of each answer: the truth for the point and the quantities that the answer's model uses.
+"""The true value of each quantity: of the point that the estimate describes, with front and side named as in it.
 
-Disc and upright box: the obstacle's middle. Their width: for an upright box the extent across the line of sight of the
-first image; unknown for a disc that represents a box. Front edge and box: the middle of the front edge, with the naming
-of front and side that is nearer to the answer's orientation. NaN: unknown, which includes the position of a moving
-obstacle.
+Disc and upright box: the obstacle's center; width: of an upright box the extent across the line of sight of the first
+image, of a disc that represents a box none. Front edge and box: the center of the front edge; front and side so that
+the true orientation is nearer to the estimate's. NaN: unknown; also the position of a moving obstacle.
 """
 
 from __future__ import annotations
@@ -16,13 +15,13 @@ from ..flights.rotations import fold
 from ..logs.obslog import Truth
 from .answers import Answers
 
-MODELS_OF_EDGE = ("line", "box")  # models with the middle of the front edge as their point
+MODELS_OF_EDGE = ("line", "box")  # their point is the center of the front edge
 EXCHANGE_ANGLE = math.pi / 4.0
 RIM = 48
 
 
 def _filled(values: np.ndarray) -> np.ndarray:
-    """(K,): fills a gap with the value after it, otherwise with the last one before it."""
+    """(K,): a gap gets the next value, or else the previous one."""
     known = np.flatnonzero(np.isfinite(values))
     if not len(known):
         return values
@@ -30,7 +29,7 @@ def _filled(values: np.ndarray) -> np.ndarray:
 
 
 def footprint(truth: Truth) -> np.ndarray:
-    """(P, 2) north, east of the outline on the ground; empty if it is unknown or moves."""
+    """(P, 2) north, east of the outline on the ground; empty if unknown or moving."""
     middle = np.array([truth.center_n_m, truth.center_e_m])
     if truth.length_m is None or truth.heading_deg is None:
         turn = 2.0 * np.pi * np.arange(RIM) / RIM
@@ -82,12 +81,12 @@ def true_columns(truth: Truth, answers: Answers) -> dict[str, np.ndarray]:
 
 
 def _is(models: list[str], *wanted: str) -> np.ndarray:
-    """(K,): whether the answer's model is one of these; before an answer as in that."""
+    """(K,): whether the estimate's model is one of these; before an estimate as in the first one."""
     return np.nan_to_num(_filled(np.array([math.nan if m == "none" else float(m in wanted) for m in models]))) > 0.5
 
 
 def _named_as(truth: Truth, answers: Answers) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(K,) each: orientation (rad), width, length, front and side named as the answers do."""
+    """(K,) each: orientation (rad), width, length, with front and side named as in the estimates."""
     assert truth.length_m is not None and truth.heading_deg is not None
     angle = fold(math.radians(truth.heading_deg) - answers.heading_rad)
     answered = _filled(np.radians(answers.column["orientation_deg"]))

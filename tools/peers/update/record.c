@@ -1,4 +1,4 @@
-/* Prints the measurement updates that the refined method makes over the embedded logs, one a line: triangle, 1/sigma of the
+/* Prints the measurement updates that the filter method makes over the embedded logs, one a line: triangle, 1/sigma of the
  * nuisances, rows. The linker's --wrap replaces the library's functions by those named
  * __wrap_... here; no other file uses their names.
  * SPDX-License-Identifier: MIT */
@@ -41,7 +41,7 @@ int main(void) {
     static goe_estimator_t estimator;
     for (int t = 0; t < logged_track_count; t++) {
         goe_settings_t settings;
-        replay_read_settings(&logged_tracks[t], GOE_METHOD_REFINED, &settings);
+        replay_read_settings(&logged_tracks[t], GOE_METHOD_FILTER, &settings);
         if (goe_init(&estimator, sizeof estimator, &settings, NULL) == GOE_OK) {
             fly(&estimator, &logged_tracks[t]);
         }

@@ -1,4 +1,4 @@
-// Flies towards a mast of 6 m by 30 m that stands 200 m ahead and prints what is known of it.
+// Flies towards a mast of 6 m by 30 m, 200 m ahead, and prints its estimate.
 // In an aircraft the pose is the autopilot's at the time of exposure, and the box is the detector's.
 #include <goe.h>
 
@@ -45,7 +45,7 @@ void loop() {
     image.box.right_px = CENTER_PX + FOCAL_PX * 3.0f / ahead_m;
     image.box.top_px = CENTER_PX - FOCAL_PX * 15.0f / ahead_m;
     image.box.bottom_px = CENTER_PX + FOCAL_PX * 15.0f / ahead_m;
-    image.box.seen = GOE_SEES_BOX;
+    image.box.sides = GOE_SIDES_ALL;
     goe_estimate_t now;
     const goe_status_t status = goe_update(&mast, &image, &now);
     Serial.print(goe_status_text(status));

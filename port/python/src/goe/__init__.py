@@ -18,35 +18,44 @@ Frames      earth: north, east, down (NED), m, local. Body: forward, right, down
             the first one that shows a feature.
 Units       stand in the names: _m, _deg, _px, _s, _us, _m_s.
 Not known   is None, or NaN in an array. "No position" does not mean "safe".
-Faults      of an image are told by ``Estimate.status``; a bad setting raises ``SettingError`` with field and range.
+Faults      of an image are in ``Estimate.status``; a bad setting raises ``SettingError`` with field and range.
 Threads     calls release Python's lock; one estimator serves one thread at a time.
 
 ``Estimator.update`` takes one image, ``run`` a whole track of numpy arrays, ``run_parallel`` several tracks at a time.
 ``goe.flight`` is the flight layer: late frames, clocks, a table of obstacles, orders.
 """
 
+from typing import TYPE_CHECKING
+
 from . import flight
 from ._goe import ffi as _ffi
 from ._goe import lib as _lib
 from ._layout import ESTIMATE, HAZARD, IMAGE
+from ._renamed import unknown as _unknown
 from .estimate import Center, Estimate, Length, Orientation, Position, Velocity
 from .estimator import Estimator, run, run_parallel
 from .flight import Flight
-from .hazard import Decision, DecisionRule, Hazard, Plan, Rule
+from .hazard import Decision, DecisionRule, Hazard, Intent, Rule
 from .image import POINTS, SIDES, TIME_UNKNOWN, BoundingBox, Image, ImageNoise, Pixel, Pose
 from .settings import (
     CAMERAS_MAX,
     Camera,
     Detector,
+    FilterSettings,
     FlightSettings,
     Navigation,
-    RefinedSettings,
     Settings,
     WindowSettings,
     setting_rows,
 )
 from .status import Method, Model, Reason, SettingError, Shape, Status, self_check
 from .tracks import QUANTITIES, Images, Track
+
+if not TYPE_CHECKING:  # a checker knows the names
+
+    def __getattr__(name):
+        raise AttributeError(_unknown("goe", name))
+
 
 FINGERPRINT: str = _ffi.string(_lib.goe_python_fingerprint).decode()
 """Of the sources that this package was built from: 64 hexadecimal digits."""
@@ -55,9 +64,9 @@ __version__: str = "{}.{}.{}".format(*(getattr(_lib, f"GOE_VERSION_{part}") for 
 
 __all__ = [
     "CAMERAS_MAX", "ESTIMATE", "FINGERPRINT", "HAZARD", "IMAGE", "POINTS", "QUANTITIES", "SIDES", "TIME_UNKNOWN",
-    "BoundingBox", "Camera", "Center", "Decision", "DecisionRule", "Detector", "Estimate", "Estimator", "Flight",
-    "FlightSettings", "Hazard", "Image", "ImageNoise", "Images", "Length", "Method", "Model", "Navigation",
-    "Orientation", "Pixel", "Plan", "Pose", "Position", "Reason", "RefinedSettings", "Rule", "SettingError", "Settings",
-    "Shape", "Status", "Track", "Velocity", "WindowSettings", "flight", "run", "run_parallel", "self_check",
+    "BoundingBox", "Camera", "Center", "Decision", "DecisionRule", "Detector", "Estimate", "Estimator",
+    "FilterSettings", "Flight", "FlightSettings", "Hazard", "Image", "ImageNoise", "Images", "Intent", "Length",
+    "Method", "Model", "Navigation", "Orientation", "Pixel", "Pose", "Position", "Reason", "Rule", "SettingError",
+    "Settings", "Shape", "Status", "Track", "Velocity", "WindowSettings", "flight", "run", "run_parallel", "self_check",
     "setting_rows",
 ]  # fmt: skip

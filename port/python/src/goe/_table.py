@@ -18,9 +18,9 @@ COUNT, TRUTH, CHOICE = lib.GOE_PYTHON_COUNT, lib.GOE_PYTHON_TRUTH, lib.GOE_PYTHO
 class Row:
     """One setting. A default outside the range: it must be set."""
 
-    name: str  # as in C: "detector.point_px"
+    name: str  # as in C: "detector.point_noise_px"
     unit: str  # "px"; "": none, or the flight layer's, where the name ends in it
-    text: str  # what it is; "" of the flight layer
+    text: str  # description; "" in the flight layer
     kind: int
     low: float
     high: float

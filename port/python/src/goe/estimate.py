@@ -1,4 +1,4 @@
-"""What the estimator answers. All lengths are metres, angles degrees; X points right, Z ahead, both level."""
+"""The estimator's output. All lengths are meters, angles degrees; X points right, Z ahead, both level."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from ._goe import lib
+from ._renamed import Renamed
 from .status import Method, Model, Reason, Status
 
 
@@ -17,7 +18,7 @@ class Length(NamedTuple):
 
 
 class Position(NamedTuple):
-    """Where the reference point is: of a disc the centre, of a line or box the middle of the front edge."""
+    """Position of the reference point: of a disc the center, of a line or box the middle of the front edge."""
 
     x0: Length
     """From where the camera was at the track's first image, across."""
@@ -28,20 +29,20 @@ class Position(NamedTuple):
     z: Length
     """... and ahead."""
     residual: float
-    """Window: root mean square residual of the fit, in its rows' own unit; refined: 0."""
+    """Window: root mean square residual of the fit, in its rows' own unit; filter: 0."""
     baseline_m: float
-    """Window: spread of the flown baseline; refined: distance from where the track began."""
+    """Window: spread of the flown baseline; filter: distance from where the track began."""
 
 
 class Orientation(NamedTuple):
-    """How a box or a line stands."""
+    """Orientation of a box or a line."""
 
     side_deg: float
-    """The side edge (length) from Z, clockwise seen from above; over -90, up to 90."""
+    """The side edge (length) from Z, clockwise as viewed from above; over -90, up to 90."""
     side_sd_deg: float
     """Its one sigma."""
     side_raw_deg: float
-    """Window: the same of the latest image alone; refined: ``side_deg``."""
+    """Window: the same of the latest image alone; filter: ``side_deg``."""
     front_deg: float
     """The front edge (width) from Z."""
     length_axis: tuple[float, float]
@@ -75,8 +76,8 @@ class Velocity(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Estimate:
-    """What is known after an image. A quantity that is not valid is None: "no position" does not mean "safe"."""
+class Estimate(Renamed):
+    """The estimate after an image. A quantity that is not valid is None: "no position" does not mean "safe"."""
 
     status: Status
     """What became of the image."""
@@ -90,7 +91,7 @@ class Estimate:
     """Its sigmas may be too small: widen the margins, never drop a warning."""
     reason: Reason | None
     """Why; LATE also if it is not suspect."""
-    images: int
+    images_used: int
     """Behind the answer."""
     age_s: float
     """Since the image of the last solution, s; 0 if fresh or none; at most 4000."""
@@ -103,7 +104,7 @@ class Estimate:
     height: Length | None
     """Top above ground."""
     orientation: Orientation | None
-    """How it stands."""
+    """Orientation."""
     center: Center | None
     """The middle of its base."""
     velocity: Velocity | None
@@ -115,11 +116,11 @@ class Estimate:
     latency_sd_s: float
     """Its one sigma, s."""
     nis: float
-    """Normalised innovation squared of the latest image. Refined method."""
+    """Normalized innovation squared of the latest image. Filter method."""
     nis_rows: int
     """Its expectation: the rows that made it; 0: none."""
-    misfit: float
-    """Running mean of ``nis / nis_rows``: 1 is what the settings predict. Refined method."""
+    nis_ratio: float
+    """Running mean of ``nis / nis_rows``: 1 is what the settings predict. Filter method."""
 
 
 METHODS = {int(method): method for method in Method}
@@ -131,7 +132,9 @@ STATUSES = {int(status): status for status in Status}
 def _orientation(c: Any) -> Orientation:
     axes = (c.length_axis, c.width_axis, c.length_axis_ne, c.width_axis_ne)
     pairs = (tuple(axis) for axis in axes)
-    return Orientation(c.orientation_deg, c.sigma.orientation_deg, c.orientation_raw_deg, c.other_side_deg, *pairs)
+    return Orientation(
+        c.orientation_deg, c.sigma.orientation_deg, c.orientation_raw_deg, c.front_orientation_deg, *pairs
+    )
 
 
 def estimate_of(status: int, c: Any) -> Estimate:
@@ -150,12 +153,12 @@ def estimate_of(status: int, c: Any) -> Estimate:
     ) if has["velocity"] else None  # fmt: skip
     return Estimate(
         STATUSES[status], METHODS.get(c.method), MODELS.get(c.model), c.fresh, c.suspect, REASONS.get(c.reason),
-        c.points, c.age_s, position,
+        c.images_used, c.age_s, position,
         Length(c.width_m, sd.width_m) if has["width"] else None,
         Length(c.length_m, sd.length_m) if has["length"] else None,
         Length(c.height_m, sd.height_m) if has["height"] else None,
         _orientation(c) if has["orientation"] else None,
-        center, velocity, c.trajectory_heading_deg, c.latency_s, sd.latency_s, c.nis, c.nis_rows, c.misfit,
+        center, velocity, c.trajectory_heading_deg, c.latency_s, sd.latency_s, c.nis, c.nis_rows, c.nis_ratio,
     )  # fmt: skip
 
 

@@ -12,15 +12,16 @@ import numpy as np
 import numpy.typing as npt
 
 from ._goe import ffi, lib
+from ._renamed import Renamed
 from .estimate import Estimate, estimate_of
-from .hazard import Decision, DecisionRule, Hazard, Plan, Rule, hazard_of
+from .hazard import Decision, DecisionRule, Hazard, Intent, Rule, hazard_of
 from .image import Image, fill_image
 from .settings import Settings
 from .status import SettingError, Status
 from .tracks import QUANTITIES, ImagesOrC, Track, empty_track, images_to_c, velocities
 
 
-class Estimator:
+class Estimator(Renamed):
     """Follows one obstacle.
 
     Several obstacles take several estimators, which share nothing. Two threads may work on two of them at once: calls
@@ -41,9 +42,9 @@ class Estimator:
             raise SettingError(ffi.string(bad[0]).decode(), ": refused by the library")
 
     def update(self, image: Image) -> Estimate:
-        """Takes one image, also one in which nothing is seen, and tells what is known after it.
+        """Takes one image, also one without a detection, and returns the estimate after it.
 
-        A fault of the image is no exception: ``Estimate.status`` tells it, and the rest is the last good estimate.
+        A fault of the image is no exception: ``Estimate.status`` reports it, and the rest is the last good estimate.
         ValueError: a vector of another length; OverflowError: a whole number that C cannot hold.
         """
         with self._lock:
@@ -57,7 +58,7 @@ class Estimator:
         """Takes K images in one call, as ``update`` would one by one, with the same bits; Python's lock is released.
 
         images            ``Images``, or (K,) of goe_image_t (``goe.IMAGE``)
-        rules             R rules by which ``decide`` is asked after each image
+        rules             R rules for ``decide`` after each image
         velocity_ned_m_s  (K, 3) planned, m/s; None: that of ``images``. Needed if there are rules
         covariance        whether it is wanted after each image
 
@@ -85,31 +86,31 @@ class Estimator:
         return track
 
     def covariance(self) -> npt.NDArray[np.float32] | None:
-        """(6, 6) of ``QUANTITIES`` of the latest estimate, m and degrees; rows and columns of what is not valid are 0.
+        """(6, 6) of ``QUANTITIES`` of the latest estimate, m and degrees; rows and columns of invalid quantities are 0.
         None: there is no position."""
         result = np.zeros((len(QUANTITIES), len(QUANTITIES)), np.float32)
         with self._lock:
             status = lib.goe_covariance(self._c, ffi.from_buffer(f"float[][{len(QUANTITIES)}]", result))
         return result if status == Status.OK else None
 
-    def hazard(self, plan: Plan) -> Hazard | None:
+    def hazard(self, intent: Intent) -> Hazard | None:
         """Closest approach to the obstacle of the latest estimate, stale or not, suspect or not. None: there is no
-        position, which does not mean that it is safe. ValueError names a number of the plan outside its range."""
-        c, result = plan._to_c(), ffi.new("goe_hazard_t *")
+        position, which does not mean that it is safe. ValueError names a number of the intent outside its range."""
+        c, result = intent._to_c(), ffi.new("goe_hazard_t *")
         with self._lock:
             status = lib.goe_hazard(self._c, c, result)
         return hazard_of(result) if status == Status.OK else None
 
-    def decide(self, plan: Plan, rule: DecisionRule | None = None) -> tuple[Decision, Hazard | None]:
-        """The decision rule: whether to act now, and the hazard with the plan's margin and clearance widened by doubt
+    def decide(self, intent: Intent, rule: DecisionRule | None = None) -> tuple[Decision, Hazard | None]:
+        """The decision rule: whether to act now, and the hazard with the intent's margin and clearance widened by doubt
         and age. Ask it after each image, also after one without a detection. None: there is no hazard, which does not
-        mean that it is safe. ``rule``: None: the defaults. ValueError names a number of plan or rule outside its
+        mean that it is safe. ``rule``: None: the defaults. ValueError names a number of intent or rule outside its
         range."""
-        c, result = plan._to_c(), ffi.new("goe_hazard_t *")
+        c, result = intent._to_c(), ffi.new("goe_hazard_t *")
         by = ffi.NULL if rule is None else rule._to_c()
         with self._lock:
             decision = Decision(lib.goe_decide(self._c, c, by, result))
-        known = result.miss_sd_m > 0.0  # all zero without one
+        known = result.dcpa_sd_m > 0.0  # all zero without one
         return decision, hazard_of(result) if known else None
 
     def reset(self) -> None:
@@ -118,10 +119,10 @@ class Estimator:
             lib.goe_reset(self._c)
 
     @property
-    def causes(self) -> tuple[int, ...]:
+    def fault_counts(self) -> tuple[int, ...]:
         """Faults so far: [-status] of each Status from -1 to -15, [0] the tracks that a filter reset of unknown size
         ended. They saturate."""
-        return tuple(self._c.causes)
+        return tuple(self._c.fault_counts)
 
     def copy(self) -> Estimator:
         """Another one that knows the same: to try what an image would do."""
@@ -144,7 +145,7 @@ class Estimator:
         raise TypeError("an Estimator cannot be pickled: send its Settings and Images, which can")
 
     def __repr__(self) -> str:
-        return f"<goe.Estimator, faults {sum(self.causes[1:])}>"
+        return f"<goe.Estimator, faults {sum(self.fault_counts[1:])}>"
 
 
 def run(

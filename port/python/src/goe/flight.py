@@ -20,6 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._goe import ffi, lib
+from ._renamed import Renamed
 from .estimate import BITS, MODELS, Length
 from .hazard import Hazard, hazard_of
 from .image import BoundingBox, Pixel, Pose, fill_box, fill_points, vector
@@ -29,7 +30,7 @@ from .status import Model, SettingError
 SLOTS: int = lib.GOE_FLIGHT_SLOTS
 """Obstacles that are followed at a time."""
 SECTORS: int = lib.GOE_FLIGHT_SECTORS
-"""Of ``Flight.sectors``, 5 degrees each, the first centred on north."""
+"""Of ``Flight.sectors``, 5 degrees each, the first centered on north."""
 DETECTIONS: int = lib.GOE_FLIGHT_DETECTIONS
 """Most that ``Flight.frame`` takes at once."""
 SECTOR_UNKNOWN = 65535
@@ -71,7 +72,7 @@ class Action(IntEnum):
     NONE = 0
     """Fly on."""
     LEFT = 1
-    """Fly to the target, which lies left of the obstacle as seen on the course."""
+    """Fly to the target, to the left of the obstacle looking along the course."""
     RIGHT = 2
     """... right of it."""
     CLIMB = 3
@@ -113,9 +114,9 @@ class Phase(IntEnum):
     APPROACH = 1
     """It is landing: to go around comes first."""
     FLARE = 2
-    """No action is given, and one that stands ends."""
+    """No action is given, and an active one ends."""
     LANDED = 3
-    """It has touched down: the same. What stands behind the runway is not on its course."""
+    """It has touched down: the same. Obstacles behind the runway are not on its course."""
 
 
 class TimeBase(IntEnum):
@@ -256,22 +257,22 @@ class Place(NamedTuple):
     """Where an obstacle is."""
 
     center_ned_m: tuple[float, float, float]
-    """Middle of the base as far as it is seen; down: of its ground; m."""
+    """Middle of the visible base; down: of its ground; m."""
     covariance_ne_m2: tuple[float, float, float]
     """Of that: north north, north east, east east."""
     radius_m: float
-    """Of the circle about the centre that holds the outline."""
+    """Of the circle about the center that contains the outline."""
     nearest_ned_m: tuple[float, float, float]
-    """Of the circle, what is nearest to the aircraft, m."""
+    """The point of the circle nearest to the aircraft, m."""
     nearest_body_m: tuple[float, float, float]
     """The same relative to the aircraft: forward, right, down, m."""
     center: LatLon | None
-    """The centre on the earth, if the origin is known."""
+    """The center on the earth, if the origin is known."""
 
 
 @dataclass(frozen=True)
-class Obstacle:
-    """One obstacle of the table. What is not known is None."""
+class Obstacle(Renamed):
+    """One obstacle of the table. An unknown value is None."""
 
     id: int
     """The detector's; 0: it has none."""
@@ -279,10 +280,10 @@ class Obstacle:
     """The shape."""
     suspect: bool
     """Its sigmas may be too small."""
-    passed: bool
+    receding: bool
     """On the present course its distance grows."""
     in_view: bool
-    """Seen in the latest image."""
+    """Detected in the latest image."""
     moves: bool
     """It moves, and is followed."""
     age_s: float
@@ -349,7 +350,7 @@ def _obstacle_of(c: Any) -> Obstacle:
     center, covariance, nearest, body = (tuple(v) for v in vectors)
     place = Place(center, covariance, c.radius_m, nearest, body, _lat_lon(c.lat_e7, c.lon_e7))
     return Obstacle(
-        c.id, MODELS.get(c.model), c.suspect, c.passed, c.in_view, has["velocity"], c.age_s,
+        c.id, MODELS.get(c.model), c.suspect, c.receding, c.in_view, has["velocity"], c.age_s,
         place if has["position"] else None,
         Length(c.height_m, c.height_sd_m) if has["height"] else None,
         c.width_m if has["width"] else None,
@@ -460,7 +461,7 @@ class Flight:
             return FlightStatus(lib.goe_flight_frame(self._c, c))
 
     def assess(self, now_us: int, phase: Phase = Phase.FLYING) -> Assessment | None:
-        """What is ahead from now on, at the velocity of the newest sample, and what to do about it. ``approach``: the
+        """The hazards ahead from now on, at the velocity of the newest sample, and the reaction. ``approach``: the
         aircraft is landing, and to go around comes first. None: there is no pose, which is not "clear"."""
         c = ffi.new("goe_flight_assessment_t *")
         with self._lock:
@@ -480,8 +481,8 @@ class Flight:
         return {slot: found for slot in range(SLOTS) if (found := self.obstacle(slot)) is not None}
 
     def sectors(self, max_cm: int) -> npt.NDArray[np.uint16] | None:
-        """(72,) nearest obstacle by bearing, cm: sector i is centred on 5 i degrees from north; ``max_cm`` + 1: nothing
-        there as far as the camera sees; ``SECTOR_UNKNOWN`` elsewhere. None: there is no pose.
+        """(72,) nearest obstacle by bearing, cm: sector i is centered on 5 i degrees from north; ``max_cm`` + 1:
+        nothing within the camera's view; ``SECTOR_UNKNOWN`` elsewhere. None: there is no pose.
 
         ValueError: ``max_cm`` is not within 1 to 65000.
         """

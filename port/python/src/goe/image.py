@@ -7,12 +7,13 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from ._goe import lib
+from ._renamed import Renamed
 
 POINTS = ("left", "right", "top", "base_left", "base_near", "base_right")
 """Points of an image, in the order of whole tracks."""
 SIDES = ("left", "top", "right", "bottom")
 """Sides of a box, in the order of whole tracks."""
-SEES = (lib.GOE_SEES_LEFT, lib.GOE_SEES_TOP, lib.GOE_SEES_RIGHT, lib.GOE_SEES_BOTTOM)
+SIDE_BITS = (lib.GOE_SIDE_LEFT, lib.GOE_SIDE_TOP, lib.GOE_SIDE_RIGHT, lib.GOE_SIDE_BOTTOM)
 TIME_UNKNOWN = -(2**63)
 """A pose's time that is not known: the image is refused."""
 
@@ -66,25 +67,25 @@ class Pose:
     """Counts the resets of the autopilot's filter; any start; its lowest 8 bits count."""
     reset_delta_ned_m: Sequence[float] | None = None
     """By what the position jumped with them, new minus old, summed over all resets since the last image that was taken,
-    m. None: not known; then a change of ``reset_count`` starts the track anew."""
+    m. None: not known; then a change of ``reset_count`` starts a new track."""
 
 
 @dataclass
-class ImageNoise:
-    """This image's own errors, one sigma each, instead of those of the settings; None: as there. Refined method."""
+class ImageNoise(Renamed):
+    """This image's own errors, one sigma each, instead of those of the settings; None: as there. Filter method."""
 
-    attitude_deg: float | None = None
-    """Instead of ``Navigation.attitude_white_deg``, degrees; up to 30. A late pose belongs here: 20 ms at 24 degrees a
-    second are 0.5 degrees."""
-    height_m: float | None = None
-    """Instead of ``Navigation.height_bias_m``, m; up to 1e3."""
-    pixel_px: float | None = None
-    """Instead of the detector's ``point_px`` and ``box_px``, px; up to 100."""
+    attitude_sd_deg: float | None = None
+    """Instead of ``Navigation.attitude_white_sd_deg``, degrees; up to 30. A late pose belongs here: 20 ms at 24 degrees
+    a second are 0.5 degrees."""
+    height_sd_m: float | None = None
+    """Instead of ``Navigation.height_bias_sd_m``, m; up to 1e3."""
+    pixel_sd_px: float | None = None
+    """Instead of the detector's ``point_noise_px`` and ``box_noise_px``, px; up to 100."""
 
 
 @dataclass
 class Image:
-    """One image of one obstacle: a box, or points, or both. Any subset may be seen; none: give it all the same."""
+    """One image of one obstacle: a box, or points, or both. Any subset may be visible; none: pass it anyway."""
 
     pose: Pose = field(default_factory=Pose)
     """Where the aircraft was."""
@@ -97,7 +98,7 @@ class Image:
     base_left: Pixel | None = None
     """Corner of the base on the ground, in image order."""
     base_near: Pixel | None = None
-    """The one between two visible faces; not seen when one face alone is."""
+    """The one between two visible faces; not visible with a single face."""
     base_right: Pixel | None = None
     """The last in image order."""
     bounding_box: BoundingBox | None = None
@@ -112,14 +113,14 @@ def fill_points(c: Any, points: Any) -> None:
     """``points`` has the attributes of POINTS."""
     for name in POINTS:
         pixel, place = getattr(points, name), getattr(c, name)
-        place.seen = pixel is not None
+        place.visible = pixel is not None
         place.u_px, place.v_px = (0.0, 0.0) if pixel is None else pixel
 
 
 def fill_box(c: Any, box: BoundingBox | None) -> None:
     sides = box or BoundingBox()
     c.left_px, c.top_px, c.right_px, c.bottom_px = (0.0 if side is None else side for side in sides)
-    c.seen = sum(bit for bit, side in zip(SEES, sides) if side is not None)
+    c.sides = sum(bit for bit, side in zip(SIDE_BITS, sides) if side is not None)
 
 
 def fill_image(c: Any, image: Image) -> None:
@@ -135,7 +136,7 @@ def fill_image(c: Any, image: Image) -> None:
     to.reset_delta_ned_m = vector(delta, 3, "reset_delta_ned_m")
     fill_points(c, image)
     fill_box(c.box, image.bounding_box)
-    c.noise.attitude_deg = image.noise.attitude_deg or 0.0
-    c.noise.height_m = image.noise.height_m or 0.0
-    c.noise.pixel_px = image.noise.pixel_px or 0.0
+    c.noise.attitude_sd_deg = image.noise.attitude_sd_deg or 0.0
+    c.noise.height_sd_m = image.noise.height_sd_m or 0.0
+    c.noise.pixel_sd_px = image.noise.pixel_sd_px or 0.0
     c.camera = image.camera

@@ -17,7 +17,7 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from . import _table
+from . import _renamed, _table
 from ._goe import lib
 from ._table import CAMERA_ROWS, FLIGHT_ROWS, ROWS, Row, flight, real, whole
 from .status import Method, SettingError, Shape
@@ -34,13 +34,15 @@ def _meant(name: str, names: Sequence[str]) -> str:
     return f"; did you mean {close[0]}?" if close else ""
 
 
-class _Group:
+class _Group(_renamed.Renamed):
     """Takes no names but its own."""
 
     __dataclass_fields__: ClassVar[dict[str, Any]]
 
     def __setattr__(self, name: str, value: Any) -> None:
         names = self.__dataclass_fields__
+        if name in _renamed.FIELDS.get(type(self).__name__, {}):
+            raise AttributeError(_renamed.unknown(type(self).__name__, name))
         if name not in names:
             raise AttributeError(f"{type(self).__name__} has no setting {name}{_meant(name, tuple(names))}")
         object.__setattr__(self, name, value)
@@ -84,76 +86,77 @@ class Camera(_Group):
     """Width of the image, px; 0: not known. The flight layer needs it."""
     height_px: float = real("camera.height_px")
     """Height of the image, px; 0: not known. The flight layer needs it."""
-    border_share: float = real("camera.border_share")
+    border_rel: float = real("camera.border_rel")
     """A box's side nearer to the border than this is not measured, fraction of the image's width."""
-    cut_share: float = real("camera.cut_share")
-    """While left or right is nearer to the border than this the other sides count less: ``Detector.cut_noise``."""
+    truncation_rel: float = real("camera.truncation_rel")
+    """While left or right is nearer to the border than this the other sides count less:
+    ``Detector.truncation_noise_rel``."""
 
 
 @dataclass
 class Navigation(_Group):
-    """How wrong the pose is, one sigma each; for the refined method."""
+    """How wrong the pose is, one sigma each; for the filter method."""
 
-    attitude_bias_deg: float = real("navigation.attitude_bias_deg")
+    attitude_bias_sd_deg: float = real("navigation.attitude_bias_sd_deg")
     """Constant attitude error about each body axis, mounting included, degrees."""
-    attitude_white_deg: float = real("navigation.attitude_white_deg")
+    attitude_white_sd_deg: float = real("navigation.attitude_white_sd_deg")
     """Attitude error that is new in each image, degrees."""
-    attitude_drift_deg: float = real("navigation.attitude_drift_deg")
+    attitude_walk_sd_deg: float = real("navigation.attitude_walk_sd_deg")
     """Random walk of the attitude error, degrees per square root of a second."""
-    height_bias_m: float = real("navigation.height_bias_m")
+    height_bias_sd_m: float = real("navigation.height_bias_sd_m")
     """Constant error of the pose's ``height_m`` over the obstacle's ground, m."""
-    velocity_bias_m_s: float = real("navigation.velocity_bias_m_s")
+    velocity_bias_sd_m_s: float = real("navigation.velocity_bias_sd_m_s")
     """Constant error of the own horizontal velocity, each axis, m/s."""
-    position_walk_m: float = real("navigation.position_walk_m")
+    position_walk_sd_m: float = real("navigation.position_walk_sd_m")
     """Random walk of the own position, m per square root of a second."""
-    position_white_m: float = real("navigation.position_white_m")
+    position_white_sd_m: float = real("navigation.position_white_sd_m")
     """Error of the own position that is new in each image, each axis, m. Upright boxes only."""
-    height_white_m: float = real("navigation.height_white_m")
+    height_white_sd_m: float = real("navigation.height_white_sd_m")
     """Error of the height that is new in each image, m; 0: points take each image's height as it is."""
-    slope: float = real("navigation.slope")
+    terrain_slope_sd: float = real("navigation.terrain_slope_sd")
     """Slope of the ground that the height is above, m per m flown."""
-    ground_m: float = real("navigation.ground_m")
+    terrain_height_sd_m: float = real("navigation.terrain_height_sd_m")
     """How far the obstacle's ground may lie off that which the height is above, m. Upright boxes only."""
 
 
 @dataclass
 class Detector(_Group):
-    """How wrong the detector's features are, one sigma each; for the refined method."""
+    """How wrong the detector's features are, one sigma each; for the filter method."""
 
-    point_px: float = real("detector.point_px")
+    point_noise_px: float = real("detector.point_noise_px")
     """Error of an image point, new in each image, px."""
-    point_share: float = real("detector.point_share")
+    point_noise_rel: float = real("detector.point_noise_rel")
     """Error of left, right and top as points, added to it, fraction of the silhouette's width."""
     point_correlation: float = real("detector.point_correlation")
     """Correlation of a point's error from image to image."""
-    shape_share: float = real("detector.shape_share")
+    shape_error_rel: float = real("detector.shape_error_rel")
     """How far a real silhouette departs from a cylinder's, fraction of its width; cars as discs: about 0.12."""
-    box_px: float = real("detector.box_px")
+    box_noise_px: float = real("detector.box_noise_px")
     """Error of a box's side that is new in each image, px."""
-    box_share: float = real("detector.box_share")
-    """Error of a side that stays alike from image to image, fraction of the box's width or height."""
-    correlation_s: float = real("detector.correlation_s")
-    """How long it stays alike, time constant, s."""
-    cut_noise: float = real("detector.cut_noise")
+    box_noise_rel: float = real("detector.box_noise_rel")
+    """Slowly varying (correlated) error of a side, fraction of the box's width or height."""
+    box_correlation_time_s: float = real("detector.box_correlation_time_s")
+    """Correlation time of this error, s."""
+    truncation_noise_rel: float = real("detector.truncation_noise_rel")
     """Error of every side while the image's border cuts the box, fraction of the box."""
 
 
 @dataclass
-class RefinedSettings(_Group):
-    """The refined method: a square-root information filter over the whole track."""
+class FilterSettings(_Group):
+    """The filter method: a square-root information filter over the whole track."""
 
-    typical_size_m: float = real("refined.typical_size_m")
+    prior_width_m: float = real("filter.prior_width_m")
     """Width that the range is first guessed from, m."""
-    gate_sigma: float = real("refined.gate_sigma")
+    gate_sigma: float = real("filter.gate_sigma")
     """A point farther off is left out, sigmas."""
-    huber_sigma: float = real("refined.huber_sigma")
+    huber_sigma: float = real("filter.huber_sigma")
     """A point farther off counts less, sigmas."""
-    misfit_max: float = real("refined.misfit_max")
-    """Misfit above which the obstacle is suspect."""
-    range_share: float = real("refined.range_share")
+    nis_ratio_max: float = real("filter.nis_ratio_max")
+    """NIS ratio above which the obstacle is suspect."""
+    range_sd_rel_max: float = real("filter.range_sd_rel_max")
     """Sigma over range up to which a position is reported."""
-    top_is_highest: bool = bool(whole("refined.top_is_highest"))
-    """``top`` is the highest point in the image, also when seen from above the roof."""
+    top_is_highest: bool = bool(whole("filter.top_is_highest"))
+    """``top`` is the highest point in the image, also from above the roof."""
 
 
 @dataclass
@@ -181,7 +184,7 @@ class Settings(_Group):
     """All settings of an estimator.
 
     >>> settings = Settings.for_camera(914.0, 914.0, 640.0, 480.0)
-    >>> settings.navigation.attitude_bias_deg = 1.0
+    >>> settings.navigation.attitude_bias_sd_deg = 1.0
     """
 
     camera: Camera = field(default_factory=Camera)
@@ -199,8 +202,8 @@ class Settings(_Group):
     """Errors of the pose."""
     detector: Detector = field(default_factory=Detector)
     """Errors of the features."""
-    refined: RefinedSettings = field(default_factory=RefinedSettings)
-    """The refined method."""
+    filter: FilterSettings = field(default_factory=FilterSettings)
+    """The filter method."""
     window: WindowSettings = field(default_factory=WindowSettings)
     """The window method."""
 
@@ -212,8 +215,8 @@ class Settings(_Group):
 
     @classmethod
     def from_names(cls, values: Mapping[str, float]) -> Settings:
-        """The defaults, changed by name as in C and in goe_replay's ``--set``: {"detector.point_px": 0.8, "method": 1,
-        "heading_auto": 0, "heading_deg": 90, "more_cameras[0].fx_px": 900, ...}.
+        """The defaults, changed by name as in C and in goe_replay's ``--set``: {"detector.point_noise_px": 0.8,
+        "method": 1, "heading_auto": 0, "heading_deg": 90, "more_cameras[0].fx_px": 900, ...}.
 
         Raises SettingError for a name that is not there.
         """
@@ -229,6 +232,8 @@ class Settings(_Group):
     def _assign(self, name: str, value: Any) -> None:
         parts = NAME.fullmatch(name)
         group, number, own, index = parts.groups() if parts else (None, None, name, None)
+        if name in _renamed.SETTINGS:
+            raise SettingError(name, f": unknown setting, now {_renamed.SETTINGS[name]}")
         known = name if number is None else f"camera.{own}" + (f"[{index}]" if index else "")
         row = _BY_NAME.get(known)
         if row is None or (number is not None and (group != "more_cameras" or int(number) + 1 >= CAMERAS_MAX)):
@@ -367,24 +372,24 @@ _FLIGHT_BOUNDS = _bounds_of(FLIGHT_ROWS)
 
 @dataclass
 class FlightSettings(_Group):
-    """Settings of the flight layer, beside those of the estimators."""
+    """Settings of the flight layer, in addition to those of the estimators."""
 
     score_min: float = flight("score_min")
     """A detection of less is not looked at."""
     confirm_images: float = flight("confirm_images")
-    """Images that a new obstacle must be seen in before it is followed."""
-    alive_s: float = flight("alive_s")
+    """Images with a detection of a new obstacle before it is followed."""
+    detector_timeout_s: float = flight("detector_timeout_s")
     """Without a frame for this long the detector counts as dead, s."""
-    forget_s: float = flight("forget_s")
-    """An obstacle that was not seen for this long is given up, s."""
+    track_timeout_s: float = flight("track_timeout_s")
+    """An obstacle undetected for this long is given up, s."""
     delay_s: float = flight("delay_s")
     """Least time from sending to arrival, s."""
     delay_sd_s: float = flight("delay_sd_s")
-    """Its one sigma, and that of any capture time whose sender tells none, s."""
+    """Its one sigma, and that of any capture time whose sender gives none, s."""
     delay_max_s: float = flight("delay_max_s")
     """A frame that comes later after its exposure is refused, s."""
     resets: float = flight("resets")
-    """How the autopilot tells resets: 0 by counters (PX4), 1 by times (ArduPilot)."""
+    """How the autopilot reports resets: 0 by counters (PX4), 1 by times (ArduPilot)."""
     range_finder_sd_m: float = flight("range_finder_sd_m")
     """One sigma of the range finder, m."""
     range_finder_max_m: float = flight("range_finder_max_m")
@@ -397,11 +402,11 @@ class FlightSettings(_Group):
     """Wanted to the outline, horizontally, m."""
     clearance_m: float = flight("clearance_m")
     """Wanted over the top, m."""
-    violation_max: float = flight("violation_max")
+    conflict_probability_max: float = flight("conflict_probability_max")
     """Probability of violating both from which on there is a reaction."""
-    doubt: float = flight("doubt")
+    suspect_factor: float = flight("suspect_factor")
     """Factor on margin and clearance while the estimate is suspect."""
-    drift_m_s: float = flight("drift_m_s")
+    stale_growth_m_s: float = flight("stale_growth_m_s")
     """By which both grow while the estimate is not renewed, m/s."""
     bank_deg: float = flight("bank_deg")
     """Bank of an avoiding turn, degrees."""

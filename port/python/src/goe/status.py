@@ -14,12 +14,12 @@ class Status(IntEnum):
     """Solved from this image and those before it."""
     PARTIAL = 1
     """Solved, but a part of the image was refused or could not be used."""
-    COLLECTING = 2
+    CONVERGING = 2
     """Image taken; no solution yet."""
-    HELD = 3
-    """Image taken; it adds no point to the reported model, whose older solution stands."""
-    NOTHING_SEEN = 4
-    """Image taken for its pose; no feature was seen."""
+    STALE = 3
+    """Image taken; it adds no point to the reported model, whose older solution stays."""
+    NO_DETECTION = 4
+    """Image taken for its pose; no feature was visible."""
     BEHIND_CAMERA = -1
     """Image taken; a ray points backwards or sideways."""
     LENS_FAILED = -2
@@ -27,7 +27,7 @@ class Status(IntEnum):
     SWAPPED = -3
     """Image taken; left is not left of right."""
     EDGE_ON = -4
-    """Image taken; the front edge is seen from its end or from behind."""
+    """Image taken; the camera views the front edge from its end or from behind."""
     NO_EDGE = -5
     """Image taken; no edge has a measurable orientation."""
     BAD_HEIGHT = -6
@@ -36,7 +36,7 @@ class Status(IntEnum):
     """Image taken; the camera moved too little."""
     NO_PARALLAX = -8
     """Image taken; the picture does not grow as it must."""
-    PASSED = -9
+    ABEAM = -9
     """Image taken; the solution lies abeam or behind."""
     NOT_FINITE = -10
     """Image refused: a NaN or an infinity."""
@@ -72,7 +72,7 @@ class Method(IntEnum):
 
     WINDOW = 1
     """The paper's method: least squares over the last images."""
-    REFINED = 2
+    FILTER = 2
     """A square-root information filter over the whole track."""
 
     def __str__(self) -> str:
@@ -87,7 +87,7 @@ class Shape(IntEnum):
     DISC = 2
     """An upright cylinder alone."""
     LINE = 3
-    """The front edge of a box; of the refined method a box."""
+    """The front edge of a box; of the filter method a box."""
 
     def __str__(self) -> str:
         return self.name.lower()
@@ -101,25 +101,25 @@ class Model(IntEnum):
     LINE = 3
     """The front edge of a box. Window method."""
     BOX = 4
-    """A box with an upright, level outline. Refined method."""
+    """A box with an upright, level outline. Filter method."""
     PRISM = 5
-    """Something upright by its bounding boxes, whose depth along the line of sight is not known. Refined method."""
+    """Something upright by its bounding boxes, whose depth along the line of sight is not known. Filter method."""
 
     def __str__(self) -> str:
         return self.name.lower()
 
 
 class Reason(IntEnum):
-    """Why an estimate is suspect, the most significant one. Refined method."""
+    """Why an estimate is suspect, the most significant one. Filter method."""
 
     CONVENTION = 1
-    """What is given does not belong together: axes, signs or order of the attitude, the mounting, very late poses."""
+    """The inputs contradict each other: axes, signs or order of the attitude, the mounting, very late poses."""
     MOVES = 2
     """The obstacle moves. Without ``Estimate.velocity`` it is not followed, and the position is wrong."""
     BASE = 3
-    """What was given as base corners proved to be none."""
+    """The given base corners proved to be wrong."""
     SHAPE = 4
-    """A disc was asked for, and the silhouette is not that of one."""
+    """A disc was configured, and the silhouette is not that of one."""
     LATE = 5
     """Poses are late or early: ``Estimate.latency_s``. Also of an estimate that is not suspect."""
     NOISE = 6
@@ -135,7 +135,7 @@ class SettingError(ValueError):
     def __init__(self, field: str, problem: str) -> None:
         super().__init__(f"{field}{problem}")
         self.field = field
-        """As C has it: "detector.point_px"."""
+        """As C has it: "detector.point_noise_px"."""
 
     def __reduce__(self) -> tuple[type, tuple[str, str]]:
         return type(self), (self.field, str(self)[len(self.field) :])

@@ -11,9 +11,10 @@ import numpy.typing as npt
 
 from ._goe import ffi
 from ._layout import ESTIMATE, HAZARD, IMAGE
+from ._renamed import Renamed
 from .estimate import BITS, Estimate, estimate_of
 from .hazard import Hazard, hazard_of
-from .image import POINTS, SEES, SIDES
+from .image import POINTS, SIDE_BITS, SIDES
 
 Array = npt.NDArray[Any]
 
@@ -54,17 +55,17 @@ def _side_offsets() -> list[int]:
     return [IMAGE.fields["box"][1] + inner[f"{name}_px"][1] for name in SIDES]
 
 
-_U, _V, _SEEN, _SIDES = _point_offsets("u_px"), _point_offsets("v_px"), _point_offsets("seen"), _side_offsets()
+_U, _V, _VISIBLE, _SIDES = _point_offsets("u_px"), _point_offsets("v_px"), _point_offsets("visible"), _side_offsets()
 POINT_PLACES = _Places(np.float32, _U[0], (_step(_U), _step([_U[0], _V[0]])), (len(POINTS), 2))
-POINT_SEEN_PLACES = _Places(np.bool_, _SEEN[0], (_step(_SEEN),), (len(POINTS),))
+POINT_VISIBLE_PLACES = _Places(np.bool_, _VISIBLE[0], (_step(_VISIBLE),), (len(POINTS),))
 SIDE_PLACES = _Places(np.float32, _SIDES[0], (_step(_SIDES),), (len(SIDES),))
 
 
 @dataclass
-class Images:
+class Images(Renamed):
     """K images of one obstacle, as columns; meaning, units and frames as in ``Image`` and ``Pose``.
 
-    Boxes or points, or both; what is NaN in them is not seen. Anything that numpy can turn into an array of the shape.
+    Boxes or points, or both; NaN in them means not visible. Anything that numpy can turn into an array of the shape.
     """
 
     time_us: Any
@@ -76,11 +77,11 @@ class Images:
     height_m: Any
     """(K,) of the camera above the ground at the obstacle."""
     box_px: Any = None
-    """(K, 4) left, top, right, bottom; NaN: that side is not seen. None: no boxes."""
+    """(K, 4) left, top, right, bottom; NaN: that side is not visible. None: no boxes."""
     points_px: Any = None
-    """(K, 6, 2) u and v of ``POINTS``; NaN: not seen. None: no points."""
-    points_seen: Any = None
-    """(K, 6) bool, where a NaN is not to mean "not seen": the library refuses an image with a NaN in what is seen."""
+    """(K, 6, 2) u and v of ``POINTS``; NaN: not visible. None: no points."""
+    points_visible: Any = None
+    """(K, 6) bool, where a NaN must not mean "not visible": the library refuses a NaN in a visible feature."""
     reset_count: Any = None
     """(K,) of the autopilot's filter. None: no resets."""
     reset_delta_ned_m: Any = None
@@ -90,7 +91,7 @@ class Images:
     camera: Any = None
     """(K,) number of the camera that took it. None: the first."""
     velocity_ned_m_s: Any = None
-    """(K, 3) planned, for the decisions; None: no decision is asked for."""
+    """(K, 3) planned, for the decisions; None: no decisions."""
 
     def __len__(self) -> int:
         return len(self.time_us)
@@ -116,24 +117,24 @@ class Images:
             self._put_resets(pose, count)
         if self.noise is not None:
             columns = _shaped(self.noise, (count, 3), "noise").T
-            noise["attitude_deg"], noise["height_m"], noise["pixel_px"] = columns
+            noise["attitude_sd_deg"], noise["height_sd_m"], noise["pixel_sd_px"] = columns
         if self.camera is not None:
             _put(c, "camera", self.camera, "camera")
 
     def _put_points(self, c: Array, count: int) -> None:
         pixels = _shaped(self.points_px, (count, len(POINTS), 2), "points_px")
-        if self.points_seen is None:
+        if self.points_visible is None:
             seen = np.isfinite(pixels).all(2)
         else:
-            seen = _shaped(self.points_seen, (count, len(POINTS)), "points_seen").astype(bool)
+            seen = _shaped(self.points_visible, (count, len(POINTS)), "points_visible").astype(bool)
         POINT_PLACES.of(c)[...] = np.where(seen[..., None], pixels, 0.0)
-        POINT_SEEN_PLACES.of(c)[...] = seen
+        POINT_VISIBLE_PLACES.of(c)[...] = seen
 
     def _put_boxes(self, c: Array, count: int) -> None:
         sides = _shaped(self.box_px, (count, len(SIDES)), "box_px")
         seen = np.isfinite(sides)
         SIDE_PLACES.of(c)[...] = np.where(seen, sides, 0.0)
-        c["box"]["seen"] = seen @ np.array(SEES, np.uint8)
+        c["box"]["sides"] = seen @ np.array(SIDE_BITS, np.uint8)
 
     def _put_resets(self, pose: Array, count: int) -> None:
         delta = _shaped(self.reset_delta_ned_m, (count, 3), "reset_delta_ned_m")
@@ -163,11 +164,11 @@ def _put(place: Array, field: str, values: Any, name: str) -> None:
 
 @dataclass
 class Track:
-    """What is known after each of K images.
+    """The estimates after each of K images.
 
     ``track[k]`` is the ``Estimate`` after image k; columns are read from ``estimates``: ``track.estimates["z_m"]``,
-    ``track.estimates["sigma"]["z_m"]``. Fields are those of goe_estimate_t in goe.h, where ``valid`` tells which mean
-    anything; ``values`` and ``sigma`` have NaN instead of what does not.
+    ``track.estimates["sigma"]["z_m"]``. Fields are those of goe_estimate_t in goe.h, where ``valid`` marks the valid
+    ones; ``values`` and ``sigma`` have NaN for the others.
     """
 
     status: Array
@@ -213,7 +214,7 @@ class Track:
         return np.where(self.valid, columns, np.float32(np.nan))
 
     def hazard(self, k: int, rule: int = 0) -> Hazard | None:
-        """After image k, by a rule; None: there is no position, or the plan was refused (``hazard_status``)."""
+        """After image k, by a rule; None: there is no position, or the intent was refused (``hazard_status``)."""
         row = np.ascontiguousarray(self.hazards[k, rule]).reshape(1)
         return hazard_of(ffi.from_buffer("goe_hazard_t[]", row)[0]) if self.hazard_status[k, rule] == 0 else None
 

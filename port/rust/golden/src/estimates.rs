@@ -1,7 +1,7 @@
 //! Each track by each method: `tests/targets/replay.c`, `replay_all`.
 
 use goe::ffi;
-use goe::{Error, Estimate, Estimator, Length, Method, Model, Plan};
+use goe::{Error, Estimate, Estimator, Intent, Length, Method, Model};
 
 use crate::hash::Hash;
 use crate::logs::{tracks, LoggedTrack};
@@ -55,7 +55,7 @@ fn hash_estimate(hash: &mut Hash, e: &Estimate) {
         }
     }
     hash.word(e.nis_rows.into());
-    hash.word(e.images.into());
+    hash.word(e.images_used.into());
     hash.numbers(&[e.age_s, velocity[0], velocity[1], e.latency_s]);
     hash.numbers(&p.map(|quantity| quantity.m));
     hash.numbers(&[width.m, length.m, height.m]);
@@ -70,7 +70,7 @@ fn hash_estimate(hash: &mut Hash, e: &Estimate) {
     }
     let covariance_m2 = e.center.map_or(0.0, |c| c.covariance_m2);
     hash.numbers(&[e.trajectory_heading_deg, north.m, east.m, covariance_m2]);
-    hash.numbers(&[residual, baseline_m, e.nis, e.misfit]);
+    hash.numbers(&[residual, baseline_m, e.nis, e.nis_ratio]);
     hash.numbers(&p.map(|quantity| quantity.sd_m));
     hash.numbers(&[
         width.sd_m,
@@ -86,26 +86,26 @@ fn hash_after(hash: &mut Hash, estimator: &Estimator) {
     hash.status(if covariance.is_some() {
         ffi::GOE_OK
     } else {
-        ffi::GOE_COLLECTING
+        ffi::GOE_CONVERGING
     });
     covariance.unwrap_or_default().iter().for_each(|row| hash.numbers(row));
-    let plan = Plan {
+    let intent = Intent {
         velocity_ned_m_s: [15.0, 1.0, -0.5],
         margin_m: 10.0,
         clearance_m: 5.0,
-        ..Plan::default()
+        ..Intent::default()
     };
-    match estimator.hazard(&plan) {
+    match estimator.hazard(&intent) {
         Ok(hazard) => {
             hash.status(ffi::GOE_OK);
             let clearance = hazard.clearance.unwrap_or(NONE);
-            hash.numbers(&[hazard.time_s, hazard.miss.m, clearance.m, hazard.violation]);
-            hash.numbers(&[hazard.time_sd_s, hazard.miss.sd_m, clearance.sd_m]);
+            hash.numbers(&[hazard.tcpa_s, hazard.dcpa.m, clearance.m, hazard.conflict_probability]);
+            hash.numbers(&[hazard.tcpa_sd_s, hazard.dcpa.sd_m, clearance.sd_m]);
             hash.word(hazard.clearance.is_some().into());
         }
         Err(error) => {
             assert!(error == Error::NoPosition);
-            hash.status(ffi::GOE_COLLECTING);
+            hash.status(ffi::GOE_CONVERGING);
             hash.numbers(&[0.0; 7]);
             hash.word(0);
         }
@@ -129,7 +129,7 @@ fn fly(hash: &mut Hash, track: &LoggedTrack, method: Method) -> u32 {
         hash_estimate(hash, &estimate);
         hash_after(hash, &estimator);
     }
-    estimator.causes().iter().for_each(|&cause| hash.word(cause));
+    estimator.fault_counts().iter().for_each(|&cause| hash.word(cause));
     estimator.reset();
     hash.status(ffi::GOE_OK);
     track.images().len() as u32
@@ -139,7 +139,7 @@ pub fn replay() -> crate::Replayed {
     let mut hash = Hash::new();
     let mut images = 0;
     for track in tracks() {
-        for method in [Method::Window, Method::Refined] {
+        for method in [Method::Window, Method::Filter] {
             images += fly(&mut hash, track, method);
         }
     }

@@ -27,13 +27,13 @@ fn hash_hazard(hash: &mut Hash, hazard: Option<Hazard>) {
     };
     let clearance = h.clearance.unwrap_or(NONE);
     hash.numbers(&[
-        h.time_s,
-        h.miss.m,
+        h.tcpa_s,
+        h.dcpa.m,
         clearance.m,
-        h.time_sd_s,
-        h.miss.sd_m,
+        h.tcpa_sd_s,
+        h.dcpa.sd_m,
         clearance.sd_m,
-        h.violation,
+        h.conflict_probability,
     ]);
     hash.word(h.clearance.is_some().into());
 }
@@ -94,7 +94,7 @@ fn hash_obstacle(hash: &mut Hash, obstacle: Result<Obstacle, FlightError>) {
         Some(Model::Box) => 4,
         Some(_) => 5,
     });
-    hash.flags(&[o.suspect, o.passed, o.in_view, o.hazard.is_some()]);
+    hash.flags(&[o.suspect, o.receding, o.in_view, o.hazard.is_some()]);
     hash.number(o.age_s);
     hash.numbers(&o.place.map_or([0.0; 3], |p| p.center_ned_m));
     hash.numbers(&o.place.map_or([0.0; 3], |p| p.covariance_ne_m2));
@@ -183,7 +183,7 @@ fn read_layer(hash: &mut Hash, flight: &mut Flight, now_us: u32, approach: bool)
 }
 
 fn fly(hash: &mut Hash, track: &LoggedTrack) -> u32 {
-    let mut estimator = track.settings(Method::Refined);
+    let mut estimator = track.settings(Method::Filter);
     if estimator.camera.width_px <= 0.0 {
         estimator.camera.width_px = IMAGE_PX;
         estimator.camera.height_px = IMAGE_PX;

@@ -25,7 +25,7 @@ pub struct LoggedTrack {
     line_points: u8,
     orientation_memory: u8,
     heading_auto: u8,
-    position_white_m: u8,
+    position_white_sd_m: u8,
     bits: [u32; 18],
 }
 
@@ -73,7 +73,7 @@ impl LoggedTrack {
         settings.window.points = i32::from(self.window);
         settings.window.line_points = i32::from(self.line_points);
         settings.window.orientation_memory = i32::from(self.orientation_memory);
-        settings.navigation.position_white_m = f32::from(self.position_white_m);
+        settings.navigation.position_white_sd_m = f32::from(self.position_white_sd_m);
         settings
     }
 }

@@ -1,6 +1,6 @@
 /* Stand-in, written by this project: only the names that AP_GOE uses, with the lines that the README adds. Names compared with
- * ArduPilot 4.7-dev, commit 90700977c5, on 22 Nov 2026; the private ones with public copies of other commits, on 24 Nov 2026. What
- * happens behind them is in scripted.h. SPDX-License-Identifier: MIT */
+ * ArduPilot 4.7-dev, commit 90700977c5, on 22 Nov 2026; the private ones with public copies of other commits, on 24 Nov 2026. scripted.cpp
+ * implements them. SPDX-License-Identifier: MIT */
 #pragma once
 
 #include <AP_Math/AP_Math.h>
@@ -27,7 +27,7 @@ class AP_OADatabase {
     uint16_t database_count() const { return _database.count; }
     const OA_DbItem &get_item(uint32_t i) const { return _database.items[i]; }
     void note_sent();             // to the ground station
-    void begin(unsigned foreign); // empty but for so many items of others
+    void begin(unsigned foreign); // empty except for so many items of other sources
     void set_limits(float radius_min, float dist_max);
 
   private:

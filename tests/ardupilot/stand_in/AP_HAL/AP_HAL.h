@@ -1,6 +1,6 @@
 /* Stand-in, written by this project: only the names that AP_GOE uses. Names and signatures compared with ArduPilot 4.7-dev,
- * commit 90700977c5, on 22 Nov 2026; those of threads with public copies of other commits, on 24 Nov 2026. What happens behind them is
- * in scripted.h. SPDX-License-Identifier: MIT */
+ * commit 90700977c5, on 22 Nov 2026; those of threads with public copies of other commits, on 24 Nov 2026. scripted.cpp implements them.
+ * SPDX-License-Identifier: MIT */
 #pragma once
 
 #include <cstddef>
@@ -39,7 +39,7 @@ uint32_t millis();
 
 #define FUNCTOR_BIND_MEMBER(method, result) ([this]() { (this->*method)(); })
 
-/* In turns nobody may wait for one: who has the turn gives back what it takes before it ends. */
+/* In turns, no thread may wait for a lock: the running one releases its locks before its turn ends. */
 class ScriptedSemaphore {
   public:
     void take();
@@ -58,7 +58,7 @@ class ScriptedHold {
     ScriptedSemaphore &_semaphore;
 };
 
-/* signal() lets the thread that waits run until it waits again; or, if the test wants both to run at once, from now on. */
+/* signal() lets the waiting thread run until it waits again; or, for tests of parallel threads, from now on. */
 class ScriptedBinarySemaphore {
   public:
     void signal();

@@ -1,4 +1,4 @@
-/* Stands in for PX4's: standin.hpp. SPDX-License-Identifier: MIT */
+/* A stand-in for PX4's header: see standin.hpp. SPDX-License-Identifier: MIT */
 #pragma once
 
 #include "standin.hpp"

@@ -66,10 +66,10 @@ def reasons_of(track: Track) -> np.ndarray | None:
 
 
 def answers_of(track: Track, time_s: np.ndarray) -> Answers:
-    """The refined method's answers: the window's sigmas do not describe the true error."""
-    refined = track.method == METHODS["refined"]
+    """The filter method's answers: the window's sigmas do not describe the true error."""
+    refined = track.method == METHODS["filter"]
     values, sigma = (np.where(refined[:, None], a, np.nan) for a in (track.values, track.sigma))
-    points = track.points if track.points is not None else np.zeros(len(time_s), int)
+    points = track.images_used if track.images_used is not None else np.zeros(len(time_s), int)
     restarted = np.append(False, np.diff(points) < 0)  # images used: the number grows until a restart
     answers = Answers(time_s, values, sigma, track.model, track.status, track.suspect, restarted, reasons_of(track))
     if all(name in track.more for name in VELOCITY):
@@ -78,7 +78,7 @@ def answers_of(track: Track, time_s: np.ndarray) -> Answers:
         parts = [np.where(there, velocity[:, i : i + 2], np.nan) for i in (0, 2)]
         answers.velocity_m_s, answers.velocity_sigma_m_s = parts
     if track.hazard:
-        answers.time_to_go_s = np.where(track.hazard["status"][:, 0] == 0, track.hazard["time_s"][:, 0], np.nan)
+        answers.time_to_go_s = np.where(track.hazard["status"][:, 0] == 0, track.hazard["tcpa_s"][:, 0], np.nan)
     return answers
 
 

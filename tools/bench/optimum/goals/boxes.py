@@ -36,16 +36,16 @@ CONFIDENT_MOST: Range = (0.0, 1.0)  # % of the tracks
 FIRST_MOST: Range = (0.0, 6.0)  # images until the first answer
 BOUND_ROLLS_DEG = (0.0, 2.0, 5.0, 10.0, 25.0)
 BOUND_MOST: Range = (0.0, 1.3)
-BOUND_NOISE = ErrorModel(box_px=0.5, box_share=0.0, ground_m=0.0, disc=True)  # the simulated noise
+BOUND_NOISE = ErrorModel(box_noise_px=0.5, box_noise_rel=0.0, terrain_height_sd_m=0.0, disc=True)  # the simulated noise
 FIT_MOST: Range = (0.0, 1.3)
 KITTI_PATH_M = 3.0
-NO_ALTIMETER = {"navigation.height_bias_m": 1000.0}
+NO_ALTIMETER = {"navigation.height_bias_sd_m": 1000.0}
 ODMD_SETTINGS = {  # no ground; positions as perturbed by the authors of the sets
-    "val_robot": {**NO_ALTIMETER, "navigation.position_white_m": 2.0},
-    "val_perturb_motion": {**NO_ALTIMETER, "navigation.position_white_m": 2.0},
-    "val_perturb_detection": {**NO_ALTIMETER, "navigation.position_white_m": 0.01},
+    "val_robot": {**NO_ALTIMETER, "navigation.position_white_sd_m": 2.0},
+    "val_perturb_motion": {**NO_ALTIMETER, "navigation.position_white_sd_m": 2.0},
+    "val_perturb_detection": {**NO_ALTIMETER, "navigation.position_white_sd_m": 0.01},
 }
-EVERY_TRACK = {"refined.range_share": 10.0}  # reports a range of any uncertainty
+EVERY_TRACK = {"filter.range_sd_rel_max": 10.0}  # reports a range of any uncertainty
 ODMD_MEAN: dict[str, Range] = {
     "val_robot": (0.0, 11.2), "val_perturb_motion": (0.0, 5.0), "val_perturb_detection": (0.0, 4.0),
 }  # fmt: skip
@@ -70,7 +70,7 @@ class Recorded:
 
 def _outcome(flight: Flight, settings: dict[str, float]) -> BoxOutcome:
     track = estimate(flight, {**camera_settings(flight), **settings})
-    judged = track.valid & (track.method == METHODS["refined"])[:, None]
+    judged = track.valid & (track.method == METHODS["filter"])[:, None]
     judged[:, [i for i in range(6) if i not in JUDGED]] = False
     error, sigma = (np.where(judged, a, np.nan) for a in (track.values - flight.truth.values, track.sigma))
     return BoxOutcome(flight, error, sigma, track.suspect)
@@ -190,7 +190,7 @@ def _gauss_goals(group: str, amount: Amount) -> list[Goal]:
     """White noise alone in the boxes, otherwise as above."""
     result = []
     for roll in ROLLS_DEG:
-        options = BoxOptions(roll_deg=roll, box_px=0.5, box_share=0.0)
+        options = BoxOptions(roll_deg=roll, box_noise_px=0.5, box_noise_rel=0.0)
         outcomes = _fly(BUILDING, options, amount, f"{group} {roll:g}")
         name = f"{BUILDING.name}, roll {roll:g} deg"
         first_range = [math.hypot(o.flight.truth.x0_m, o.flight.truth.z0_m) for o in outcomes]
@@ -210,7 +210,9 @@ def _gauss_tasks(solid: Solid, roll_deg: float, amount: Amount) -> list[Simulate
     """White noise alone in the boxes."""
     usual = ErrorModel().settings()
     settings = {name: value for name, value in _gauss_errors(solid).settings().items() if value != usual[name]}
-    options = BoxOptions(roll_deg=roll_deg, box_px=BOUND_NOISE.box_px, box_share=BOUND_NOISE.box_share)
+    options = BoxOptions(
+        roll_deg=roll_deg, box_noise_px=BOUND_NOISE.box_noise_px, box_noise_rel=BOUND_NOISE.box_noise_rel
+    )
     return [Simulated(solid, options, seed, settings) for seed in range(1, amount.boxes + 1)]
 
 
@@ -237,7 +239,7 @@ def _fit_goals(group: str, amount: Amount) -> list[Goal]:
             name = f"{solid.name}, roll {roll:g} deg"
             result.append(Goal(group, f"{name}: RMSE of the offline fit", "m", _named(_rmse(best))))
             ratio = _named(_rmse(ours) / _rmse(best))
-            result.append(Goal(group, f"{name}: refined / offline fit", "1", ratio, FIT_MOST, names_of(JUDGED)))
+            result.append(Goal(group, f"{name}: filter / offline fit", "1", ratio, FIT_MOST, names_of(JUDGED)))
     return result
 
 
@@ -245,8 +247,8 @@ def _height_goals(group: str, amount: Amount) -> list[Goal]:
     """Noisy or missing altimeters, and terrain that is not level."""
     usual = BoxOptions(roll_deg=SMALL_ROLL_DEG)
     cases: tuple[tuple[str, BoxOptions, dict[str, float]], ...] = (
-        ("altimeter noise 1 m", replace(usual, height_white_m=1.0), {}),
-        ("altimeter noise 3 m", replace(usual, height_white_m=3.0), {}),
+        ("altimeter noise 1 m", replace(usual, height_white_sd_m=1.0), {}),
+        ("altimeter noise 3 m", replace(usual, height_white_sd_m=3.0), {}),
         ("no altimeter", replace(usual, altimeter=False), NO_ALTIMETER),
         ("ground off by 3 m", replace(usual, ground_off_m=3.0), {}),
     )

@@ -29,8 +29,9 @@ def perform(row: HazardRow, number: int) -> Run:
     plain = {name: np.where(there[:, 0], values[:, 0], np.nan) for name, values in track.hazard.items()}
     height = plain["has_clearance"] == 1.0
     warnings = Warnings(
-        inputs.time_s, track.method == METHODS["refined"], plain["time_s"], plain["time_sd_s"], plain["miss_m"],
-        plain["miss_sd_m"], np.where(height, plain["clearance_m"], np.nan), plain["clearance_sd_m"], plain["violation"],
+        inputs.time_s, track.method == METHODS["filter"], plain["tcpa_s"], plain["tcpa_sd_s"], plain["dcpa_m"],
+        plain["dcpa_sd_m"], np.where(height, plain["clearance_m"], np.nan), plain["clearance_sd_m"],
+        plain["conflict_probability"],
         track.hazard["act"][:, 1],
     )  # fmt: skip
     return Run(warnings, approach.closest(inputs.truth))

@@ -28,11 +28,11 @@ def caught(static: np.ndarray, moving: np.ndarray, false_share: float) -> float:
 
 
 def flag_goals(group: str, static: Sequence[Outcome], moving: Sequence[Outcome]) -> list[Goal]:
-    """Share of moving obstacles that the misfit detects at a share of false flags: its largest value, and its last."""
+    """Share of moving obstacles that the NIS ratio detects at a share of false flags, largest and last."""
     result = []
     kinds = (
-        ("misfit_most", f"{len(moving)} moving cars caught, at a share of false flags", "misfit as a flag", True),
-        ("misfit", "caught by the last misfit instead of the largest", "last misfit as a flag", False),
+        ("misfit_most", f"{len(moving)} moving cars caught, at a share of false flags", "NIS ratio as a flag", True),
+        ("nis_ratio", "caught by the last NIS ratio instead of the largest", "last NIS ratio as a flag", False),
     )
     for field_name, caught_name, area_name, asked in kinds:
         scores = [np.array([getattr(o, field_name) for o in cars]) for cars in (static, moving)]
@@ -53,7 +53,7 @@ def kitti_group(group: str, amount: Amount) -> list[Goal]:
     outcomes = [outcome_of(flight) for flight in progress]
     static, moving = ([o for o in outcomes if o.truth.static == kind] for kind in (True, False))
     result = []
-    for label, method, asked in (("refined", "refined", True), ("window", "window", False)):
+    for label, method, asked in (("filter", "filter", True), ("window", "window", False)):
         error = np.abs(ends(static, method))
         error[np.isnan(error)] = math.inf  # no answer counts as the worst
         z = 100.0 * error[:, Z0] / np.array([o.truth.z0_m for o in static])

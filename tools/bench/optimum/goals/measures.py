@@ -21,7 +21,7 @@ def nan_quantile(values: np.ndarray, share: float) -> np.ndarray:
     return np.array([np.quantile(column, share) if len(column) else math.nan for column in columns])
 
 
-def ends(outcomes: Sequence[Outcome], method: str = "refined") -> np.ndarray:
+def ends(outcomes: Sequence[Outcome], method: str = "filter") -> np.ndarray:
     """(n, 6): errors at the end, NaN without an answer."""
     return np.array([getattr(o, method).error[-1] for o in outcomes])
 
@@ -149,7 +149,7 @@ def window_goals(
     return [
         Goal(group, f"median error, {len(outcomes)} flights", "m, deg", named(median * UNITS)),
         Goal(group, "median error of the window method", "m, deg", named(window * UNITS)),
-        Goal(group, "refined / window", "1", named(median / window), (0.0, ratio), names_of(asked)),
+        Goal(group, "filter / window", "1", named(median / window), (0.0, ratio), names_of(asked)),
         Goal(group, "worse than window by > 3 own sigma", "per 1000", named(worse), (0.0, 1.0),
              NAMES if worse_asked else ()),
     ]  # fmt: skip
@@ -167,7 +167,7 @@ def offline_goals(group: str, outcomes: Sequence[Outcome]) -> list[Goal]:
     asked = names_of((Z0, ORIENTATION, WIDTH, LENGTH))
     return [
         Goal(group, f"median error of the offline fit, {len(chosen)} flights", "m, deg", named(fitted * UNITS)),
-        Goal(group, "refined / offline fit", "1", named(median / fitted), (0.0, 1.3), asked),
+        Goal(group, "filter / offline fit", "1", named(median / fitted), (0.0, 1.3), asked),
     ]
 
 
@@ -179,11 +179,11 @@ def start_goals(group: str, outcomes: Sequence[Outcome]) -> list[Goal]:
 
 
 def suspect_goals(group: str, outcomes: Sequence[Outcome]) -> list[Goal]:
-    """Share of static obstacles flagged as suspect in any image, and the misfit of the others."""
+    """Share of static obstacles flagged as suspect in any image, and the NIS ratio of the others."""
     flagged = {"in any image": 100.0 * float(np.mean([o.suspect for o in outcomes]))}
     most = np.array([o.misfit_most for o in outcomes])
     values = {"median": float(np.median(most)), "99th": float(np.quantile(most, 0.99)), "most": float(most.max())}
     return [
         Goal(group, f"static, but flagged as suspect, {len(outcomes)} flights", "%", flagged),
-        Goal(group, "largest misfit of a flight", "1", values),
+        Goal(group, "largest NIS ratio of a flight", "1", values),
     ]

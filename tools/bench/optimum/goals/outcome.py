@@ -31,7 +31,7 @@ class Task:
 
 @dataclass
 class Outcome:
-    """One flight: answers of the refined method and the window method, image by image."""
+    """One flight: answers of the filter method and the window method, image by image."""
 
     name: str
     group: str
@@ -43,7 +43,7 @@ class Outcome:
     covariance: np.ndarray  # (6, 6) at the end
     nis: float  # sums over the track
     nis_rows: float
-    misfit: float  # at the end
+    nis_ratio: float  # at the end
     misfit_most: float  # over the track
     suspect: bool  # in any image
     answered: int  # images with an answer
@@ -59,14 +59,14 @@ class Outcome:
 
 
 def _refined_only(track: Track) -> Track:
-    """Without the window method's answers before the start of the refined method, whose sigmas mean less."""
-    track.values[track.method != METHODS["refined"]] = np.nan
+    """Without the window method's answers before the start of the filter method, whose sigmas mean less."""
+    track.values[track.method != METHODS["filter"]] = np.nan
     return track
 
 
 def _misfit_most(track: Track) -> float:
-    """The largest misfit from the first image at which it counts."""
-    return float(track.misfit[np.cumsum(track.nis_rows > 0) >= SUSPECT_IMAGES].max(initial=0.0))
+    """The largest NIS ratio from the first image at which it counts."""
+    return float(track.nis_ratio[np.cumsum(track.nis_rows > 0) >= SUSPECT_IMAGES].max(initial=0.0))
 
 
 def outcome_of(flight: Flight) -> Outcome:
@@ -78,7 +78,7 @@ def outcome_of(flight: Flight) -> Outcome:
     return Outcome(
         flight.name, flight.group, flight.truth, flight.time_s, flight.reach_s, judge(_refined_only(track), flight),
         judge(window, flight), track.covariance[-1], float(track.nis.sum()), float(track.nis_rows.sum()),
-        float(track.misfit[-1]), _misfit_most(track), bool(track.suspect.any()), int(position.sum()), by_window,
+        float(track.nis_ratio[-1]), _misfit_most(track), bool(track.suspect.any()), int(position.sum()), by_window,
     )  # fmt: skip
 
 

@@ -1,4 +1,4 @@
-"""Pixel noise and no other error: the refined method against the Cramer-Rao bound."""
+"""Pixel noise and no other error: the filter method against the Cramer-Rao bound."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ def rivals_group(group: str, amount: Amount) -> list[Goal]:
         outcomes = perform_all(tasks, amount, f"{group} {noise}")
         names = list(dict.fromkeys(name for o in outcomes for name in o.rivals))
         errors = {name: np.array([o.rivals[name] for o in outcomes]) for name in names}
-        errors = {"refined": ends(outcomes), "window": ends(outcomes, "window"), **errors} if names else {}
+        errors = {"filter": ends(outcomes), "window": ends(outcomes, "window"), **errors} if names else {}
         for name, error in errors.items():
             median = nan_quantile(np.abs(error), 0.5) * UNITS
             result.append(Goal(group, f"{noise}, median error, {len(error)} flights: {name}", "m, deg", named(median)))

@@ -49,7 +49,7 @@ class Track:
         depth = np.where(view.seen, rays[..., 2], 1.0)[..., None]
         points = np.where(view.seen[..., None], rays[..., :2] / depth, 0.0)
         sigma = noise.sigma_px / math.sqrt(flight.camera.fx * flight.camera.fy)
-        attitude = math.radians(noise.attitude_white_deg)
+        attitude = math.radians(noise.attitude_white_sd_deg)
         return cls(view.time_s, points, view.seen, view.dx_m, view.dz_m, view.height_m, sigma, attitude)
 
     def __len__(self) -> int:

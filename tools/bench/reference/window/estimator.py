@@ -225,9 +225,9 @@ class WindowMethod:
             model = "line" if self.rows["line"].count >= max(settings.line_points, settings.window) else "disc"
         rows = self.rows[model]
         if rows.count < settings.window:
-            return "collecting"
+            return "converging"
         if model not in view.added:
-            return "held"
+            return "stale"
         status, fit = solve(self.n, rows.items, self.n.real(settings.min_baseline_m), view.gates)
         if fit is not None:
             self.fit, self.model = fit, model
@@ -354,12 +354,12 @@ class WindowMethod:
         """Status of an accepted image."""
         if solving == "ok":
             return "partial" if view.faults else "ok"
-        if solving not in ("collecting", "held"):
+        if solving not in ("converging", "stale"):
             return solving
         if view.faults:
             return view.faults[0]
         if not visible:
-            return "nothing_seen"
+            return "no_detection"
         if self.settings.model == "line" and view.edges and "line" not in view.added:
             return "no_edge"
         return solving

@@ -107,8 +107,8 @@ def solve(n: Numbers, rows: list[Row], min_baseline_m: Real, gates: Gates) -> tu
     }
     ahead_m = z0_m - max(row.dz_m for row in rows)
     size_m = abs(float(z0_m)) + float(reach) + spread["z0_m"] * row_size
-    if gates.decide("passed", ahead_m <= n.zero, ahead_m, size_m):
-        return "passed", None
+    if gates.decide("abeam", ahead_m <= n.zero, ahead_m, size_m):
+        return "abeam", None
 
     squares = n.zero
     for x, z, xi, zeta in off:

@@ -21,7 +21,7 @@ PROVED_PRESETS = ("m4f-gcc-o2",)
 # Ledger name: function. The table's statements distinguish the entries of a function.
 CALLS = {
     **{name: name for name in PUBLIC},
-    f"{UPDATES['refined']} {WITH_LENS}": "goe_update",
+    f"{UPDATES['filter']} {WITH_LENS}": "goe_update",
     UPDATES["window"]: "goe_update",
     f"{UPDATES['window']} {WITH_LENS}": "goe_update",
 }

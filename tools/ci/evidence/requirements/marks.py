@@ -2,7 +2,7 @@
 
 A promise in a header or page has a mark after its sentence, [A12]. A named item is its own mark: a function, an
 enumerator, a constant, a field and a setting of a public header, an equation of a source, (R12), a source file. The
-test that would fail starts its comment with that mark, /* [A12, GOE_PASSED, (R7)] ... */, or names it in its code.
+test that would fail starts its comment with that mark, /* [A12, GOE_ABEAM, (R7)] ... */, or names it in its code.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from goe_tools.places import ROOT
 HEADERS = {"lib/goe.h": "lib/goe_settings_list.h", "port/flight/goe_flight.h": "port/flight/goe_flight_settings_list.h"}
 PAGES = ("README.md", "lib/window/README.md", "lib/refined/README.md")
 NOT_OF_THE_INTERFACE = {"GOE_H", "GOE_NODISCARD", "GOE_FLIGHT_H"}
-SETTINGS = re.compile(r"goe_(camera|navigation|detector|((window|refined|flight)_)?settings)_t")  # named by path
+SETTINGS = re.compile(r"goe_(camera|navigation|detector|((window|filter|flight)_)?settings)_t")  # named by path
 SUFFIXES = (".c", ".cpp", ".py", ".sh", ".cmake", "CMakeLists.txt")
 MARK = re.compile(r"\[([A-Z]\d+)\]")
 MARKS_OF_TEST = re.compile(r"(?:/\*|#)?\s*\[([^\]]*)\]")

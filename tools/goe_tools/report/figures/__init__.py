@@ -1,4 +1,4 @@
-"""The page's figures, in its order: the paper's 5 to 14 with this campaign's numbers, and those beyond it.
+"""The figures of all pages, in their order: the paper's 5 to 14 with this campaign's numbers, and others.
 
 A figure is drawn twice: wide (panels side by side) and narrow (panels one below the other, for phones). A new one is a
 function that draws, one that describes, and an entry in ``FIGURES``.
@@ -44,7 +44,7 @@ FIGURES: tuple[FigureSpec, ...] = (
                describe_orientation),
     *(_error_figure(*entry) for entry in _ERRORS),
     FigureSpec("studies", "Errors by study", "studies", draw_studies, describe_studies),
-    FigureSpec("conditioning", "What drives the condition, and the error", "conditioning", draw_conditioning,
+    FigureSpec("conditioning", "Condition number and error by setting", "conditioning", draw_conditioning,
                describe_conditioning),
     FigureSpec("condition_scatter", "Error against condition number", "conditioning", draw_condition_scatter,
                describe_condition_scatter, in_page="png"),

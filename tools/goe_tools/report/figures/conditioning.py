@@ -1,4 +1,4 @@
-"""What drives the condition number of (5), and whether it tells the error."""
+"""The condition number of (5) by setting, and its relation to the error."""
 
 from __future__ import annotations
 
@@ -10,12 +10,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, NullLocator
 
 from .. import paper_table3 as t3
 from .. import statistics as st
 from ..data import Campaign, Cases
-from ..style import COLOURS, FAINT, MARKERS, NAMES, NARROW_IN, OBSTACLES, QUANTITY_NAMES, UNITS, WIDE_IN, number
+from ..style import COLORS, FAINT, MARKERS, NAMES, NARROW_IN, OBSTACLES, QUANTITY_NAMES, SOFT, UNITS, WIDE_IN, number
 from .drawing import obstacle_handles
 
 FACTOR_LABELS = {
@@ -47,20 +48,24 @@ def draw_conditioning(campaign: Campaign, narrow: bool) -> Figure | None:
         ("RMSE of Z₀ [%]", lambda r: r["z0_rmse_pct"]),
         ("RMSE of W [%]", lambda r: r["width_rmse_pct"]),
     )
-    shape = (len(factors), len(measures)) if narrow else (len(measures), len(factors))
-    height = 1.75 * shape[0] + 0.75
+    columns = 2 if narrow else len(factors)
+    blocks = -(-len(factors) // columns)  # rows of one measure
+    rows_of_panels = blocks * len(measures)
+    height = (1.6 if narrow else 1.75) * rows_of_panels + 0.75
     figure, grid = plt.subplots(
-        *shape, figsize=(NARROW_IN * 1.5 if narrow else WIDE_IN, height), squeeze=False,
-        sharex="row" if narrow else "col", sharey="col" if narrow else "row",
+        rows_of_panels, columns, figsize=(NARROW_IN if narrow else WIDE_IN, height), squeeze=False,
+        sharex=False if narrow else "col", sharey=False if narrow else "row",
     )  # fmt: skip
     figure.subplots_adjust(
-        left=0.11 if narrow else 0.075, right=0.985, top=1 - 0.62 / height, bottom=0.5 / height,
-        wspace=0.24 if narrow else 0.08, hspace=0.45 if narrow else 0.12,
+        left=0.15 if narrow else 0.075, right=0.985, top=1 - (0.78 if narrow else 0.62) / height, bottom=0.5 / height,
+        wspace=0.26 if narrow else 0.08, hspace=0.62 if narrow else 0.12,
     )  # fmt: skip
+    for spare in grid.ravel()[len(factors) :] if narrow and len(factors) < columns else []:
+        spare.set_visible(False)
     for i, factor in enumerate(factors):
         kept = st.nominal_rows(rows, factor)
         for j, (label, values_of) in enumerate(measures):
-            one = grid[i, j] if narrow else grid[j, i]
+            one = grid[j * blocks + i // columns, i % columns]
             for obstacle in OBSTACLES:
                 _draw_factor(one, kept.select(obstacle=obstacle), factor, values_of, obstacle)
             one.set_yscale("log")
@@ -70,17 +75,19 @@ def draw_conditioning(campaign: Campaign, narrow: bool) -> Figure | None:
             elif factor == "alpha_deg":
                 one.set_xticks((-45, 0, 45))
             one.grid(which="major")
-            first = (i if narrow else j) == 0
-            if first:
-                one.set_title(label if narrow else FACTOR_TITLES[factor], fontsize=8 if narrow else None)
-            if (j if narrow else i) == 0 and not narrow:
+            if narrow and i == 0:
+                one.set_title(label, fontsize=8.5)
+            elif not narrow and j == 0:
+                one.set_title(FACTOR_TITLES[factor])
+            if not narrow and i == 0:
                 one.set_ylabel(label)
             if narrow or j == len(measures) - 1:
                 one.set_xlabel(FACTOR_LABELS[factor], fontsize=8)
             one.tick_params(labelsize=7.8, which="both")
             _plain_axis(one.yaxis)
-    figure.legend(handles=obstacle_handles(line=True), loc="upper center", ncols=4, handletextpad=0.4,
-                  columnspacing=1.2, borderaxespad=0.2)  # fmt: skip
+    quartiles = Patch(color=SOFT, alpha=0.25, linewidth=0, label="quartiles")
+    figure.legend(handles=[*obstacle_handles(line=True), quartiles], loc="upper center", ncols=3 if narrow else 5,
+                  handletextpad=0.4, columnspacing=1.2, borderaxespad=0.2)  # fmt: skip
     return figure
 
 
@@ -102,26 +109,24 @@ def _draw_factor(axes: Axes, rows: Cases, factor: str, values_of: Callable[[Case
         return
     values = values_of(rows)
     levels, bands = st.quartiles_by(rows, factor, values)
-    if factor == "fps_hz":  # shown by what it changes
+    if factor == "fps_hz":  # shown by the baseline that it changes
         levels = np.array([np.median(rows["baseline_m"][rows["fps_hz"] == level]) for level in levels])
         order = np.argsort(levels)
         levels, bands = levels[order], bands[order]
     if not len(levels):
         return
-    style = {"color": COLOURS[obstacle], "zorder": 3}
+    style = {"color": COLORS[obstacle], "zorder": 3}
     if np.any(bands[:, 2] > bands[:, 0]):
-        axes.fill_between(levels, bands[:, 0], bands[:, 2], color=COLOURS[obstacle], alpha=0.12, linewidth=0)
+        axes.fill_between(levels, bands[:, 0], bands[:, 2], color=COLORS[obstacle], alpha=0.12, linewidth=0)
     axes.plot(levels, bands[:, 1], marker=MARKERS[obstacle], markersize=3.0, linewidth=1.2, **style)
 
 
 def describe_conditioning(campaign: Campaign) -> tuple[str, str]:
     rows = conditioning_rows(campaign)
     caption = (
-        "Median (line) and quartiles (band) over the cases. Top to bottom: condition number of the 2N × 3 "
-        "matrix of (5) with "
-        "columns as written, relative root mean square error of Z₀ and of W; one setting is changed at a time. "
-        "On a phone: left to right. A longer window also delays the line, which waits until its window is full; until "
-        "then a box is seen as a disc."
+        "Line: median over the cases; band: quartiles. Top to bottom: condition number of the "
+        "2N × 3 matrix of (5) with columns as written, relative root mean square error of Z₀ and of W. One setting "
+        "varies at a time. The line model waits until its window is full; until then a box is treated as a disc."
     )
     said = []
     for obstacle in OBSTACLES:
@@ -133,7 +138,7 @@ def describe_conditioning(campaign: Campaign) -> tuple[str, str]:
                 f"{NAMES[obstacle]}: Z₀ error {number(st.median_rmse(short, 'z0'))} % at {windows[0]:g} images, "
                 f"{number(st.median_rmse(long, 'z0'))} % at {windows[-1]:g}"
             )
-    return caption, "Condition number and errors against window, side distance, orientation and baseline. " + "; ".join(
+    return caption, "Condition number and errors by window, side distance, orientation and baseline. " + "; ".join(
         said
     ) + "."
 
@@ -152,7 +157,7 @@ def draw_condition_scatter(campaign: Campaign, narrow: bool) -> Figure | None:
     for one, quantity in zip(grid.ravel(), quantities):
         for obstacle in OBSTACLES:
             mine = rows.select(obstacle=obstacle)
-            one.scatter(mine["condition"], mine[f"{quantity}_rmse_pct"], s=9, color=COLOURS[obstacle], alpha=0.45,
+            one.scatter(mine["condition"], mine[f"{quantity}_rmse_pct"], s=9, color=COLORS[obstacle], alpha=0.45,
                         marker=MARKERS[obstacle], linewidths=0)  # fmt: skip
         one.set_xscale("log")
         one.set_yscale("log")
@@ -169,7 +174,7 @@ def draw_condition_scatter(campaign: Campaign, narrow: bool) -> Figure | None:
 
 
 def scatter_rows(campaign: Campaign) -> Cases:
-    """Runs of the paper's and of the conditioning study whose condition is known."""
+    """Runs of the paper's and of the conditioning study with a condition number."""
     rows = campaign.cases.select(study=("paper", "conditioning"), fraction=t3.FRACTION)
     return rows.where(((rows["model"] == "auto") | (rows["obstacle"] == "cylinder")) & np.isfinite(rows["condition"]))
 
@@ -186,11 +191,10 @@ def describe_condition_scatter(campaign: Campaign) -> tuple[str, str]:
                 values.append(f"{NAMES[obstacle].lower()} {rho:+.2f}".replace("-", "−"))
         said.append(f"{QUANTITY_NAMES[quantity]}: {', '.join(values)}")
     caption = (
-        "Each run's error against its median condition number, paper's and conditioning study together. Rank "
-        "correlation "
+        "Each run's error by its median condition number, paper's and conditioning study together. Rank correlation "
         "(Spearman; 1: the error always grows with the condition, 0: unrelated). " + "; ".join(said) + "."
     )
     return (
         caption,
-        "Scatter of errors against condition number on logarithmic axes, one panel each for Z₀, X₀ and W. " + caption,
+        "Scatter of errors by condition number on logarithmic axes, one panel each for Z₀, X₀ and W. " + caption,
     )

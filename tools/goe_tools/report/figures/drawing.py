@@ -1,4 +1,4 @@
-"""What all figures share: their description, panels, files."""
+"""Shared by all figures: their description, panels, files."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ..data import Campaign
-from ..style import COLOURS, DPI, MARKERS, NAMES, NARROW_IN, OBSTACLES, RC, WIDE_IN
+from ..style import COLORS, DPI, MARKERS, NAMES, NARROW_IN, OBSTACLES, RC, WIDE_IN
 
 Draw = Callable[[Campaign, bool], "Figure | None"]
 
 
 @dataclass(frozen=True)
 class FigureSpec:
-    """A figure of the page. ``draw(campaign, narrow)`` gives None where the campaign lacks the data."""
+    """A figure of a page. ``draw(campaign, narrow)`` gives None if the campaign has no data for it."""
 
     key: str  # name of its files
     title: str
@@ -33,7 +33,7 @@ class FigureSpec:
 
 
 def panels(count: int, narrow: bool, height: float, widths: list[float] | None = None) -> tuple[Figure, list[Axes]]:
-    """A row of panels, or a column of them. ``height`` of one panel, inches."""
+    """A row of panels, or a column of them. ``height``: of one panel, inches."""
     if narrow:
         figure, axes = plt.subplots(count, 1, figsize=(NARROW_IN, height * count), squeeze=False)
         figure.subplots_adjust(
@@ -54,7 +54,7 @@ def obstacle_handles(which: tuple[str, ...] = OBSTACLES, line: bool = False) -> 
             linestyle="-" if line else "none",
             marker=MARKERS[o],
             markersize=4.5,
-            color=COLOURS[o],
+            color=COLORS[o],
             label=NAMES[o],
         )
         for o in which
@@ -62,7 +62,7 @@ def obstacle_handles(which: tuple[str, ...] = OBSTACLES, line: bool = False) -> 
 
 
 def render(campaign: Campaign, spec: FigureSpec, narrow: bool, formats: Sequence[str]) -> dict[str, bytes]:
-    """The figure in each of the formats (svg, png); empty where the campaign lacks the data."""
+    """The figure in each of the formats (svg, png); empty if the campaign has no data for it."""
     with plt.rc_context(RC):
         figure = spec.draw(campaign, narrow)
         if figure is None:

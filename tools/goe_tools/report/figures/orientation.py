@@ -16,7 +16,7 @@ from ..style import INK, NARROW_IN, SOFT, WIDE_IN, number
 
 
 def orientation_series(campaign: Campaign) -> tuple[Cases, Cases] | None:
-    """The paper's example: building at -20 degrees. Its side distance is not told; the middle one, level flight."""
+    """The paper's example: building at -20 degrees. It does not give the side distance; here the middle one, level."""
     runs = st.first_seed(campaign.cases.select(study="paper", obstacle="building", alpha_deg=-20.0, model="auto"))
     runs = runs.where(runs["glide_deg"] == 0.0)
     if not len(runs):
@@ -24,7 +24,7 @@ def orientation_series(campaign: Campaign) -> tuple[Cases, Cases] | None:
     sides = runs.levels("side_m")
     run = runs.select(side_m=sides[len(sides) // 2])
     series = campaign.series(int(run["case"][0]), "auto")
-    if series is None or "orientation_raw_deg" not in series.columns or "other_side_deg" not in series.columns:
+    if series is None or "orientation_raw_deg" not in series.columns or "front_orientation_deg" not in series.columns:
         return None
     return run, series
 
@@ -49,18 +49,18 @@ def draw_orientation(campaign: Campaign, narrow: bool) -> Figure | None:
         hspace=0.26,
     )  # fmt: skip
     rows = (
-        (axes[0], _fold(raw + 90.0), series["other_side_deg"], other_truth, "other side", "#D55E00"),
+        (axes[0], _fold(raw + 90.0), series["front_orientation_deg"], other_truth, "other side", "#D55E00"),
         (axes[1], raw, mean, truth, "side edge: the orientation", "#0072B2"),
     )
-    for one, points, line, true, title, colour in rows:
+    for one, points, line, true, title, color in rows:
         one.axhline(true, color=INK, linewidth=1.0, linestyle=(0, (5, 3)), zorder=2)
-        one.plot(t, points, linestyle="none", marker="o", markersize=2.6, markeredgewidth=0, color=colour, alpha=0.45)
-        one.plot(t, line, color=colour, linewidth=1.8)
+        one.plot(t, points, linestyle="none", marker="o", markersize=2.6, markeredgewidth=0, color=color, alpha=0.45)
+        one.plot(t, line, color=color, linewidth=1.8)
         off = np.abs(points[np.isfinite(points)] - true)
         farthest = np.nanmax(np.abs(line - true), initial=0.0, where=np.isfinite(line))
         reach = 1.1 * max(2.0, float(np.percentile(off, 98.0)) if len(off) else 0.0, float(farthest))
         one.set_ylim(true - reach, true + reach)
-        one.set_title(title, color=colour)
+        one.set_title(title, color=color)
         one.set_ylabel("angle to Z [deg]")
         one.grid(axis="y")
     axes[1].set_xlabel("time [s]")
@@ -87,15 +87,13 @@ def describe_orientation(campaign: Campaign) -> tuple[str, str]:
     spread = float(np.nanstd(raw[np.isfinite(raw)][-len(last) :])) if len(last) else math.nan
     caption = (
         f"Building at −20°, {run['side_m'][0]:g} m aside, level flight: the angle of each image alone (dots) "
-        "and after the "
-        f"low-pass (line), for both visible sides. The library takes the other "
-        "side at a right angle to the one it measures. First "
+        "and after the low-pass (line), for both visible sides. The library assumes a right angle between them. First "
         f"filtered value {number(abs(start))}° off, last {number(abs(end))}° off."
     )
     alt = (
         f"Orientation of the building over time, true value −20 degrees. The filtered side-edge angle starts "
         f"{number(start)} "
         f"degrees off and ends {number(end)} degrees off; single images scatter by {number(spread)} degrees (standard "
-        f"deviation) over the last {t3.FRACTION:.0%} of the run. The other side is seen near 70 degrees."
+        f"deviation) over the last {t3.FRACTION:.0%} of the run. The other side is near 70 degrees."
     )
     return caption, alt

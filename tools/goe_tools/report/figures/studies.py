@@ -1,4 +1,4 @@
-"""The studies beyond the paper's, against straight flight."""
+"""The studies beyond the paper, compared with straight flight."""
 
 from __future__ import annotations
 
@@ -8,11 +8,12 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from .. import statistics as st
 from ..data import Campaign, Cases
-from ..style import BAND, COLOURS, MARKERS, NARROW_IN, OBSTACLES, QUANTITY_NAMES, UNITS, WIDE_IN, number
+from ..style import BAND, COLORS, MARKERS, NARROW_IN, OBSTACLES, QUANTITY_NAMES, SOFT, UNITS, WIDE_IN, number
 from .drawing import obstacle_handles
 
 
@@ -24,9 +25,9 @@ def draw_studies(campaign: Campaign, narrow: bool) -> Figure | None:
     columns = 2 if narrow else 3
     rows = math.ceil(len(st.STUDY_QUANTITIES) / columns)
     height = (0.62 + 0.235 * len(labels)) * rows + 0.75
-    figure, grid = plt.subplots(rows, columns, figsize=(NARROW_IN * 1.12 if narrow else WIDE_IN, height), sharey=True)
+    figure, grid = plt.subplots(rows, columns, figsize=(NARROW_IN if narrow else WIDE_IN, height), sharey=True)
     figure.subplots_adjust(
-        left=0.34 if narrow else 0.19, right=0.975, top=1 - 0.62 / height, bottom=0.5 / height,
+        left=0.38 if narrow else 0.19, right=0.975, top=1 - 0.62 / height, bottom=0.5 / height,
         wspace=0.12, hspace=0.42,
     )  # fmt: skip
     offsets = dict(zip(OBSTACLES, (-0.24, -0.08, 0.08, 0.24)))
@@ -34,12 +35,12 @@ def draw_studies(campaign: Campaign, narrow: bool) -> Figure | None:
         for obstacle in OBSTACLES:
             values = _study_values(campaign.cases, found, obstacle, quantity)
             y = np.arange(len(values)) + offsets[obstacle]
-            one.scatter(values, y, s=17, color=COLOURS[obstacle], marker=MARKERS[obstacle], linewidths=0, zorder=3)
+            one.scatter(values, y, s=17, color=COLORS[obstacle], marker=MARKERS[obstacle], linewidths=0, zorder=3)
             if math.isfinite(values[0]):
                 one.plot(
                     [values[0]] * 2,
                     [0, len(values) - 0.5],
-                    color=COLOURS[obstacle],
+                    color=COLORS[obstacle],
                     linewidth=0.8,
                     alpha=0.35,
                     zorder=1,
@@ -53,8 +54,9 @@ def draw_studies(campaign: Campaign, narrow: bool) -> Figure | None:
         one.grid(axis="x", which="major")
         one.set_title(QUANTITY_NAMES[quantity].replace("initial ", "").replace("side distance", "side dist."))
         one.set_xlabel(f"RMSE [{UNITS[quantity]}]", labelpad=1)
-    figure.legend(handles=obstacle_handles(), loc="upper center", ncols=4, handletextpad=0.3, columnspacing=1.2,
-                  borderaxespad=0.2)  # fmt: skip
+    straight = Line2D([], [], color=SOFT, linewidth=0.8, alpha=0.6, label="straight flight")
+    figure.legend(handles=[*obstacle_handles(), straight], loc="upper center", ncols=3 if narrow else 5,
+                  handletextpad=0.3, columnspacing=1.2, borderaxespad=0.2)  # fmt: skip
     return figure
 
 
@@ -80,11 +82,9 @@ def _plain_log_axis(axes: Axes, narrow: bool) -> None:
 def describe_studies(campaign: Campaign) -> tuple[str, str]:
     found = st.variants(campaign.cases)
     caption = (
-        "Root mean square error over the last 40 % of the solved images, median over the cases; logarithmic "
-        "axes. Faint "
-        "vertical lines: straight flight of the same cases. Boxes with the paper's switching (disc, then line), "
-        "cylinder with "
-        "the disc."
+        "Root mean square error over the last 40 % of the solved images, median over the cases; logarithmic axes. "
+        "Faint vertical lines: straight flight of the same cases. Boxes use the paper's switching (disc, then "
+        "line), the cylinder uses the disc."
     )
     said = []
     for variant in found:
@@ -92,6 +92,6 @@ def describe_studies(campaign: Campaign) -> tuple[str, str]:
         ratio = st.median_rmse(variant.runs, "z0") / st.median_rmse(straight, "z0")
         said.append(f"{variant.label} {number(ratio)} times")
     return caption, (
-        "Errors of all quantities for each study, by obstacle. Initial distance against straight flight of the "
-        "same cases: " + ", ".join(said) + "."
+        "Errors of all quantities for each study, by obstacle. Ratio of the initial distance's error to that of "
+        "straight flight of the same cases: " + ", ".join(said) + "."
     )

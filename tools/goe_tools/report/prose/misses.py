@@ -1,4 +1,4 @@
-"""What of Table 3 is not reproduced, by how much, and the most likely reason."""
+"""The numbers of Table 3 that are not reproduced, by how much, and the most likely cause."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from ..style import NAMES, SYMBOLS, UNITS, number, with_unit
 from .table3 import paper_cells
 from .words import listed
 
-LARGE_TRUTH_RATIO = 0.6  # truths of the runs outside this much smaller than inside: percent of a small number
-MUCH_CLOSER = 0.6  # a range this much smaller without something speaks for that as the cause
-SAME_SHARE = 1.25  # percentages of two quantities within this factor of each other: one common error
+LARGE_TRUTH_RATIO = 0.6  # truths outside the range below this share of those inside: percent of a small number
+MUCH_CLOSER = 0.6  # something is the cause if the range without it is below this share
+SAME_SHARE = 1.25  # percentages of two quantities within this factor: one common error
 BIAS_RATIO = 0.67  # mean error over two sigma below this: scatter
 MIXED, SHARED_SCALE, SMALL_TRUTH, SCATTER, HEIGHT_POINT, NO_DISC, SUM_OF_ERRORS, LASTING = (
     "mixed", "shared scale", "small truth", "scatter", "height point", "no disc", "sum of errors", "lasting",
@@ -28,14 +28,14 @@ CAUSE_TITLES = {
     SCATTER: "Scatter through a short window",
     NO_DISC: "The disc is not the obstacle's shape, or not where (2) is exact",
     HEIGHT_POINT: "Height at the wrong point's distance",
-    SUM_OF_ERRORS: "Length takes over all other errors",
+    SUM_OF_ERRORS: "Length inherits all other errors",
     LASTING: "Errors that last through a run",
 }
 
 
 @dataclass(frozen=True)
 class Finding:
-    """A cell of Table 3 that is not the paper's, with what the runs outside the paper's range have in common."""
+    """A cell of Table 3 that is not reproduced, with the common properties of the runs outside the paper's range."""
 
     name: str
     verdict: str
@@ -52,7 +52,7 @@ class Finding:
 
 @dataclass(frozen=True)
 class Cause:
-    """Findings with the same most likely reason."""
+    """Findings with the same most likely cause."""
 
     title: str
     sentences: list[str]
@@ -60,7 +60,7 @@ class Cause:
 
 
 def causes(cases: Cases) -> list[Cause]:
-    """Every cell of Table 3 whose bars do not keep the paper's range, by the most likely reason; widest miss first."""
+    """Every cell of Table 3 whose bars leave the paper's range, by the most likely cause; widest miss first."""
     cells = [cell for cell in paper_cells(cases) if cell.verdict in (st.WORSE, st.MEANS_ONLY)]
     groups: dict[str, list[st.Cell]] = {}
     for cell in sorted(cells, key=lambda cell: -cell.factor):
@@ -117,12 +117,12 @@ def _is_of_small_truth(cell: st.Cell) -> bool:
 
 
 def _pure_range(cell: st.Cell) -> float:
-    """The range of the runs that are line throughout."""
+    """The range of the runs with the line model only."""
     return t3.holding_range(cell.errors.extent[cell.errors.runs["fresh_line_share"] >= st.PURE])
 
 
 def _is_mixture(cell: st.Cell) -> bool:
-    """Do most bars outside mix disc and line solutions, and do runs without the mixture keep much closer to zero?"""
+    """Do most bars outside mix disc and line solutions, and do runs without the mixture stay much closer to zero?"""
     if cell.model != "line":
         return False
     mixed = cell.errors.runs["fresh_line_share"][cell.outside] < st.PURE
@@ -144,7 +144,7 @@ def _shares_scale(cell: st.Cell) -> bool:
 
 
 def likely_cause(cell: st.Cell) -> str:
-    """The first that fits; a rule of thumb, which the page says."""
+    """The first that fits: a rule of thumb, as the page explains."""
     if _is_mixture(cell):
         return MIXED
     if _shares_scale(cell):
@@ -168,17 +168,16 @@ def _explain(cases: Cases, cause: str, cells: list[st.Cell]) -> list[str]:
             for cell in cells
         ]
         return [
-            "The line takes over late in many runs, so that the part that counts begins with disc solutions, "
-            "which see a box "
-            f"as a disc. Runs that are line throughout this part keep closer: {'; '.join(ranges)}."
+            "In many runs the line model takes over late, so the part that counts begins with disc solutions, which "
+            f"treat a box as a disc. Runs with the line model throughout this part stay closer: {'; '.join(ranges)}."
         ]
     if cause == SHARED_SCALE:
         ratios = listed([f"{_cell_name(cell)} {number(_width_by_side(cell))}" for cell in cells])
         return [
-            "(5) knows the ratio X₀/W far better than the scale 1/W, so that X₀ and W are wrong by the same share. "
-            f"The scatter of W over that of X₀, both in percent, median of the runs: {ratios}. The paper's range "
-            "of W is 6 to 12 times narrower than its range of X₀: one solution of (5) cannot give both, so the "
-            "paper's W is likely taken in another way, which it does not describe. Its X₀, Z₀ and L agree.",
+            "(5) determines the ratio X₀/W far better than the scale 1/W, so X₀ and W have the same relative error. "
+            f"Scatter of W over that of X₀, both in percent, median of the runs: {ratios}. The paper's range of W is 6 "
+            "to 12 times narrower than its range of X₀. One solution of (5) cannot give both, so the paper probably "
+            "computes W in another way, which it does not describe. Its X₀, Z₀ and L agree.",
             *_evidence_of_part(cases, cells),
         ]
     if cause == SMALL_TRUTH:
@@ -186,28 +185,27 @@ def _explain(cases: Cases, cause: str, cells: list[st.Cell]) -> list[str]:
     if cause == SCATTER:
         return [
             f"In the runs outside the paper's range the mean error is less than {number(BIAS_RATIO)} of the two sigma "
-            "(median): the solution moves from image to image. Rounding to whole pixels does that where a window spans "
-            "little change of the apparent size.",
+            "(median): the solution scatters from image to image. Rounding to whole pixels has this effect if the "
+            "apparent size hardly changes within a window.",
             *_evidence_of_part(cases, cells),
             *_evidence_of_window(cases, cells),
         ]
     if cause == NO_DISC:
         return [
-            "The mean error weighs as much as the scatter or more. (2) draws the tangents of a disc; its size "
-            "row is exact "
-            "on the flight line only, and a box is no disc."
+            "The mean error is as large as the scatter or larger. (2) uses the tangents of a disc; its size row is "
+            "exact on the flight line only, and a box is not a disc."
         ]
     if cause == HEIGHT_POINT:
         return [
-            "The mean error weighs as much as the scatter or more. (8) takes the reference point's distance, while the "
-            "top point of a box stands above its near corner."
+            "The mean error is as large as the scatter or larger. (8) uses the reference point's distance, but the top "
+            "point of a box is above its near corner."
         ]
     if cause == SUM_OF_ERRORS:
-        return ["(7) multiplies the errors of Z₀, X₀, W and the orientation into the length; the paper says so, too."]
+        return ["(7) multiplies the errors of Z₀, X₀, W and the orientation into the length, as the paper notes."]
     return [
-        "The mean error weighs as much as the scatter or more: it lasts through the part of the run that counts. W, X₀ "
-        "and Z₀ share one scale in (5) and err together; whole pixels err alike in neighbouring images of a straight "
-        "flight, so that a window does not average them out.",
+        "The mean error is as large as the scatter or larger: it lasts through the part of the run that counts. W, X₀ "
+        "and Z₀ share one scale in (5) and have a common error. In a straight flight, rounding errors of neighboring "
+        "images are similar, so a window does not average them out.",
         *_evidence_of_wind(cases, cells),
     ]
 
@@ -215,18 +213,18 @@ def _explain(cases: Cases, cause: str, cells: list[st.Cell]) -> list[str]:
 def _explain_small_truth(cell: st.Cell) -> str:
     runs, outside = cell.errors.runs, cell.outside
     truth = np.abs(runs[f"{cell.quantity}_truth"])
-    metres = np.abs(runs[f"{cell.quantity}_mean"]) + runs[f"{cell.quantity}_two_sigma"]
+    meters = np.abs(runs[f"{cell.quantity}_mean"]) + runs[f"{cell.quantity}_two_sigma"]
     return (
         f"{NAMES[cell.obstacle]}/{cell.model}: {SYMBOLS[cell.quantity]} is "
         f"{number(float(np.median(truth[outside])))} m in "
         f"the runs outside the range (median), {number(float(np.median(truth[~outside])))} m in those inside. "
-        "In metres, "
-        f"{t3.MOST:.0%} of all bars keep to ±{number(t3.holding_range(metres))} m."
+        "In meters, "
+        f"{t3.MOST:.0%} of all bars stay within ±{number(t3.holding_range(meters))} m."
     )
 
 
 def _evidence_of_part(cases: Cases, cells: list[st.Cell]) -> list[str]:
-    """How many keep the paper's range in the shortest last part of the run?"""
+    """How many stay in the paper's range in the shortest last part of the run?"""
     part = min(cases.levels("fraction"))
     kept = 0
     for cell in cells:
@@ -234,9 +232,8 @@ def _evidence_of_part(cases: Cases, cells: list[st.Cell]) -> list[str]:
         kept += late is not None and cell.paper is not None and late.bars <= st.ROUNDING * cell.paper.value
     return (
         [
-            f"Over the last {part * 100:.0f} % of the run, {kept} of these {len(cells)} numbers keep the paper's "
-            "range; the paper "
-            "may have judged later parts of its runs."
+            f"Over the last {part * 100:.0f} % of the run, {kept} of these {len(cells)} numbers stay in the paper's "
+            "range; the paper may have used later parts of its runs."
         ]
         if kept
         else []
@@ -244,7 +241,7 @@ def _evidence_of_part(cases: Cases, cells: list[st.Cell]) -> list[str]:
 
 
 def _evidence_of_window(cases: Cases, cells: list[st.Cell]) -> list[str]:
-    """Does a longer window help, as it must if the cause is scatter?"""
+    """Does a longer window reduce the error, as it must if the cause is scatter?"""
     rows = cases.select(study="conditioning", fraction=t3.FRACTION)
     windows = rows.levels("window") if len(rows) else []
     usual = float(np.median(cells[0].errors.runs["window"]))
@@ -259,14 +256,13 @@ def _evidence_of_window(cases: Cases, cells: list[st.Cell]) -> list[str]:
     if not said:
         return []
     return [
-        f"With a window of {windows[-1]:g} images instead of {usual:g}, root mean square error in the "
-        "conditioning study (a "
-        f"fall speaks for scatter as the reason, a rise against): {'; '.join(said)}."
+        f"Root mean square error with {usual:g} → {windows[-1]:g} images in the window, conditioning study (a smaller "
+        f"error supports scatter as the cause, a larger one does not): {'; '.join(said)}."
     ]
 
 
 def _evidence_of_wind(cases: Cases, cells: list[st.Cell]) -> list[str]:
-    """Do the lasting errors go away where the aircraft shakes, as they must if they come from whole pixels?"""
+    """Do the lasting errors disappear in turbulence, as they must if rounding to whole pixels causes them?"""
     wind = cases.select(study="wind", fraction=t3.FRACTION)
     if not len(wind):
         return []
@@ -283,7 +279,6 @@ def _evidence_of_wind(cases: Cases, cells: list[st.Cell]) -> list[str]:
     if not said:
         return []
     return [
-        "In turbulence, which shakes the rounding, the mean errors of the same cases go like this (median; a "
-        "fall speaks "
-        f"for whole pixels as the reason, a rise against): {'; '.join(said)}."
+        "Turbulence makes rounding errors random. Mean error of the same cases in still air → in turbulence (median; a "
+        f"smaller error supports rounding as the cause, a larger one does not): {'; '.join(said)}."
     ]

@@ -1,4 +1,4 @@
-"""Sentences of the section on the refined method; each follows from the numbers."""
+"""Sentences on the default method (filter) and on the goals, computed from the numbers."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from ..goals_file import GoalRow, Goals
 from ..style import GOAL_SYMBOLS, NAMES, SYMBOLS, number, with_unit
 from .words import listed, plural
 
-FEW_WORST = 0.95  # a mean that falls below this share of itself without the worst 1 % is made by few flights
+FEW_WORST = 0.95  # if a mean without the worst 1 % is less than this share of it, few flights dominate it
 NOISE_NAMES = {
     "rounding": "Whole pixels and no other error",
     "gauss1": "Gaussian pixel noise of 1 px",
     "field": "All errors of a small aircraft's sensors",
 }
 METHOD_NAMES = {
-    "refined": "refined (this library)",
+    "filter": "filter (this library)",
     "window": "window (the paper's)",
     "triangulation": "triangulation (GTSAM)",
     "inverse_depth": "inverse-depth Kalman filter",
@@ -29,10 +29,10 @@ METHOD_NAMES = {
     "inverse_size": "inverse-size line fit (Atherton et al., BMVC 1991)",
 }
 STRENGTHS: dict[str, str] = {
-    "triangulation": "All images at once, no ground, height or start value needed; most of it is library calls.",
-    "inverse_depth": "Takes any points, one by one, from their first image on: twelve numbers of memory for each.",
-    "bearing_angle": "Linear throughout, three states, no start value, no corner to be recognised; made for cylinders.",
-    "inverse_size": "A straight line, the cheapest by far; a size in the image does not feel attitude errors at all.",
+    "triangulation": "Uses all images at once; needs no ground, height or start value; mostly library calls.",
+    "inverse_depth": "Uses any point from its first image on; twelve numbers of memory per point.",
+    "bearing_angle": "Linear, three states, no start value, no corner to be recognized; designed for cylinders.",
+    "inverse_size": "A straight-line fit, by far the cheapest; attitude errors have no effect on a size in the image.",
 }
 
 
@@ -41,15 +41,15 @@ def _cell_name(cell: rf.Trio) -> str:
 
 
 def table3(campaign: Campaign) -> list[str]:
-    """How far refined is inside the paper's ranges, and where it is not."""
+    """How much narrower than the paper's ranges the default method is, and where it is not."""
     cells = [cell for cell in rf.papers(campaign) if math.isfinite(cell.factor)]
     if not cells:
         return []
     factors = np.array([cell.factor for cell in cells])
     fivefold, better = int(np.sum(factors >= rf.FIVEFOLD)), int(np.sum(factors > 1.0))
     said = [
-        f"Of the {len(cells)} numbers of the paper's Table 3, refined betters {better}, {fivefold} of them at least "
-        f"fivefold; in the median its range is {number(float(np.median(factors)))} times narrower."
+        f"The default method is better than the paper in {better} of the {len(cells)} numbers of Table 3, in "
+        f"{fivefold} of them at least fivefold. The median range is {number(float(np.median(factors)))} times narrower."
     ]
     short = sorted((cell for cell in cells if cell.factor < rf.FIVEFOLD), key=lambda cell: cell.factor)
     if short:
@@ -58,21 +58,21 @@ def table3(campaign: Campaign) -> list[str]:
             f"×{number(cell.factor)})"
             for cell in short
         ]
-        said.append(f"Short of fivefold: {listed(names)}.")
+        said.append(f"Less than fivefold: {listed(names)}.")
     ratios = np.array([cell.window / cell.refined for cell in cells if cell.window > 0.0])
     if len(ratios):
         said.append(
-            f"Against the window method on the same images: {number(float(np.min(ratios)))} to "
+            f"Compared with the window method on the same images: {number(float(np.min(ratios)))} to "
             f"{number(float(np.max(ratios)))} times narrower, {number(float(np.median(ratios)))} in the median."
         )
     lost = [f"{_cell_name(cell)} in {plural(cell.without, 'run')}" for cell in cells if cell.without]
     if lost:
-        said.append(f"Without an answer: {listed(lost)}.")
+        said.append(f"Without an estimate: {listed(lost)}.")
     return said
 
 
 def studies(campaign: Campaign) -> list[str]:
-    """What the refined method makes of curves, wind and sensor errors."""
+    """The default method's error on curved paths, in wind, with sensor errors."""
     ratios = {row.label: row.errors["z0"][1] / row.errors["z0"][0] for row in rf.studies(campaign)
               if row.errors["z0"][0] > 0.0}  # fmt: skip
     ratios = {label: ratio for label, ratio in ratios.items() if math.isfinite(ratio)}
@@ -81,9 +81,9 @@ def studies(campaign: Campaign) -> list[str]:
     best, worst = min(ratios, key=lambda label: ratios[label]), max(ratios, key=lambda label: ratios[label])
     count = sum(ratio < 1.0 for ratio in ratios.values())
     return [
-        f"The Z₀ error of refined is smaller than the window's in {count} of {len(ratios)} studies: "
-        f"{number(100.0 * ratios[best])} % of it in the best ({best}), {number(100.0 * ratios[worst])} % in the "
-        f"worst ({worst})."
+        f"The default method has a smaller error of Z₀ than the window method in {count} of {len(ratios)} studies: "
+        f"{number(100.0 * ratios[best])} % of the window method's in the best study ({best}), "
+        f"{number(100.0 * ratios[worst])} % in the worst ({worst})."
     ]
 
 
@@ -99,12 +99,12 @@ def value_name(name: str) -> str:
 
 
 def value_label(name: str) -> str:
-    """Before a value, in text: X₀ 1.02, but 5 %: 34."""
+    """The label of a value in text: X₀ 1.02, but 5 %: 34."""
     return f"{name}:" if name.endswith("%") else value_name(name)
 
 
 def wanted(row: GoalRow) -> str:
-    """The range in words: ≤ 1.25, ≥ 88, 90 … 98."""
+    """The required range: ≤ 1.25, ≥ 88, 90 … 98."""
     if not row.asked:
         return ""
     if row.low <= 0.0:
@@ -131,11 +131,11 @@ def verdict(goals: Goals) -> list[str]:
     if short:
         groups = dict.fromkeys(rf.group_title(row.group) for row in goals.asked if not row.met)
         verb = "is" if short == 1 else "are"
-        said.append(f"{short} {verb} missed, in: {'; '.join(groups)}. They are in red, and listed below the table.")
+        said.append(f"{short} {verb} missed, in: {'; '.join(groups)}.")
     if any(group.startswith("recorded") for group in goals.groups):
         said.append(
-            "The autopilots' flights were recorded with their own simulators and filters; the obstacles are put beside "
-            "the recorded paths."
+            "The autopilots' flights were recorded with their own simulators and filters; simulated obstacles stand "
+            "along the recorded paths."
         )
     if goals.quick:
         said.append("This was a quick run: too few flights for a verdict.")
@@ -146,21 +146,21 @@ def verdict(goals: Goals) -> list[str]:
 
 
 def missed(goals: Goals) -> list[str]:
-    """Every missed figure beside what was wanted."""
+    """Every missed figure with its required range."""
     said = []
     for row in goals.asked:
         if row.met:
             continue
         values = [f"{value_label(name)} {_with_goal_unit(row, row.values.get(name, math.nan))}" for name in row.missed]
         text = wanted(row).replace(" ", "\u00a0")
-        said.append(f"{rf.group_title(row.group)}, {row.name}: {listed(values)} (wanted {text}).")
+        said.append(f"{rf.group_title(row.group)}, {row.name}: {listed(values)} (required {text}).")
     return said
 
 
 def early(goals: Goals) -> list[str]:
     said = []
     for noise, ways in rf.early_rows(goals).items():
-        ours, window = ways.get("refined, true error"), ways.get("window, true error")
+        ours, window = ways.get("filter, true error"), ways.get("window, true error")
         if ours is None or window is None:
             continue
         parts = [
@@ -169,13 +169,13 @@ def early(goals: Goals) -> list[str]:
             for obstacle, value in ours.values.items()
         ]
         said.append(
-            f"{NOISE_NAMES.get(noise, noise)}: the error of Z₀ is below 10 %, and stays there, from so long before the "
-            f"obstacle is abeam: {listed(parts)} with the window method (medians over the paper's cases)."
+            f"{NOISE_NAMES.get(noise, noise)}: the error of Z₀ falls below 10 % for good so long before the obstacle "
+            f"is abeam: {listed(parts)} with the window method (medians over the paper's cases)."
         )
-        own = ways.get("refined, own 2 sigma")
+        own = ways.get("filter, own 2 sigma")
         if own is not None:
             parts = [f"{NAMES.get(o, o).lower()} {number(value, 3)} s" for o, value in own.values.items()]
-            said.append(f"Refined can tell so itself, by its two sigma, {listed(parts)} before.")
+            said.append(f"goe's own 2σ fall below 10 % {listed(parts)} before.")
     return said
 
 
@@ -196,14 +196,23 @@ def _finite(values: Iterable[float]) -> list[float]:
     return [value for value in values if math.isfinite(value)]
 
 
-def coverage(goals: Goals) -> list[str]:
-    shares = [
+def _shares(goals: Goals) -> list[tuple[float, GoalRow, str, str]]:
+    """Every share within 2 sigma that has a goal: percent, line, quantity, group."""
+    return [
         (value, row, name, group)
         for group, rows in rf.coverage_rows(goals).items()
         for row in rows.values()
         for name, value in row.values.items()
         if name in row.asked and math.isfinite(value)
     ]
+
+
+def covered_shares(goals: Goals) -> list[float]:
+    return [value for value, _, _, _ in _shares(goals)]
+
+
+def coverage(goals: Goals) -> list[str]:
+    shares = _shares(goals)
     if not shares:
         return []
     inside = sum(row.low <= value <= row.high for value, row, _, _ in shares)
@@ -211,18 +220,17 @@ def coverage(goals: Goals) -> list[str]:
     kind, moment = row.name.split(", ")[1:]
     over = sum(value > row.high for value, row, _, _ in shares)
     return [
-        f"A sigma that can be trusted has the truth within two of it in 95 % of the cases. {inside} of {len(shares)} "
-        f"shares are in the wanted range, {over} above it (the sigma is too wide), "
-        f"{len(shares) - inside - over} below (too narrow). The lowest is {number(low, 3)} %: {value_name(name)}, "
-        f"{rf.group_title(group)}, {kind}, {moment}."
+        f"{inside} of {len(shares)} shares within 2σ are in the required range, {over} above it (the sigma is too "
+        f"large), {len(shares) - inside - over} below (too small). The lowest is {number(low, 3)} %: "
+        f"{value_name(name)}, {rf.group_title(group)}, {kind}, {moment}."
     ]
 
 
 def nees(goals: Goals) -> list[str]:
-    """Normalised error squared, one line for the groups that it is asked of, one for the others."""
+    """Normalized error squared: one sentence for the groups with a goal, one for the others."""
     said = []
     for asked, start in ((True, "NEES over all quantities at the end of the run (1: the covariance is right; more: too "
-                                "narrow): "), (False, "With errors that are not Gaussian: ")):  # fmt: skip
+                                "small): "), (False, "With errors that are not Gaussian: ")):  # fmt: skip
         parts = [_nees_part(row) for row in rf.nees_rows(goals) if bool(row.asked) is asked]
         if parts:
             said.append(start + "; ".join(parts) + ".")
@@ -235,7 +243,7 @@ def _nees_part(row: GoalRow) -> str:
     text = f"{rf.group_title(row.group)}, {kind} {number(mean, 3)}"
     if without < FEW_WORST * mean and row.met is not True:
         text += f" ({number(without, 3)} without the worst 1 %)"
-    return text + (f", wanted {wanted(row)}, {'met' if row.met else 'missed'}" if row.asked else "")
+    return text + (f", required {wanted(row)}, {'met' if row.met else 'missed'}" if row.asked else "")
 
 
 def flags(goals: Goals) -> list[str]:
@@ -244,12 +252,12 @@ def flags(goals: Goals) -> list[str]:
         return []
     row = found.goal
     parts = [f"{_with_goal_unit(row, row.values.get(name, math.nan))} at {name} false flags" for name in row.asked]
-    said = [f"The area under the curve of moving cars, flagged by their misfit, is {number(found.area)} (chance: 0.5)."]
+    said = [f"Area under the curve for moving cars: {number(found.area)} (chance: 0.5)."]
     if parts:
         said.insert(
             0,
-            f"Moving cars are flagged, by how badly the images fit a static obstacle, to {listed(parts)}; the goal is "
-            f"{wanted(row)} %: {'met' if row.met else 'missed'}.",
+            "A car that moves does not fit a static obstacle. By this NIS ratio the following share of the moving "
+            f"cars is flagged: {listed(parts)}. Goal {wanted(row)} %: {'met' if row.met else 'missed'}.",
         )
     if found.default is not None:
         said.append(
@@ -260,13 +268,13 @@ def flags(goals: Goals) -> list[str]:
 
 
 def rivals(goals: Goals) -> list[str]:
-    """Where another method is better than refined, and where refined is best."""
+    """Where another method has a smaller error than the default method, and where it has not."""
     said = []
     for noise, rows in rf.rivals(goals).items():
-        ours = next((row for row in rows if row.name == "refined"), None)
+        ours = next((row for row in rows if row.name == "filter"), None)
         if ours is None:
             continue
-        others = [row for row in rows if row.name not in ("refined", "window")]
+        others = [row for row in rows if row.name not in ("filter", "window")]
         better = [
             f"{value_name(q)} by {METHOD_NAMES.get(row.name, row.name)} "
             f"({_error_text(q, row.errors[q])} against {_error_text(q, ours.errors[q])}{_few(row, q)})"
@@ -277,8 +285,8 @@ def rivals(goals: Goals) -> list[str]:
         name = NOISE_NAMES.get(noise, noise)
         best = [value_name(q) for q in ours.errors if _is_best(ours, others, q)]
         said.append(
-            f"{name}: refined has the smallest median error of {listed(best) if best else 'no quantity'}"
-            + (f"; better than refined: {listed(better)}." if better else ".")
+            f"{name}: goe has the smallest median error of {listed(best) if best else 'no quantity'}"
+            + (f"; smaller than goe's: {listed(better)}." if better else ".")
         )
     return said
 
@@ -291,7 +299,7 @@ def _is_best(ours: rf.Rival, others: Sequence[rf.Rival], quantity: str) -> bool:
 
 def _few(row: rf.Rival, quantity: str) -> str:
     answers = row.answers.get(quantity, math.nan)
-    return f", which answers in {number(answers)} % of the flights" if answers < 50.0 else ""
+    return f", which has an estimate in {number(answers)} % of the flights" if answers < 50.0 else ""
 
 
 def _error_text(quantity: str, error: float) -> str:
@@ -299,20 +307,19 @@ def _error_text(quantity: str, error: float) -> str:
 
 
 def real_data(campaign: Campaign) -> str:
-    """What of the goals' run is not simulated, if anything."""
+    """The part of the goals' data that is not simulated; empty if there is none."""
     if campaign.goals is None or "kitti" not in campaign.goals.groups:
         return ""
-    return "the cars of the KITTI data set, which a detector found in the images of a camera on a driving car"
+    return "the goals on the KITTI data set: cars that a detector found in the images of a camera on a driving car"
 
 
 def lead(campaign: Campaign) -> str:
-    """The section in one sentence for the page's head."""
+    """The comparison with the paper in one sentence."""
     cells = [cell for cell in rf.papers(campaign) if math.isfinite(cell.factor)]
     if not cells:
         return ""
     median = float(np.median([cell.factor for cell in cells]))
     return (
-        f"The library's own method, refined, answers with ranges {number(median)} times narrower than the paper's in "
-        f"the median of the {len(cells)} numbers of Table 3, over the last {t3.FRACTION * 100:.0f} % of the same "
-        "flights."
+        f"goe's default method has errors {number(median)} times smaller than the paper, in the median of the "
+        f"{len(cells)} numbers of Table 3, over the last {t3.FRACTION * 100:.0f} % of the same flights."
     )

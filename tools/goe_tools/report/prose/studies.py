@@ -1,4 +1,4 @@
-"""The studies beyond the paper's in sentences, and what the condition number and the window do."""
+"""Sentences on the studies beyond the paper, on the condition number and on the window."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from ..data import Campaign, Cases
 from ..style import number
 from .words import plural
 
-HARDER, EASIER = 1.3, 0.9  # a study's error against straight flight
+HARDER, EASIER = 1.3, 0.9  # ratio of a study's error to that of straight flight
 
 
 def studies(cases: Cases) -> list[str]:
-    """Which studies are harder than straight flight and which are not, by the error of Z₀."""
+    """Which studies are harder than straight flight, by the error of Z₀."""
     harder, alike, easier = [], [], []
     for variant in st.variants(cases):
         straight = st.like_for_like(cases, variant.runs)
@@ -26,9 +26,9 @@ def studies(cases: Cases) -> list[str]:
             group.append(f"{variant.label} (×{number(b / a)})")
     said = []
     for group, text in (
-        (harder, f"Harder than straight flight, Z₀ error more than {number(HARDER)} times as large: "),
+        (harder, f"Harder than straight flight (error of Z₀ more than {number(HARDER)} times as large): "),
         (alike, "About as hard: "),
-        (easier, f"Easier, less than {number(EASIER)} times: "),
+        (easier, f"Easier (less than {number(EASIER)} times): "),
     ):
         if group:
             said.append(text + "; ".join(group) + ".")
@@ -36,7 +36,7 @@ def studies(cases: Cases) -> list[str]:
 
 
 def outliers(campaign: Campaign) -> str:
-    """The paper's open question: are its outliers the badly conditioned runs?"""
+    """An open question of the paper: do its outliers have large condition numbers?"""
     runs = campaign.cases.select(study="paper", fraction=t3.FRACTION)
     runs = runs.where(((runs["model"] == "auto") | (runs["obstacle"] == "cylinder")) & np.isfinite(runs["condition"]))
     count, bad, shares = 0, 0, []
@@ -53,15 +53,15 @@ def outliers(campaign: Campaign) -> str:
     if not count:
         return "No run of the paper's study has a Z₀ bar longer than three times its obstacle's median."
     return (
-        f"Outliers, as the paper met them: {count} of {plural(len(runs), 'run')} have a Z₀ bar longer than "
+        f"Outliers as in the paper: {count} of {plural(len(runs), 'run')} have a Z₀ bar longer than "
         "three times their "
         f"obstacle's median. {bad} of these {count} are in the worst quarter of their obstacle's condition numbers; "
-        f"by chance it would be {number(count / 4.0)}."
+        f"chance would give {number(count / 4.0)}."
     )
 
 
 def condition_effect(campaign: Campaign) -> str:
-    """Does the condition number, as the paper would form it, tell good runs from bad ones?"""
+    """Does the condition number of the paper's equations distinguish good runs from bad ones?"""
     runs = campaign.cases.select(study="paper", fraction=t3.FRACTION)
     runs = runs.where((runs["model"] == "auto") | (runs["obstacle"] == "cylinder"))
     there = np.isfinite(runs["condition"]) & np.isfinite(runs["z0_rmse_pct"])
@@ -74,17 +74,16 @@ def condition_effect(campaign: Campaign) -> str:
     text = (
         f"In the paper's study, 80 % of the runs have a condition number from {number(float(low))} to "
         f"{number(float(high))}, "
-        f"while their errors of Z₀ go from {number(float(best))} to {number(float(worst))} %; the rank correlation is "
+        f"and errors of Z₀ from {number(float(best))} to {number(float(worst))} %; the rank correlation is "
         f"{number(rho)}. "
     )
     if abs(rho) < 0.4:
         text += (
-            "The condition number of (5) as written does not tell good runs from bad ones: it is set by the "
-            "units and the "
-            "length of the baseline, which all runs share, not by how much the apparent size changes over the window."
+            "The condition number of (5) as written does not distinguish good runs from bad ones: it depends on the "
+            "units and the length of the baseline, which all runs share, not on the change of the apparent size."
         )
     else:
-        text += "So it tells part of what makes a run good or bad."
+        text += "So it explains a part of the errors."
     return text
 
 
@@ -99,4 +98,4 @@ def window_effect(campaign: Campaign) -> str:
     if len(shown) < 2:
         return ""
     values = "; ".join(f"{w:g} images {number(errors[w])}\u00a0%" for w in shown)
-    return f"Root mean square error of Z₀ against the length of the window, median over all obstacles: {values}."
+    return f"Root mean square error of Z₀ by length of the window, median over all obstacles: {values}."

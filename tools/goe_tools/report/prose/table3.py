@@ -1,4 +1,4 @@
-"""Table 3 in sentences: the result, the paper's conclusion, what does not count, and what the part of the run does."""
+"""Sentences on Table 3: the result, the paper's conclusion, runs that do not count, effect of the part of the run."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ def summary(cases: Cases) -> list[str]:
     count = Counter(cell.verdict for cell in cells)
     parts = [
         f"{count[st.REPRODUCED]} are reproduced",
-        f"{count[st.BETTER]} are better here",
-        f"{count[st.MEANS_ONLY]} hold for the means but not for the ±2σ bars",
+        f"{count[st.BETTER]} are better",
+        f"{count[st.MEANS_ONLY]} agree in the means but not in the mean ± 2σ bars",
         f"{count[st.WORSE]} are not reproduced",
     ]
     said = [f"Of the {len(cells)} numbers in the paper's Table 3, {', '.join(parts[:-1])} and {parts[-1]}."]
@@ -35,14 +35,14 @@ def summary(cases: Cases) -> list[str]:
         names = [f"{SYMBOLS[q]} ({n})" for q, n in by_quantity.most_common()]
         widest = max(misses, key=lambda cell: cell.factor)
         said.append(
-            f"What is missed: {', '.join(names)}. The widest miss is {SYMBOLS[widest.quantity]} of the "
+            f"Not reproduced: {', '.join(names)}. The widest miss is {SYMBOLS[widest.quantity]} of the "
             f"{NAMES[widest.obstacle].lower()} ({widest.model} model): {number(widest.factor)} times the paper's range."
         )
     return said + advice(cases)
 
 
 def advice(cases: Cases) -> list[str]:
-    """Does the paper's conclusion hold: the disc for distance and height, the line for side distance and size?"""
+    """Does the paper's conclusion hold: disc model for distance and height, line model for side distance and size?"""
     boxes = ("building", "truck", "long-truck")
     holds, fails = [], []
     for quantity, wanted in (("z0", "disc"), ("height", "disc"), ("x0", "line"), ("width", "line")):
@@ -54,16 +54,15 @@ def advice(cases: Cases) -> list[str]:
         other = "line" if wanted == "disc" else "disc"
         if not all(math.isfinite(value) for value in ranges.values()):
             continue
-        slack = 1.25 if wanted == "disc" else 1.0  # of the disc the paper says only that it is about as good
+        slack = 1.25 if wanted == "disc" else 1.0  # the paper calls the disc only about as good
         disc, line = (with_unit(ranges[model], quantity) for model in ("disc", "line"))
         text = f"{SYMBOLS[quantity]} (disc ±{disc}, line ±{line})"
         (holds if ranges[wanted] <= slack * ranges[other] else fails).append(text)
     said = []
     if holds:
         said.append(
-            "The paper's conclusion, the disc model for distance and height, the line model for side distance "
-            "and size, "
-            f"holds here for {listed(holds)}, medians over the box-shaped obstacles."
+            "The paper concludes: disc model for distance and height, line model for side distance and size. This "
+            f"holds here for {listed(holds)}; medians over the box-shaped obstacles."
         )
     if fails:
         said.append(f"It does not hold here for {listed(fails)}.")
@@ -71,7 +70,7 @@ def advice(cases: Cases) -> list[str]:
 
 
 def missing(cases: Cases) -> list[str]:
-    """Runs that do not count in Table 3."""
+    """The runs that do not count in Table 3."""
     said = []
     for obstacle, model in t3.PAPER_TABLE3:
         flown = st.flown_runs(cases, obstacle, model)
@@ -79,9 +78,8 @@ def missing(cases: Cases) -> list[str]:
         name = f"{NAMES[obstacle].lower()}/{model}"
         if len(counted) < len(flown):
             said.append(
-                f"{name}: {len(flown) - len(counted)} of {plural(len(flown), 'run')} never give the line model "
-                "its 8 points "
-                "and stay with the disc."
+                f"{name}: {len(flown) - len(counted)} of {plural(len(flown), 'run')} never have the line "
+                "model's 8 points and stay with the disc."
             )
         for quantity in t3.TABLE3_QUANTITIES:
             if quantity == "length" and model == "disc":
@@ -91,9 +89,8 @@ def missing(cases: Cases) -> list[str]:
                 said.append(f"{name}: {plural(errors.without_estimate, 'run')} without {SYMBOLS[quantity]}.")
             if errors.without_percent:
                 said.append(
-                    f"{name}: {plural(errors.without_percent, 'run')} with {SYMBOLS[quantity]} = 0, of which no "
-                    "percentage can "
-                    "be taken."
+                    f"{name}: {plural(errors.without_percent, 'run')} with {SYMBOLS[quantity]} = 0, for which there is "
+                    "no percentage."
                 )
     return said
 
@@ -125,6 +122,5 @@ def fraction_effect(cases: Cases) -> str:
     narrower = sum(ratio < 1.0 for ratio in ratios)
     return (
         f"Over the last {levels[0] * 100:.0f} % alone, {narrower} of the {len(ratios)} ranges are narrower than "
-        "over all "
-        f"solved images; the median ratio is {number(float(np.median(ratios)))}."
+        f"over all solved images; the median ratio is {number(float(np.median(ratios)))}."
     )

@@ -1,4 +1,4 @@
-/* Flies towards a mast of 6 m by 30 m that stands 200 m ahead and prints what is known of it. SPDX-License-Identifier: MIT */
+/* Flies towards a mast of 6 m by 30 m, 200 m ahead, and prints its estimate. SPDX-License-Identifier: MIT */
 #include <stdio.h>
 
 #include "goe.h"
@@ -19,7 +19,7 @@ static void look(int k, goe_image_t *image) {
     image->box.right_px = CENTER_PX + FOCAL_PX * 3.0f / ahead_m;
     image->box.top_px = CENTER_PX - FOCAL_PX * 15.0f / ahead_m;
     image->box.bottom_px = CENTER_PX + FOCAL_PX * 15.0f / ahead_m;
-    image->box.seen = GOE_SEES_BOX;
+    image->box.sides = GOE_SIDES_ALL;
 }
 
 void app_main(void);

@@ -10,13 +10,13 @@ namespace {
 /* Its own work queue. Stack: the deepest call is an image's update; README.md has the figures. Priority: as PX4's low one. */
 constexpr px4::wq_config_t work_queue{"wq:goe", 4600, -50};
 
-constexpr uint32_t CYCLE_US = 100000; /* assessments and what is published; also while no attitude comes */
+constexpr uint32_t CYCLE_US = 100000; /* assessments and publications; also while no attitude comes */
 constexpr uint64_t RANGE_FRESH_US = 300000;
 constexpr uint64_t DEAD_RECKONING_US =
     3000000; /* after which its end is believed: PX4's flag flickers once a second at first */
 constexpr float CM_PER_M = 100.f;
 constexpr float US_PER_S = 1.0e6f;
-constexpr float DISTANCE_MAX_M = 200.f; /* of obstacle_distance: what lies farther concerns nobody who reads it */
+constexpr float DISTANCE_MAX_M = 200.f;        /* of obstacle_distance: its readers need no more */
 constexpr uint32_t TARGET_DELAY_SD_US = 20000; /* one sigma of GOE_LT_DELAY */
 
 uint32_t whole_us(float s) { return static_cast<uint32_t>(US_PER_S * s); }
@@ -85,8 +85,8 @@ void Goe::use_parameters() {
     }
 }
 
-/* What ends tracks waits for their end while armed: neither an obstacle that is followed nor an order that stands is forgotten for a
- * parameter. */
+/* A change that ends tracks waits while armed: a parameter must not make the module forget an obstacle that is followed or an
+ * active order. */
 void Goe::follow_parameters() {
     parameter_update_s update;
     if (_parameter_update_sub.update(&update) || _had_wings != has_wings()) {
@@ -152,7 +152,7 @@ void Goe::take_features(uint32_t now_us) {
             _images.note_lost(latest - before - 1u); /* the topic's queue was full */
         }
         before = latest;
-        goe_px4::sighting(topic, _images.room());
+        goe_px4::sighting(topic, _images.free_place());
         _images.keep(now_us);
     }
 }
@@ -162,7 +162,7 @@ void Goe::take_tunnel(uint32_t now_us) {
     unsigned offset = 0;
     if (_tunnel_sub.update(&topic) && (_parameters.inputs & GOE_IN_TUNNEL) != 0 &&
         goe_px4::is_addressed(topic, _vehicle_status.system_id, _vehicle_status.component_id)) {
-        while (goe_px4::next_of_tunnel(topic, offset, _images.room())) {
+        while (goe_px4::next_of_tunnel(topic, offset, _images.free_place())) {
             _images.keep(now_us);
         }
     }
@@ -172,7 +172,7 @@ void Goe::take_landing_target(uint32_t now_us) {
     irlock_report_s topic;
     if (_landing_target_sub.update(&topic) && (_parameters.inputs & GOE_IN_LANDING_TARGET) != 0 &&
         goe_px4::sighting(topic, _used.estimator, whole_us(_parameters.target_delay_s), TARGET_DELAY_SD_US,
-                          _images.room())) {
+                          _images.free_place())) {
         _images.keep(now_us);
     }
 }
@@ -216,8 +216,8 @@ void Goe::publish_obstacles(const goe_flight_assessment_t &assessment, uint64_t 
 #ifdef GOE_HAS_DETECT_AND_AVOID
         if ((_parameters.outputs & GOE_OUT_DETECT_AND_AVOID) != 0) {
             const float own_ned_m[3] = {_position.x, _position.y, _position.z};
-            (void)_detect_and_avoid_pub.publish(
-                goe_px4::detect_and_avoid(found, slot, assessment, own_ned_m, _used.flight.violation_max, now_us));
+            (void)_detect_and_avoid_pub.publish(goe_px4::detect_and_avoid(
+                found, slot, assessment, own_ned_m, _used.flight.conflict_probability_max, now_us));
         }
 #endif
     }
@@ -285,17 +285,17 @@ void Goe::follow_orders(const goe_flight_assessment_t &assessment, uint64_t now_
 }
 
 /* Orders, once each; at most 50 characters go to a ground station. */
-void Goe::tell_operator(const goe_flight_assessment_t &assessment) {
-    if (assessment.action == static_cast<goe_flight_action_t>(_told_action)) {
+void Goe::report_operator(const goe_flight_assessment_t &assessment) {
+    if (assessment.action == static_cast<goe_flight_action_t>(_reported_action)) {
         return;
     }
-    _told_action = static_cast<uint8_t>(assessment.action);
+    _reported_action = static_cast<uint8_t>(assessment.action);
     if (assessment.action == GOE_FLIGHT_NONE) {
         mavlink_log_info(&_mavlink_log_pub, "goe: the order ends");
     } else {
-        const char *const who = _orders.overruled() ? " (overruled)" : _orders.flown() ? "" : " (told only)";
+        const char *const who = _orders.overruled() ? " (overruled)" : _orders.flown() ? "" : " (reported only)";
         mavlink_log_critical(&_mavlink_log_pub, "goe: obstacle in %.0f s, %s%s",
-                             static_cast<double>(assessment.hazard.time_s), goe_flight_action_text(assessment.action),
+                             static_cast<double>(assessment.hazard.tcpa_s), goe_flight_action_text(assessment.action),
                              who);
     }
 }
@@ -325,7 +325,7 @@ void Goe::assess(uint64_t now_us) {
         _in_use = goe_flight_init(&_flight, sizeof _flight, &_used.estimator, &_used.flight, nullptr) == GOE_FLIGHT_OK;
     }
     follow_orders(assessment, now_us);
-    tell_operator(assessment);
+    report_operator(assessment);
     report_dead_reckoning(now_us);
     pthread_mutex_lock(&_overview_lock);
     publish_obstacles(assessment, now_us);

@@ -76,7 +76,7 @@ class Goe final : public GoeModuleBase, public px4::ScheduledWorkItem {
     void publish_distances(uint64_t now_us);
     void publish_status(const goe_flight_assessment_t &assessment, uint64_t now_us);
     void follow_orders(const goe_flight_assessment_t &assessment, uint64_t now_us);
-    void tell_operator(const goe_flight_assessment_t &assessment);
+    void report_operator(const goe_flight_assessment_t &assessment);
     void report_dead_reckoning(uint64_t now_us);
 
     uORB::SubscriptionCallbackWorkItem _attitude_sub{this, ORB_ID(vehicle_attitude)};
@@ -126,7 +126,7 @@ class Goe final : public GoeModuleBase, public px4::ScheduledWorkItem {
     uint8_t _phase{GOE_FLIGHT_FLYING};
     uint8_t _self_check{0};
     uint64_t _assessed_us{0};
-    uint8_t _told_action{GOE_FLIGHT_NONE};
+    uint8_t _reported_action{GOE_FLIGHT_NONE};
     bool _dead_reckoning{false};
     uint64_t _dead_reckoning_us{0}; /* when PX4 last said so */
     GoeOverview _overview{};        /* for `goe status`: written and read under the lock */

@@ -20,7 +20,7 @@ constexpr uint64_t LANDING_FRESH_US =
 
 static_assert(GOE_FLIGHT_SECTORS == sizeof(obstacle_distance_s::distances) / sizeof(uint16_t), "one to one");
 static_assert(static_cast<int>(goe_features_s::TIME_BASE_AGE) == static_cast<int>(GOE_FLIGHT_AGE), "same numbers");
-static_assert(goe_features_s::SEES_BOX == GOE_SEES_BOX, "same bits");
+static_assert(goe_features_s::SIDES_ALL == GOE_SIDES_ALL, "same bits");
 
 float known(float value, bool is_known) { return is_known ? value : NAN; }
 
@@ -124,13 +124,13 @@ void sighting(const goe_features_s &topic, goe_mavlink_sighting_t &to) {
     detection.box.top_px = topic.box[1];
     detection.box.right_px = topic.box[2];
     detection.box.bottom_px = topic.box[3];
-    detection.box.seen = topic.seen;
+    detection.box.sides = topic.sides;
     goe_pixel_t *const point[] = {&detection.left,      &detection.right,     &detection.top,
                                   &detection.base_left, &detection.base_near, &detection.base_right};
     for (unsigned i = 0; i < sizeof point / sizeof point[0]; i++) {
         point[i]->u_px = topic.u[i];
         point[i]->v_px = topic.v[i];
-        point[i]->seen = (topic.points >> i & 1u) != 0u;
+        point[i]->visible = (topic.points >> i & 1u) != 0u;
     }
 }
 
@@ -178,19 +178,19 @@ bool sighting(const irlock_report_s &topic, const goe_settings_t &settings, uint
 
 /* -------------------------------------------------------------------------------------------------------------- out -- */
 
-static void tell_hazard(const goe_flight_obstacle_t &from, goe_obstacle_s &topic) {
+static void report_hazard(const goe_flight_obstacle_t &from, goe_obstacle_s &topic) {
     const goe_hazard_t &hazard = from.hazard;
     const bool has_top = from.has_hazard && hazard.has_clearance;
-    topic.time_to = known(hazard.time_s, from.has_hazard);
-    topic.time_to_sd = known(hazard.time_sd_s, from.has_hazard);
-    topic.miss = known(hazard.miss_m, from.has_hazard);
-    topic.miss_sd = known(hazard.miss_sd_m, from.has_hazard);
+    topic.tcpa = known(hazard.tcpa_s, from.has_hazard);
+    topic.tcpa_sd = known(hazard.tcpa_sd_s, from.has_hazard);
+    topic.dcpa = known(hazard.dcpa_m, from.has_hazard);
+    topic.dcpa_sd = known(hazard.dcpa_sd_m, from.has_hazard);
     topic.clearance = known(hazard.clearance_m, has_top);
     topic.clearance_sd = known(hazard.clearance_sd_m, has_top);
-    topic.violation = known(hazard.violation, from.has_hazard);
+    topic.conflict_probability = known(hazard.conflict_probability, from.has_hazard);
 }
 
-static void tell_size(const goe_flight_obstacle_t &from, goe_obstacle_s &topic) {
+static void report_size(const goe_flight_obstacle_t &from, goe_obstacle_s &topic) {
     const bool has_height = (from.valid & GOE_HAS_HEIGHT) != 0u;
     topic.radius = from.radius_m;
     topic.width = known(from.width_m, (from.valid & GOE_HAS_WIDTH) != 0u);
@@ -209,7 +209,7 @@ goe_obstacle_s obstacle(const goe_flight_t &flight, const goe_flight_obstacle_t 
     topic.id = from.id;
     topic.model = static_cast<uint8_t>(from.model);
     topic.suspect = from.suspect;
-    topic.passed = from.passed;
+    topic.receding = from.receding;
     topic.in_view = from.in_view;
     topic.worst = assessment.worst == slot;
     topic.avoided = assessment.avoided == slot;
@@ -222,8 +222,8 @@ goe_obstacle_s obstacle(const goe_flight_t &flight, const goe_flight_obstacle_t 
     topic.lon = flight.origin_known ? static_cast<double>(from.lon_e7) / E7_PER_DEG : unknown;
     memcpy(topic.nearest, from.nearest_ned_m, sizeof topic.nearest);
     topic.age = from.age_s;
-    tell_size(from, topic);
-    tell_hazard(from, topic);
+    report_size(from, topic);
+    report_hazard(from, topic);
     return topic;
 }
 
@@ -272,27 +272,28 @@ obstacle_distance_s distances(const goe_flight_t &flight, uint16_t max_cm, uint6
 namespace {
 
 uint8_t conflict_level(const goe_flight_obstacle_t &from, int slot, const goe_flight_assessment_t &assessment,
-                       float violation_max) {
+                       float conflict_probability_max) {
     if (assessment.avoided == slot && assessment.action != GOE_FLIGHT_NONE) {
         return assessment.late ? detect_and_avoid_s::DAA_CONFLICT_LVL_CRITICAL
                                : detect_and_avoid_s::DAA_CONFLICT_LVL_HIGH;
     }
-    const bool meets = from.has_hazard && !from.passed && from.hazard.violation >= violation_max;
+    const bool meets =
+        from.has_hazard && !from.receding && from.hazard.conflict_probability >= conflict_probability_max;
     return meets ? detect_and_avoid_s::DAA_CONFLICT_LVL_LOW : detect_and_avoid_s::DAA_CONFLICT_LVL_NONE;
 }
 
 /* The distance in space came a month after the others. */
-template <typename T> auto tell_distance(T &topic, float distance_m, int) -> decltype(topic.aircraft_dist, void()) {
+template <typename T> auto report_distance(T &topic, float distance_m, int) -> decltype(topic.aircraft_dist, void()) {
     topic.aircraft_dist = distance_m;
 }
 
-template <typename T> void tell_distance(T &, float, long) {}
+template <typename T> void report_distance(T &, float, long) {}
 
 } // namespace
 
 detect_and_avoid_s detect_and_avoid(const goe_flight_obstacle_t &from, int slot,
                                     const goe_flight_assessment_t &assessment, const float own_ned_m[3],
-                                    float violation_max, uint64_t now_us) {
+                                    float conflict_probability_max, uint64_t now_us) {
     detect_and_avoid_s topic{};
     const float north_m = from.nearest_ned_m[0] - own_ned_m[0];
     const float east_m = from.nearest_ned_m[1] - own_ned_m[1];
@@ -300,11 +301,11 @@ detect_and_avoid_s detect_and_avoid(const goe_flight_obstacle_t &from, int slot,
     topic.timestamp = now_us;
     topic.unique_id = from.id;
     topic.unique_id_encoding = detect_and_avoid_s::UNIQUE_ID_ENCODING_UAS_ID;
-    topic.conflict_level = conflict_level(from, slot, assessment, violation_max);
+    topic.conflict_level = conflict_level(from, slot, assessment, conflict_probability_max);
     topic.aircraft_dist_hor = sqrtf(north_m * north_m + east_m * east_m);
     topic.aircraft_dist_vert = fabsf(down_m);
-    topic.expected_min_dist_time = known(from.hazard.time_s, from.has_hazard);
-    tell_distance(topic, sqrtf(north_m * north_m + east_m * east_m + down_m * down_m), 0);
+    topic.expected_min_dist_time = known(from.hazard.tcpa_s, from.has_hazard);
+    report_distance(topic, sqrtf(north_m * north_m + east_m * east_m + down_m * down_m), 0);
     return topic;
 }
 

@@ -35,7 +35,7 @@ inline uint32_t time_us(uint64_t timestamp) { return static_cast<uint32_t>(times
 
 goe_flight_attitude_t attitude(const vehicle_attitude_s &topic);
 
-/* Heights above the ground, m, that other topics tell. */
+/* Heights above the ground, m, from other topics. */
 struct Heights {
     bool has_range{false}, has_home{false};
     float range_m{0.f}; /* by a distance sensor that looks down */
@@ -84,11 +84,11 @@ void status(const goe_flight_t &flight, const goe_flight_assessment_t &assessmen
 obstacle_distance_s distances(const goe_flight_t &flight, uint16_t max_cm, uint64_t now_us);
 
 #ifdef GOE_HAS_DETECT_AND_AVOID
-/* Level: LOW from violation_max on, HIGH when the order is about it, CRITICAL when that is late. Distances: now, to the nearest
+/* Level: LOW from conflict_probability_max on, HIGH when the order is about it, CRITICAL when that is late. Distances: now, to the nearest
  * point of the obstacle. unique_id: the detector's. */
 detect_and_avoid_s detect_and_avoid(const goe_flight_obstacle_t &from, int slot,
                                     const goe_flight_assessment_t &assessment, const float own_ned_m[3],
-                                    float violation_max, uint64_t now_us);
+                                    float conflict_probability_max, uint64_t now_us);
 #endif
 
 } // namespace goe_px4

@@ -10,8 +10,8 @@ void GoeImages::drop() {
 }
 
 void GoeImages::note_lost(unsigned images) {
-    const unsigned room = UINT16_MAX - _overdue;
-    _overdue = static_cast<uint16_t>(_overdue + (images < room ? images : room));
+    const unsigned free_place = UINT16_MAX - _overdue;
+    _overdue = static_cast<uint16_t>(_overdue + (images < free_place ? images : free_place));
 }
 
 void GoeImages::give_up() {

@@ -4,14 +4,14 @@
 #include "goe_flight.h"
 #include "goe_mavlink_map.h"
 
-/* First in, first out. A sighting holds a pointer into itself, so that it is filled where it stays. */
+/* First in, first out. A sighting contains a pointer into itself, so it is filled in place. */
 class GoeImages {
   public:
     static constexpr unsigned ROOM = 8;
     static constexpr uint32_t WAIT_MAX_US = 500000; /* a pose that has not come by then comes no more */
 
     /* Room for one more, to be filled and then kept. If too many wait the oldest one goes then, and is counted. */
-    goe_mavlink_sighting_t &room() { return _image[(_first + _count) % PLACES]; }
+    goe_mavlink_sighting_t &free_place() { return _image[(_first + _count) % PLACES]; }
     void keep(uint32_t now_us);
     void note_lost(unsigned images); /* that never came here: counted as overdue */
 

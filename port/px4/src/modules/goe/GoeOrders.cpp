@@ -7,9 +7,9 @@
 namespace {
 
 constexpr uint64_t REPEAT_US = 500000; /* without an acknowledgement */
-constexpr uint8_t RESUMES_MAX = 5;     /* times that the mission is asked for, until that is acknowledged */
+constexpr uint8_t RESUMES_MAX = 5;     /* requests for the mission, until acknowledged */
 constexpr float TOO_LOW_M = 1.f;       /* by which PX4 may hold lower than the go-around requires */
-constexpr float TARGET_MOVED_M = 5.f;  /* from which on the target is sent anew */
+constexpr float TARGET_MOVED_M = 5.f;  /* from which on the target is sent again */
 constexpr float CHANGE_MODE = 1.f;     /* DO_REPOSITION, param2: into Hold */
 constexpr float DEFAULT_SPEED = -1.f;  /* ... param1 */
 constexpr float CUSTOM_MODE = 1.f;     /* DO_SET_MODE, param1 */
@@ -136,8 +136,8 @@ bool GoeOrders::may_resume(const Vehicle &vehicle) const {
            vehicle.nav_state == vehicle_status_s::NAVIGATION_STATE_AUTO_LOITER;
 }
 
-/* The layer ends an order when the obstacle lies behind, or the course back is clear of it, and then still knows its place; or when
- * its track has ended. What is only lost from sight may lie ahead in the mission. */
+/* The layer ends an order when the obstacle is behind, or the course back is clear of it, and its position is still known; or when
+ * its track has ended. An obstacle that is only out of view may be ahead in the mission. */
 bool GoeOrders::is_past(const Vehicle &vehicle) const { return vehicle.obstacle_known && _action != GOE_FLIGHT_HOLD; }
 
 bool GoeOrders::end(const Vehicle &vehicle, bool resume, vehicle_command_s &command) {

@@ -9,9 +9,9 @@
 #include "goe_flight.h"
 
 /* Left, right, climb and hold become DO_REPOSITION with a change of mode to Hold; again when the target moves by 5 m, and until
- * PX4 acknowledges it. Go around becomes DO_GO_AROUND, and when PX4 has taken that, DO_REPOSITION upwards where it holds too low for the
- * obstacle's top. Only while armed, in Mission or Hold (go around: also in Land). A pilot or
- * a failsafe that chooses another mode is not fought: until the end of the order nothing more is sent. The mission goes on only
+ * PX4 acknowledges it. Go around becomes DO_GO_AROUND, and when PX4 has taken that, DO_REPOSITION upwards if its height is too low
+ * for the obstacle's top. Only while armed, in Mission or Hold (go around: also in Land). A pilot or
+ * a failsafe that chooses another mode has priority: no command follows until the end of the order. The mission continues only
  * when the obstacle is known to be passed. */
 class GoeOrders {
   public:
@@ -32,13 +32,13 @@ class GoeOrders {
     bool follow(const goe_flight_assessment_t &assessment, const Vehicle &vehicle, int32_t react, bool resume,
                 vehicle_command_s &command);
 
-    /* What is answered to a command of this system. */
+    /* Acknowledgements of a command of this system. */
     void take(const vehicle_command_ack_s &answer);
 
     /* What the order is about, or the latest one was; -1: nothing any more, the layer has given it up. */
     int slot() const { return _slot; }
 
-    /* The order that stands was given to PX4. */
+    /* The active order was given to PX4. */
     bool flown() const { return _given; }
     bool overruled() const { return _overruled; }
     uint16_t refused() const { return _refused; }

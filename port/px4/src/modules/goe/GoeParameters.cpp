@@ -43,7 +43,7 @@ const Entry numbers[] = {
     GOE_AT(GOE_CAM_X, estimator.camera.offset_m[0]),
     GOE_AT(GOE_CAM_Y, estimator.camera.offset_m[1]),
     GOE_AT(GOE_CAM_Z, estimator.camera.offset_m[2]),
-    GOE_AT(GOE_GROUND_SD, estimator.navigation.ground_m),
+    GOE_AT(GOE_GROUND_SD, estimator.navigation.terrain_height_sd_m),
     GOE_AT(GOE_DELAY, flight.delay_s),
     GOE_AT(GOE_HOME_SD, flight.home_sd_m),
     GOE_AT(GOE_MARGIN, flight.margin_m),
@@ -120,9 +120,9 @@ void goe_parameters_read(GoeParameters &parameters, bool has_wings) {
     memset(&parameters, 0, sizeof parameters);
     goe_settings_default(&parameters.estimator);
     goe_flight_settings_default(&parameters.flight);
-    parameters.estimator.navigation.attitude_bias_deg = ATTITUDE_BIAS_DEG;
-    parameters.estimator.navigation.attitude_drift_deg = ATTITUDE_DRIFT_DEG;
-    parameters.estimator.navigation.attitude_white_deg = ATTITUDE_WHITE_DEG;
+    parameters.estimator.navigation.attitude_bias_sd_deg = ATTITUDE_BIAS_DEG;
+    parameters.estimator.navigation.attitude_walk_sd_deg = ATTITUDE_DRIFT_DEG;
+    parameters.estimator.navigation.attitude_white_sd_deg = ATTITUDE_WHITE_DEG;
     for (const Entry &entry : numbers) {
         read<float>(entry, parameters);
     }

@@ -11,7 +11,7 @@ enum GoeOutput : int32_t { GOE_OUT_DISTANCES = 1, GOE_OUT_DETECT_AND_AVOID = 2 }
 enum GoeReact : int32_t { GOE_REACT_REPOSITION = 1, GOE_REACT_GO_AROUND = 2 };
 
 struct GoeParameters {
-    /* What the layer is initialised with: a change ends all tracks. */
+    /* Settings at initialization: a change ends all tracks. */
     goe_settings_t estimator;
     goe_flight_settings_t flight;
     /* What takes effect at once. */
@@ -21,9 +21,9 @@ struct GoeParameters {
     float narrow_loiter_m;
 };
 
-/* All defaults of the settings, then what was measured with PX4, what the vehicle's own parameters say, and what the parameters say.
+/* All defaults of the settings, then the values measured with PX4, those of the vehicle's own parameters, and those of the parameters.
  * Marks them as used, so that ground stations list them. Without wings there is no loiter circle. */
 void goe_parameters_read(GoeParameters &parameters, bool has_wings);
 
-/* Whether the layer would have to be initialised again. */
+/* Whether the layer would have to be initialized again. */
 bool goe_parameters_differ(const GoeParameters &a, const GoeParameters &b);

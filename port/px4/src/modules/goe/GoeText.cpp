@@ -36,7 +36,7 @@ float place_sd_m(const goe_obstacle_s &obstacle) {
     return sqrtf(0.5f * (obstacle.covariance[0] + obstacle.covariance[2]));
 }
 
-void tell_settings(const GoeOverview &o, char *line) {
+void report_settings(const GoeOverview &o, char *line) {
     const goe_status_s &s = o.status;
     if (!s.settings_in_use) {
         snprintf(line, GOE_TEXT_LINE, "settings   NOT IN USE, nothing is done: %s is out of range or not set",
@@ -50,7 +50,7 @@ void tell_settings(const GoeOverview &o, char *line) {
     }
 }
 
-void tell_detector(const goe_status_s &s, char *line) {
+void report_detector(const goe_status_s &s, char *line) {
     if (is_known(s.delay_mean)) {
         snprintf(line, GOE_TEXT_LINE, "detector   %s, %.1f images/s, %.0f ms from exposure to here (at most %.0f)",
                  yes(s.detector_alive), number(s.image_rate), number(s.delay_mean), number(s.delay_max));
@@ -59,13 +59,13 @@ void tell_detector(const goe_status_s &s, char *line) {
     }
 }
 
-void tell_images(const goe_status_s &s, char *line) {
+void report_images(const goe_status_s &s, char *line) {
     snprintf(line, GOE_TEXT_LINE,
              "images     %u taken, %u too late, %u waited in vain, %u refused, %u detections too weak", s.taken,
              s.late_images, s.overdue, s.refused, s.weak);
 }
 
-void tell_tracks(const goe_status_s &s, char *line) {
+void report_tracks(const goe_status_s &s, char *line) {
     const bool nothing = s.obstacles == 0;
     snprintf(line, GOE_TEXT_LINE, "obstacles  %s%u of %d; tracks ended by resets: %u, no room for %u",
              nothing && !(s.detector_alive && s.pose_alive) ? "NOT KNOWN, " : "", s.obstacles, GOE_FLIGHT_SLOTS, s.lost,
@@ -85,9 +85,9 @@ const char *phase_text(uint8_t phase) {
     }
 }
 
-void tell_order(const GoeOverview &o, char *line) {
+void report_order(const GoeOverview &o, char *line) {
     const goe_status_s &s = o.status;
-    const char *const who = s.overruled ? ", overruled" : s.flown ? ", given to PX4" : ", told only";
+    const char *const who = s.overruled ? ", overruled" : s.flown ? ", given to PX4" : ", reported only";
     if (s.action == goe_status_s::ACTION_NONE) {
         snprintf(line, GOE_TEXT_LINE, "order      none%s%s", o.react == 0 ? "; GOE_REACT is 0: none is ever flown" : "",
                  phase_text(o.phase));
@@ -98,7 +98,7 @@ void tell_order(const GoeOverview &o, char *line) {
     }
 }
 
-void tell_place(const GoeOverview &o, const goe_obstacle_s &obstacle, char *line) {
+void report_place(const GoeOverview &o, const goe_obstacle_s &obstacle, char *line) {
     char size[40] = "";
     int used = 0;
     if (is_known(obstacle.width)) {
@@ -113,48 +113,48 @@ void tell_place(const GoeOverview &o, const goe_obstacle_s &obstacle, char *line
              obstacle.in_view ? ", in view" : ", not in view", obstacle.suspect ? ", SUSPECT" : "");
 }
 
-void tell_hazard(const goe_obstacle_s &obstacle, char *line) {
+void report_hazard(const goe_obstacle_s &obstacle, char *line) {
     char over[32] = "";
     if (is_known(obstacle.clearance)) {
         snprintf(over, sizeof over, ", %.0f m %s its top", number(fabsf(obstacle.clearance)),
                  obstacle.clearance < 0.f ? "below" : "over");
     }
-    if (!is_known(obstacle.miss)) {
+    if (!is_known(obstacle.dcpa)) {
         snprintf(line, GOE_TEXT_LINE, "     its hazard is not known");
-    } else if (obstacle.passed) {
+    } else if (obstacle.receding) {
         snprintf(line, GOE_TEXT_LINE, "     passed: its distance grows");
     } else {
-        snprintf(line, GOE_TEXT_LINE, "     in %.1f +- %.1f s %.0f m beside it%s; %.0f %% to violate the margins%s",
-                 number(obstacle.time_to), number(obstacle.time_to_sd), number(obstacle.miss), over,
-                 number(PER_CENT * obstacle.violation), obstacle.worst ? ", worst" : "");
+        snprintf(line, GOE_TEXT_LINE, "     in %.1f +- %.1f s %.0f m past it%s; %.0f %% to violate the margins%s",
+                 number(obstacle.tcpa), number(obstacle.tcpa_sd), number(obstacle.dcpa), over,
+                 number(PER_CENT * obstacle.conflict_probability), obstacle.worst ? ", worst" : "");
     }
 }
 
-void tell_arithmetic(const goe_status_s &s, char *line) {
+void report_arithmetic(const goe_status_s &s, char *line) {
     snprintf(line, GOE_TEXT_LINE, "arithmetic %s (self check 0x%02x)",
              s.self_check == 0 ? "right, the bits of any host" : "NOT that of the tests", s.self_check);
 }
 
-void tell_state(const GoeOverview &o, unsigned number_of_line, char *line) {
+void report_state(const GoeOverview &o, unsigned number_of_line, char *line) {
     switch (number_of_line) {
         case 0:
-            tell_arithmetic(o.status, line);
+            report_arithmetic(o.status, line);
             break;
         case 1:
-            tell_settings(o, line);
+            report_settings(o, line);
             break;
         case 2:
             snprintf(line, GOE_TEXT_LINE, "pose       %s%s, jumps of PX4's filter taken along: %u",
                      yes(o.status.pose_alive), o.status.dead_reckoning ? ", by dead reckoning" : "", o.status.resets);
             break;
         case 3:
-            tell_detector(o.status, line);
+            report_detector(o.status, line);
             break;
         case 4:
-            tell_images(o.status, line);
+            report_images(o.status, line);
             break;
         default:
-            tell_order(o, line);
+            report_order(o, line);
             break;
     }
 }
@@ -180,7 +180,7 @@ const char *goe_text_parameter(const char *setting) {
         {"camera.offset_m[0]", "GOE_CAM_X"},
         {"camera.offset_m[1]", "GOE_CAM_Y"},
         {"camera.offset_m[2]", "GOE_CAM_Z"},
-        {"navigation.ground_m", "GOE_GROUND_SD"},
+        {"navigation.terrain_height_sd_m", "GOE_GROUND_SD"},
         {"delay_s", "GOE_DELAY"},
         {"home_sd_m", "GOE_HOME_SD"},
         {"margin_m", "GOE_MARGIN"},
@@ -200,12 +200,12 @@ const char *goe_text_parameter(const char *setting) {
 bool goe_text_status(const GoeOverview &overview, unsigned number_of_line, char line[GOE_TEXT_LINE]) {
     line[0] = '\0';
     if (number_of_line < LINES_OF_STATE) {
-        tell_state(overview, number_of_line, line);
+        report_state(overview, number_of_line, line);
         return true;
     }
     const unsigned rest = number_of_line - LINES_OF_STATE;
     if (rest == 0) {
-        tell_tracks(overview.status, line);
+        report_tracks(overview.status, line);
         return true;
     }
     const unsigned index = (rest - 1u) / LINES_OF_OBSTACLE;
@@ -213,9 +213,9 @@ bool goe_text_status(const GoeOverview &overview, unsigned number_of_line, char 
         return false;
     }
     if ((rest - 1u) % LINES_OF_OBSTACLE == 0u) {
-        tell_place(overview, overview.obstacle[index], line);
+        report_place(overview, overview.obstacle[index], line);
     } else {
-        tell_hazard(overview.obstacle[index], line);
+        report_hazard(overview.obstacle[index], line);
     }
     return true;
 }

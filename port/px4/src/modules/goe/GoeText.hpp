@@ -7,7 +7,7 @@
 
 #include "goe_flight.h"
 
-/* What the operator is told of: copies of what was published last. */
+/* Content of the operator's report: copies of the latest publications. */
 struct GoeOverview {
     goe_status_s status;
     goe_obstacle_s obstacle[GOE_FLIGHT_SLOTS]; /* with a position */

@@ -1,8 +1,8 @@
-/* A sensor loop: poses at 50 Hz, images at 10 Hz and a timer come through a queue, a thread of its own estimates, assesses and tells.
+/* A sensor loop: poses at 50 Hz, images at 10 Hz and a timer come through a queue to a thread that estimates, assesses and prints.
  * SPDX-License-Identifier: MIT
  *
- * In an application of yours sensor_thread() is what there is already: drivers, a link to the autopilot, a detector. It may be
- * several threads. goe_thread() alone touches `estimator`, so nothing needs a lock. */
+ * In your application existing code replaces sensor_thread(): drivers, a link to the autopilot, a detector. It may be
+ * several threads. goe_thread() alone uses `estimator`, so nothing needs a lock. */
 #include <zephyr/kernel.h>
 #include <zephyr/sys/printk.h>
 

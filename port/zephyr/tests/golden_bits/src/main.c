@@ -1,5 +1,5 @@
-/* Replays the embedded logs through the estimator and through the flight layer, and prints a hash of every bit that comes out:
- * the same as on every other target, or goe_self_check() tells why not. SPDX-License-Identifier: MIT */
+/* Replays the embedded logs through the estimator and through the flight layer, and prints a hash of every output bit:
+ * the same as on every other target, or goe_self_check() gives the reason. SPDX-License-Identifier: MIT */
 #include <zephyr/kernel.h>
 #include <zephyr/sys/printk.h>
 

@@ -1,4 +1,4 @@
-/* Fields that are used of PX4's topic: standin.hpp. SPDX-License-Identifier: MIT */
+/* The used fields of PX4's topic: see standin.hpp. SPDX-License-Identifier: MIT */
 #pragma once
 
 #include "standin.hpp"

@@ -1,4 +1,4 @@
-/* Fields that are used of PX4's topic: standin.hpp. SPDX-License-Identifier: MIT */
+/* The used fields of PX4's topic: see standin.hpp. SPDX-License-Identifier: MIT */
 #pragma once
 
 #include "standin.hpp"
@@ -7,7 +7,7 @@ struct position_setpoint_s {
     static constexpr uint8_t SETPOINT_TYPE_POSITION = 0, SETPOINT_TYPE_LOITER = 2, SETPOINT_TYPE_LAND = 4;
     bool valid;
     uint8_t type;
-    float alt; /* over the sea */
+    float alt; /* above sea level */
 };
 
 struct position_setpoint_triplet_s {

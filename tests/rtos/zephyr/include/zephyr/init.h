@@ -1,4 +1,4 @@
-/* Stands in for Zephyr's init.h: see kernel.h. SPDX-License-Identifier: MIT */
+/* A stand-in for Zephyr's init.h: see kernel.h. SPDX-License-Identifier: MIT */
 #ifndef STAND_IN_ZEPHYR_INIT_H
 #define STAND_IN_ZEPHYR_INIT_H
 

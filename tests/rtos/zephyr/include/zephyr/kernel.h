@@ -1,7 +1,7 @@
-/* Stands in for Zephyr's kernel.h on the host: the names that port/zephyr uses, and no more. Names, arguments and meanings were compared
+/* A stand-in for Zephyr's kernel.h on the host: only the names that port/zephyr uses. Names, arguments and meanings were compared
  * with Zephyr 3.4.0 on 2026-11-22. SPDX-License-Identifier: MIT
  *
- * Threads are the host's. Time passes at once whenever every thread waits and every queue is empty. */
+ * Threads are the host's. Time advances immediately when every thread waits and every queue is empty. */
 #ifndef STAND_IN_ZEPHYR_KERNEL_H
 #define STAND_IN_ZEPHYR_KERNEL_H
 
@@ -65,7 +65,7 @@ struct stand_in_thread {
 };
 typedef struct stand_in_thread *k_tid_t;
 void k_thread_start(k_tid_t thread);
-/* 300: after all that SYS_INIT calls. A thread with a delay waits for k_thread_start(). */
+/* 300: after all calls of SYS_INIT. A thread with a delay waits for k_thread_start(). */
 #define K_THREAD_DEFINE(name, stack_bytes, entry, p1, p2, p3, priority, options, delay_ms)                             \
     static struct stand_in_thread name##_thread = {0, entry, {p1, p2, p3}, stack_bytes, options};                      \
     __attribute__((constructor(300))) static void name##_start(void) {                                                 \

@@ -1,4 +1,4 @@
-/* Stands in for nuttx/config.h: what Kconfig makes, where a test has run it. SPDX-License-Identifier: MIT */
+/* A stand-in for nuttx/config.h: the output of Kconfig, if a test has run it. SPDX-License-Identifier: MIT */
 #ifndef STAND_IN_NUTTX_CONFIG_H
 #define STAND_IN_NUTTX_CONFIG_H
 

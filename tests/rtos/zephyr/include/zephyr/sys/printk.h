@@ -1,4 +1,4 @@
-/* Stands in for Zephyr's printk.h: see kernel.h. SPDX-License-Identifier: MIT */
+/* A stand-in for Zephyr's printk.h: see kernel.h. SPDX-License-Identifier: MIT */
 #ifndef STAND_IN_ZEPHYR_PRINTK_H
 #define STAND_IN_ZEPHYR_PRINTK_H
 

@@ -1,4 +1,4 @@
-/* Stands in for PX4's ModuleBase up to 1.16, a template: standin.hpp. SPDX-License-Identifier: MIT */
+/* A stand-in for PX4's ModuleBase up to 1.16, a template: see standin.hpp. SPDX-License-Identifier: MIT */
 #pragma once
 
 #include "module_usage.hpp"

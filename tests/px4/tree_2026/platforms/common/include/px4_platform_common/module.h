@@ -1,4 +1,4 @@
-/* Stands in for PX4's ModuleBase since 1.17, a class with a descriptor for each module: standin.hpp. SPDX-License-Identifier: MIT */
+/* A stand-in for PX4's ModuleBase since 1.17, a class with a descriptor for each module: see standin.hpp. SPDX-License-Identifier: MIT */
 #pragma once
 
 #include "module_usage.hpp"

@@ -1,5 +1,5 @@
 /* Probabilities of a violation. SPDX-License-Identifier: MIT */
-#include "hazard/goe_violation.h"
+#include "hazard/goe_conflict.h"
 
 #include "hazard/goe_approach.h"
 #include "maths/goe_scalar.h"
@@ -51,27 +51,28 @@ static float both(float p, float q, float correlation) {
     return independent + share * ((p < q ? p : q) - independent);
 }
 
-static void report(const goe_outline_t *o, const goe_course_t *course, const goe_approach_t *a, const goe_plan_t *plan,
-                   goe_covariance_t covariance, goe_hazard_t *hazard) {
+static void report(const goe_outline_t *o, const goe_course_t *course, const goe_approach_t *a,
+                   const goe_intent_t *intent, goe_covariance_t covariance, goe_hazard_t *hazard) {
     const goe_affine_t *miss = largest(a);
-    hazard->time_s = goe_bounded(a->time_s);
-    hazard->time_sd_s = a->time_sd_s;
-    hazard->miss_m = miss->value > 0.0f ? goe_bounded(miss->value) : 0.0f;
-    hazard->miss_sd_m = goe_affine_sigma(miss, covariance);
-    hazard->violation = margin_violation(o, course, a, plan->margin_m, covariance);
+    hazard->tcpa_s = goe_bounded(a->tcpa_s);
+    hazard->tcpa_sd_s = a->tcpa_sd_s;
+    hazard->dcpa_m = miss->value > 0.0f ? goe_bounded(miss->value) : 0.0f;
+    hazard->dcpa_sd_m = goe_affine_sigma(miss, covariance);
+    hazard->conflict_probability = margin_violation(o, course, a, intent->margin_m, covariance);
     if (hazard->has_clearance) {
         const float sd = goe_affine_sigma(&a->clearance, covariance);
         const float shared = goe_affine_covariance(miss, &a->clearance, covariance);
-        const float correlation = shared / goe_larger(hazard->miss_sd_m, SIGMA_MIN) / goe_larger(sd, SIGMA_MIN);
+        const float correlation = shared / goe_larger(hazard->dcpa_sd_m, SIGMA_MIN) / goe_larger(sd, SIGMA_MIN);
         hazard->clearance_m = goe_bounded(a->clearance.value);
         hazard->clearance_sd_m = sd;
-        hazard->violation =
-            both(hazard->violation, goe_affine_below(&a->clearance, plan->clearance_m, covariance), correlation);
+        hazard->conflict_probability =
+            both(hazard->conflict_probability, goe_affine_below(&a->clearance, intent->clearance_m, covariance),
+                 correlation);
     }
 }
 
-goe_plan_t goe_violation_relative(const goe_estimator_t *estimator, const goe_plan_t *plan) {
-    goe_plan_t relative = *plan;
+goe_intent_t goe_conflict_relative(const goe_estimator_t *estimator, const goe_intent_t *intent) {
+    goe_intent_t relative = *intent;
     if ((estimator->estimate.valid & GOE_HAS_VELOCITY) != 0u) {
         relative.velocity_ned_m_s[0] -= estimator->estimate.velocity_north_m_s;
         relative.velocity_ned_m_s[1] -= estimator->estimate.velocity_east_m_s;
@@ -79,7 +80,7 @@ goe_plan_t goe_violation_relative(const goe_estimator_t *estimator, const goe_pl
     return relative;
 }
 
-float goe_violation_ahead_s(const goe_estimator_t *estimator, const goe_plan_t *relative) {
+float goe_conflict_ahead_s(const goe_estimator_t *estimator, const goe_intent_t *relative) {
     goe_course_t course;
     const goe_estimate_t *estimate = &estimator->estimate;
     goe_approach_course(&estimator->motion, relative, &course);
@@ -88,13 +89,14 @@ float goe_violation_ahead_s(const goe_estimator_t *estimator, const goe_plan_t *
     return goe_larger(ahead_s < AHEAD_MAX_S ? ahead_s : AHEAD_MAX_S, relative->since_image_s);
 }
 
-static float velocity_sd_m_s(const goe_estimator_t *estimator, const goe_plan_t *plan) {
-    return plan->velocity_sd_m_s > 0.0f ? plan->velocity_sd_m_s : estimator->settings.navigation.velocity_bias_m_s;
+static float velocity_sd_m_s(const goe_estimator_t *estimator, const goe_intent_t *intent) {
+    return intent->velocity_sd_m_s > 0.0f ? intent->velocity_sd_m_s
+                                          : estimator->settings.navigation.velocity_bias_sd_m_s;
 }
 
-void goe_violation_add_plan(const goe_estimator_t *estimator, const goe_plan_t *plan, float ahead_s,
-                            goe_covariance_t covariance) {
-    const float sd_m = velocity_sd_m_s(estimator, plan) * ahead_s;
+void goe_conflict_add_intent(const goe_estimator_t *estimator, const goe_intent_t *intent, float ahead_s,
+                             goe_covariance_t covariance) {
+    const float sd_m = velocity_sd_m_s(estimator, intent) * ahead_s;
     covariance[GOE_X0][GOE_X0] += sd_m * sd_m;
     covariance[GOE_Z0][GOE_Z0] += sd_m * sd_m;
     covariance[GOE_HEIGHT][GOE_HEIGHT] += sd_m * sd_m;
@@ -106,8 +108,8 @@ static void fly_on(const goe_course_t *course, float s, goe_outline_t *outline) 
     outline->reference.z -= course->speed_m_s * s * course->ahead.z;
 }
 
-void goe_violation_foresee(const goe_estimator_t *estimator, const goe_plan_t *plan, goe_covariance_t covariance,
-                           goe_hazard_t *hazard) {
+void goe_conflict_foresee(const goe_estimator_t *estimator, const goe_intent_t *intent, goe_covariance_t covariance,
+                          goe_hazard_t *hazard) {
     goe_outline_t outline;
     goe_course_t course;
     goe_approach_t approach;
@@ -116,13 +118,13 @@ void goe_violation_foresee(const goe_estimator_t *estimator, const goe_plan_t *p
     if (!outline.box) {
         outline.half = goe_larger(outline.half, goe_bounded(goe_latest_reach(estimator)));
     }
-    goe_approach_course(&estimator->motion, plan, &course);
-    fly_on(&course, plan->since_image_s, &outline);
-    const float height_m = goe_latest_camera_height(estimator) + course.climb_m_s * plan->since_image_s -
+    goe_approach_course(&estimator->motion, intent, &course);
+    fly_on(&course, intent->since_image_s, &outline);
+    const float height_m = goe_latest_camera_height(estimator) + course.climb_m_s * intent->since_image_s -
                            (estimate->height_m - goe_latest_height_bias(estimator)); /* over the top now */
     goe_approach_find(&outline, &course, covariance, height_m, &approach);
     hazard->has_clearance = (estimate->valid & GOE_HAS_HEIGHT) != 0u;
-    report(&outline, &course, &approach, plan, covariance, hazard);
+    report(&outline, &course, &approach, intent, covariance, hazard);
 }
 
 #endif
