@@ -32,6 +32,7 @@ def start(profile: Path) -> Any:
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
     driver = webdriver.Chrome(options=options, service=Service(str(CHROMEDRIVER)))
     driver.set_script_timeout(HANG_S)
+    driver.get("about:blank")  # leaves the browser's own start page, whose requests would be counted
     return driver
 
 

@@ -16,6 +16,7 @@ from bench.__main__ import main as bench_main
 from bench.optimum.goals import command as goals
 from bench.optimum.goals import work
 from goe_tools.__main__ import main
+from goe_tools.live.modules import missing
 from synthetic_campaign import write_campaign
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -231,6 +232,18 @@ def test_demo(built: Path, set_up: None) -> None:
     assert Path(page) == built / "report.html"
     written = Path(page).read_text(encoding="utf-8")
     assert written.rstrip().endswith("</html>") and "of 60 collision courses" in written
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    (duration,) = re.findall(r"^tools/demo.sh +# (.*?):", readme, re.MULTILINE)
+    assert text.startswith(f"The demo takes {duration} ")
+    summary = text.split("What this showed, in simulation:")[1]
+    for question in ("How early", "How certain", "Collisions", "The paper"):
+        assert f"* {question}: " in summary
+    assert "goals met" not in text
+    live = re.findall(r"^Fly yourself, in a browser: +(.*)$", summary, re.MULTILINE)
+    assert live == ([] if missing() else [str(built / "live.html")])
+    if live:
+        assert Path(live[0]).exists() and summary.index("Fly yourself") < summary.index("The report:")
+        assert written.index('href="live.html"') < written.index('href="report_paper.html"')
 
 
 def test_the_example_prints_the_readme_s_figures(built: Path) -> None:

@@ -87,8 +87,8 @@ def _orders(campaign: Campaign) -> list[str]:
     if not parts:
         return []
     return [
-        "On collision courses, the flight layer gives its first order so long before the obstacle would be reached, "
-        f"median of the runs: {listed(parts)}. It waits until an order is needed; the range is known earlier."
+        "On collision courses, time from the flight layer's first order until the obstacle would be reached, median: "
+        f"{listed(parts)}. The flight layer waits until an order is necessary; the range is known earlier."
     ]
 
 

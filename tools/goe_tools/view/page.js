@@ -354,7 +354,7 @@
     const place = row < 0 ? "Not detected yet" : track.place[row], age = row < 0 ? 0 : now - track.columns.time[row];
     $("place").textContent = place;
     $("approach").textContent = row < 0 ? "" : track.approach[row];
-    const odds = row < 0 ? NaN : (track.columns.violation ?? [])[row];
+    const odds = row < 0 ? NaN : (track.columns.conflict_probability ?? [])[row];
     const act = row >= 0 && track.columns.act[row] > 0;
     if (odds >= 1) $("approach").textContent += `. Conflict probability ${odds.toFixed(0)} %${act ? ": act now" : ""}`;
     $("approach").parentElement.classList.toggle("too-close", act);

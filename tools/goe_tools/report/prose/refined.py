@@ -169,13 +169,13 @@ def early(goals: Goals) -> list[str]:
             for obstacle, value in ours.values.items()
         ]
         said.append(
-            f"{NOISE_NAMES.get(noise, noise)}: the error of Z₀ falls below 10 % for good so long before the obstacle "
-            f"is abeam: {listed(parts)} with the window method (medians over the paper's cases)."
+            f"{NOISE_NAMES.get(noise, noise)}: time before abeam from which on the error of Z₀ stays below 10 %: "
+            f"{listed(parts)} with the window method (medians over the paper's cases)."
         )
         own = ways.get("filter, own 2 sigma")
         if own is not None:
             parts = [f"{NAMES.get(o, o).lower()} {number(value, 3)} s" for o, value in own.values.items()]
-            said.append(f"goe's own 2σ fall below 10 % {listed(parts)} before.")
+            said.append(f"By goe's own 2σ: {listed(parts)}.")
     return said
 
 
