@@ -21,6 +21,7 @@ from .prose.words import listed
 from .style import NAMES, SYMBOLS, number
 
 COLLISION_COUNTS = ("runs", "collided_without", "collided_with")  # of avoid.Courses
+REAL = "field"  # noise of the goals: errors of real sensors
 KNOWN = 0.1  # of the distance: a range is called known if 2 sigma are below this share
 OWN = "filter, own 2 sigma"  # line of the goals: seconds before abeam from which the range is known
 GOALS_COMMAND = "python -m bench goals --json FILE"
@@ -95,13 +96,13 @@ def _orders(campaign: Campaign) -> list[str]:
 def early(campaign: Campaign, shown: Story | None) -> list[str]:
     said = of_approach(shown)
     if campaign.goals is not None:
-        said += rp.early(campaign.goals)
+        said += rp.early(campaign.goals, REAL)  # the figure has the others
     return said + _orders(campaign)
 
 
 def _early_card(campaign: Campaign, shown: Story | None) -> Card | None:
     rows = rf.early_rows(campaign.goals) if campaign.goals else {}
-    for ways in rows.values():
+    for ways in [rows[REAL]] if REAL in rows else []:
         values = [v for v in ways[OWN].values.values() if math.isfinite(v)] if OWN in ways else []
         if values:
             named = [f"{NAMES.get(o, o).lower()} {number(v, 2)}\u00a0s" for o, v in ways[OWN].values.items()]

@@ -157,9 +157,12 @@ def missed(goals: Goals) -> list[str]:
     return said
 
 
-def early(goals: Goals) -> list[str]:
+def early(goals: Goals, only: str | None = None) -> list[str]:
+    """``only``: of one kind of noise."""
     said = []
     for noise, ways in rf.early_rows(goals).items():
+        if only not in (None, noise):
+            continue
         ours, window = ways.get("filter, true error"), ways.get("window, true error")
         if ours is None or window is None:
             continue
