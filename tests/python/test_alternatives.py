@@ -79,9 +79,7 @@ def test_claims_of_the_page_follow_from_its_tables() -> None:
     found = recorded()
     for q in QUANTITIES:
         errors = {method: found["field", "median error", method][q] for method in NAMES}
-        assert (
-            min(errors, key=lambda method: errors[method] if math.isfinite(errors[method]) else math.inf) == "filter"
-        )
+        assert min(errors, key=lambda method: errors[method] if math.isfinite(errors[method]) else math.inf) == "filter"
     for q in ("orientation", "L"):
         ours = found["field", "answers", "filter"][q]
         assert any(found["field", "answers", method][q] > ours for method in RIVALS)

@@ -271,7 +271,8 @@ def test_rules_are_plans_that_grow_with_doubt_and_age() -> None:
     images = approach()
     images.box_px[-20:] = NAN
     rules = [
-        goe.Rule(15.0, 10.0, suspect_factor=2.0, stale_growth_m_s=3.0, since_image_s=0.2), goe.Rule(5.0, 4.0, 1.0, 0.0)
+        goe.Rule(15.0, 10.0, suspect_factor=2.0, stale_growth_m_s=3.0, since_image_s=0.2),
+        goe.Rule(5.0, 4.0, 1.0, 0.0),
     ]
     track = goe.run(settings(), images, rules=rules)
     estimator = goe.Estimator(settings())

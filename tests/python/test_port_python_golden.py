@@ -103,7 +103,12 @@ def hash_after(h: Hash, covariance: np.ndarray | None, hazard: goe.Hazard | None
     shown = hazard or goe.Hazard(0.0, 0.0, NONE, None, 0.0)
     clearance = shown.clearance or NONE
     h.numbers(
-        shown.tcpa_s, shown.dcpa.m, clearance.m, shown.conflict_probability, shown.tcpa_sd_s, shown.dcpa.sd_m,
+        shown.tcpa_s,
+        shown.dcpa.m,
+        clearance.m,
+        shown.conflict_probability,
+        shown.tcpa_sd_s,
+        shown.dcpa.sd_m,
         clearance.sd_m,
     )
     h.word(shown.clearance is not None)
@@ -167,7 +172,12 @@ def hash_hazard(h: Hash, hazard: goe.Hazard | None) -> None:
     shown = hazard or goe.Hazard(0.0, 0.0, NONE, None, 0.0)
     clearance = shown.clearance or NONE
     h.numbers(
-        shown.tcpa_s, shown.dcpa.m, clearance.m, shown.tcpa_sd_s, shown.dcpa.sd_m, clearance.sd_m,
+        shown.tcpa_s,
+        shown.dcpa.m,
+        clearance.m,
+        shown.tcpa_sd_s,
+        shown.dcpa.sd_m,
+        clearance.sd_m,
         shown.conflict_probability,
     )
     h.word(shown.clearance is not None)

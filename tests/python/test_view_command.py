@@ -93,9 +93,8 @@ def test_bad_usage(change: list[str], said: str, tmp_path: Path, capsys: pytest.
 
 
 @pytest.mark.parametrize(
-    "words_", [
-        ["--set", "point_noise_px=1"], ["--set", "detector.point_noise_px=x"], ["--margin", "-1"], ["--theme", "red"]
-    ]
+    "words_",
+    [["--set", "point_noise_px=1"], ["--set", "detector.point_noise_px=x"], ["--margin", "-1"], ["--theme", "red"]],
 )
 def test_bad_flags(words_: list[str], tmp_path: Path) -> None:
     with pytest.raises(SystemExit) as stopped:

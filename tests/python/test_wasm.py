@@ -83,13 +83,13 @@ def test_numbers_that_are_stated_twice_agree() -> None:
     assert plan in (ROOT / "README.md").read_text(encoding="utf-8")
     source = (ROOT / "lib" / "hazard" / "goe_decide.c").read_text(encoding="utf-8")
     (defaults,) = re.findall(r"by_default = \{(.*)f\};", source)
-    conflict_probability_max, act_within_s, doubt, stale_growth_m_s = map(float, defaults.split("f, "))
+    conflict_probability_max, act_within_s, suspect_factor, stale_growth_m_s = map(float, defaults.split("f, "))
     words = (
-        f"{rule['MARGIN_M']:g} m to the side, {rule['CLEARANCE_M']:g} m over the top, "
-        f"from {100 * conflict_probability_max:g} % on, "
-        f"if it may be reached within {act_within_s:g} s; "
-        f"both distances count {doubt:g} times while the estimate is suspect, "
-        f"and grow by {stale_growth_m_s:g} m"
+        f"within {rule['MARGIN_M']:g} m to the side and {rule['CLEARANCE_M']:g} m above the top "
+        f"with a probability of at least {100 * conflict_probability_max:g} %, "
+        f"and may reach the obstacle within {act_within_s:g} s. "
+        f"Both distances are {suspect_factor:g} times as large while the estimate is suspect, "
+        f"and grow by {stale_growth_m_s:g} m for each second without a new estimate."
     )
     assert words in (port / "page" / "page.html.j2").read_text(encoding="utf-8")
     approach = numbers((port / "approach.h").read_text(encoding="utf-8"), define)

@@ -97,7 +97,7 @@ __attribute__((noinline)) static size_t depth_of_decide(void) {
 }
 
 __attribute__((noinline)) static size_t depth_of_soonest(void) {
-    static const goe_hazard_t hazard = {.time_s = 10.0f, .tcpa_sd_s = 1.0f};
+    static const goe_hazard_t hazard = {.tcpa_s = 10.0f, .tcpa_sd_s = 1.0f};
     port_stack_paint();
     (void)goe_earliest_tcpa_s(&hazard);
     return port_stack_used();

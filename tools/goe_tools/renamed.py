@@ -14,4 +14,3 @@ LIST = ROOT / "sim_host" / "text" / "renamed_names_list.h"
 def names() -> dict[str, str]:
     """The new name of each old one; a value of an option with the option before it."""
     return dict(re.findall(r'^RENAMED\("([^"]+)", "([^"]+)"\)$', LIST.read_text(encoding="utf-8"), re.MULTILINE))
-

@@ -144,7 +144,5 @@ def run(amount: Amount) -> Result:
     ]
     if amount.long:
         found = items(count_readers(READERS), ROOT, strict=False)
-        results.append(
-            of_others("sim_host/, text readers", [item for item in found if item.file.startswith(READING)])
-        )
+        results.append(of_others("sim_host/, text readers", [item for item in found if item.file.startswith(READING)]))
     return Result([row for result in results for row in result.rows], "\n".join(result.report for result in results))

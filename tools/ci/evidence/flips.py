@@ -82,12 +82,8 @@ def rows(found: list[Count]) -> list[Row]:
     return [
         Row("one flipped bit: a trap, a sanitizer's finding, a hang", share(fatal, bits), "0", bits > 0 and fatal == 0),
         Row("... an output not finite, or not of its enumeration", share(bad, bits), "0", bits > 0 and bad == 0),
-        Row(
-            "... in settings and mounting, missed", share(missed, sealed_bits), "0", sealed_bits > 0 and missed == 0
-        ),
-        Row(
-            "... elsewhere: reported (corrupted, suspect, stale)", share(number(FOUND, track), open_bits), "", None
-        ),
+        Row("... in settings and mounting, missed", share(missed, sealed_bits), "0", sealed_bits > 0 and missed == 0),
+        Row("... elsewhere: reported (corrupted, suspect, stale)", share(number(FOUND, track), open_bits), "", None),
         Row("... never off by 5 sigma", share(number(["masked"], track), open_bits), "", None),
         Row("... off by 5 sigma for some images, then right", share(number(["was_wrong"], track), open_bits), "", None),
         Row("... silently off by 5 sigma to the end", share(number(["wrong"], track), open_bits), "measured", None),

@@ -175,9 +175,7 @@ def try_all(groups: list[list[Mutant]], jobs: int) -> list[Outcome]:
     _bench = Bench(folder, jobs)
     found = [kept.of_group(group) for group in groups]
     new = [group for group, known in zip(groups, found) if known is None]
-    new.sort(
-        key=lambda group: hash_of([], *group[0].key)
-    )  # a run stopped early has then tried some of every file
+    new.sort(key=lambda group: hash_of([], *group[0].key))  # a run stopped early has then tried some of every file
     outcomes = [outcome for known in found if known for outcome in known]
     with multiprocessing.get_context("fork").Pool(jobs) as pool:
         for of_group in pool.imap_unordered(try_group, new):

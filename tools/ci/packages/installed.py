@@ -129,9 +129,7 @@ class Sources:
         pairs = (line.split() for line in files[1].splitlines())
         version, archive = f"v{value('version')}", value("archive_sha256")
         mine = Installed(SOURCE, "unity", version, by, "unit tests", OTHERS["unity"], archive)
-        spare = (
-            f"unit tests, from the Debian source package {value('debian_source')} if the repository is unreachable"
-        )
+        spare = f"unit tests, from the Debian source package {value('debian_source')} if the repository is unreachable"
         return mine, replace(
             mine, version=f"v{other[1]}", why=spare, sha256="", files=tuple((name, digest) for digest, name in pairs)
         )

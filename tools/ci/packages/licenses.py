@@ -1,6 +1,5 @@
 """Licenses of the installed packages, as their owners state them, by SPDX names; others are unknown."""
 
-
 from __future__ import annotations
 
 LLVM = "Apache-2.0 WITH LLVM-exception"

@@ -62,9 +62,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--quick", action="store_true", help="fewer flights: takes a minute, gives no verdict")
     parser.add_argument("--only", metavar="GROUPS", help=f"some of {','.join(GROUPS)}")
     parser.add_argument("--json", type=Path, metavar="FILE", help="also write the figures to this file")
-    parser.add_argument(
-        "--worst", type=int, default=0, metavar="N", help="print the N worst flights, errors in sigmas"
-    )
+    parser.add_argument("--worst", type=int, default=0, metavar="N", help="print the N worst flights, errors in sigmas")
     parser.add_argument(
         "--half",
         choices=HALVES,
