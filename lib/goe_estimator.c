@@ -8,7 +8,7 @@
 
 #include "goe_guard.h"
 #include "goe_latest.h"
-#include "goe_settings.h"
+#include "goe_settings_internal.h"
 #include "image/goe_align.h"
 #include "image/goe_camera.h"
 #include "image/goe_ego_motion.h"

@@ -1,5 +1,5 @@
 /* Settings: defaults and ranges, from the list. SPDX-License-Identifier: MIT */
-#include "goe_settings.h"
+#include "goe_settings_internal.h"
 
 #include <string.h>
 

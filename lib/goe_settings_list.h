@@ -30,56 +30,56 @@
     X(camera.offset_m[2], REAL, "m", -1.0e4f, 1.0e4f, 0.0f, "lever arm, body down") \
     X(camera.width_px, REAL, "px", 0.0f, 1.0e5f, 0.0f, "width of the image; 0: not known") \
     X(camera.height_px, REAL, "px", 0.0f, 1.0e5f, 0.0f, "height of the image; 0: not known") \
-    X(camera.border_rel, REAL, "", 0.0f, 0.5f, 0.012f, "no side nearer to the border, of the image's width") \
-    X(camera.truncation_rel, REAL, "", 0.0f, 0.5f, 0.04f, "nearer to the border a box counts as cut, of the image's width")
+    X(camera.border_rel, REAL, "", 0.0f, 0.5f, 0.012f, "a side nearer to the border is not measured, of the image's width") \
+    X(camera.truncation_rel, REAL, "", 0.0f, 0.5f, 0.04f, "a box whose side is nearer to the border is cut, of the image's width")
 
 #define GOE_SETTINGS_GENERAL(X) \
     X(method, CHOICE, "", GOE_METHOD_MIN, GOE_METHOD_MAX, GOE_METHOD_MAX, "1 window, 2 filter") \
     X(model, CHOICE, "", GOE_MODEL_AUTO, GOE_MODEL_LINE, GOE_MODEL_AUTO, "1 auto, 2 disc, 3 line (filter: a box)") \
-    X(heading_auto, TRUTH, "", 0, 1, 1, "direction of Z: the vehicle's yaw at the first image") \
-    X(heading_deg, REAL, "deg", -360.0f, 360.0f, 0.0f, "direction of Z otherwise, clockwise from north")
+    X(heading_auto, TRUTH, "", 0, 1, 1, "Z is the vehicle's yaw at the track's first image") \
+    X(heading_deg, REAL, "deg", -360.0f, 360.0f, 0.0f, "otherwise Z has this heading, clockwise from north")
 
-/* Of every method: a intent without a sigma of its own takes it. */
+/* Of every method: an intent without a sigma of its own takes it. */
 #define GOE_SETTINGS_VELOCITY(X) \
-    X(navigation.velocity_bias_sd_m_s, REAL, "m/s", 0.0f, 100.0f, 0.05f, "constant error of the own velocity")
+    X(navigation.velocity_bias_sd_m_s, REAL, "m/s", 0.0f, 100.0f, 0.05f, "constant error of the own velocity, north and east")
 
 #if GOE_WITH_FILTER
 #define GOE_SETTINGS_FILTER(X) \
-    X(navigation.attitude_bias_sd_deg, REAL, "deg", 1.0e-3f, 30.0f, 0.5f, "constant attitude error, mounting included") \
-    X(navigation.attitude_white_sd_deg, REAL, "deg", 1.0e-4f, 30.0f, 0.1f, "attitude error that is new in each image") \
+    X(navigation.attitude_bias_sd_deg, REAL, "deg", 1.0e-3f, 30.0f, 0.5f, "constant attitude error, each body axis, mounting included") \
+    X(navigation.attitude_white_sd_deg, REAL, "deg", 1.0e-4f, 30.0f, 0.1f, "attitude error, new in each image") \
     X(navigation.attitude_walk_sd_deg, REAL, "deg/s^0.5", 0.0f, 30.0f, 0.0f, "random walk of the attitude error") \
-    X(navigation.height_bias_sd_m, REAL, "m", 1.0e-3f, 1.0e3f, 0.5f, "constant error of the height above ground") \
+    X(navigation.height_bias_sd_m, REAL, "m", 1.0e-3f, 1.0e3f, 0.5f, "constant error of pose.height_m") \
     X(navigation.position_walk_sd_m, REAL, "m/s^0.5", 0.0f, 100.0f, 0.05f, "random walk of the own position") \
-    X(navigation.position_white_sd_m, REAL, "m", 0.0f, 100.0f, 0.0f, "error of the own position that is new in each image; boxes") \
-    X(navigation.height_white_sd_m, REAL, "m", 0.0f, 1.0e3f, 0.0f, "error of the height that is new in each image") \
+    X(navigation.position_white_sd_m, REAL, "m", 0.0f, 100.0f, 0.0f, "error of each axis of the position, new in each image; boxes") \
+    X(navigation.height_white_sd_m, REAL, "m", 0.0f, 1.0e3f, 0.0f, "error of pose.height_m, new in each image; 0: none") \
     X(navigation.terrain_slope_sd, REAL, "", 0.0f, 1.0f, 0.0f, "slope of the ground that the height is above, m per m flown") \
-    X(navigation.terrain_height_sd_m, REAL, "m", 0.0f, 1.0e3f, 2.0f, "height uncertainty of the obstacle's ground; boxes") \
+    X(navigation.terrain_height_sd_m, REAL, "m", 0.0f, 1.0e3f, 2.0f, "height error of the obstacle's ground; 1000: no altimeter; boxes") \
     X(detector.point_noise_px, REAL, "px", 0.05f, 100.0f, 0.5f, "error of an image point, new in each image; rounding: 0.3") \
     X(detector.point_noise_rel, REAL, "", 0.0f, 1.0f, 0.0f, "error of left, right, top as points, of the width") \
-    X(detector.point_correlation, REAL, "", 0.0f, 0.95f, 0.0f, "of a point's error from image to image") \
+    X(detector.point_correlation, REAL, "", 0.0f, 0.95f, 0.0f, "correlation of a point's error from image to image") \
     X(detector.shape_error_rel, REAL, "", 0.0f, 1.0f, 0.0f, "model error of the disc, of its width; cars: 0.12") \
     X(detector.box_noise_px, REAL, "px", 0.05f, 100.0f, 1.0f, "error of a box's side, new in each image") \
     X(detector.box_noise_rel, REAL, "", 0.0f, 1.0f, 0.07f, "slowly varying error of a side, of the box's width or height") \
     X(detector.box_correlation_time_s, REAL, "s", 0.0f, 100.0f, 1.2f, "correlation time of this error") \
-    X(detector.truncation_noise_rel, REAL, "", 0.0f, 10.0f, 1.0f, "error of every side of a box that the border cuts, of the same") \
-    X(filter.prior_width_m, REAL, "m", 0.1f, 1.0e3f, 6.0f, "prior width, where the ground gives no range") \
+    X(detector.truncation_noise_rel, REAL, "", 0.0f, 10.0f, 1.0f, "error of every side of a cut box, of its width or height") \
+    X(filter.prior_width_m, REAL, "m", 0.1f, 1.0e3f, 6.0f, "prior width, to a factor of 3, where the ground gives no range") \
     X(filter.gate_sigma, REAL, "sigma", 1.0f, 100.0f, 5.0f, "a point farther off is left out") \
     X(filter.huber_sigma, REAL, "sigma", 0.5f, 100.0f, 2.5f, "a point farther off counts less") \
     X(filter.nis_ratio_max, REAL, "", 0.01f, 1.0e3f, 1.9f, "NIS ratio above which the obstacle is suspect") \
     X(filter.range_sd_rel_max, REAL, "", 0.01f, 10.0f, 0.25f, "sigma over range up to which a position is reported") \
-    X(filter.top_is_highest, TRUTH, "", 0, 1, 0, "top is the highest point in the image, also from above")
+    X(filter.top_is_highest, TRUTH, "", 0, 1, 0, "top, as a point, is the highest one in the image, also from above")
 #else
 #define GOE_SETTINGS_FILTER(X)
 #endif
 
 #if GOE_WITH_WINDOW
 #define GOE_SETTINGS_WINDOW(X) \
-    X(window.points, COUNT, "images", 3, GOE_WINDOW_MAX, GOE_WINDOW_DEFAULT, "points in the fit and the sliding means") \
-    X(window.line_points, COUNT, "images", 1, 1000, 8, "when the line takes over from the disc") \
+    X(window.points, COUNT, "images", 3, GOE_WINDOW_MAX, GOE_WINDOW_DEFAULT, "images in the fit and the sliding means") \
+    X(window.line_points, COUNT, "images", 1, 1000, 8, "model auto: line points before the line replaces the disc") \
     X(window.edge_min_px, REAL, "px", 0.0f, 1.0e4f, 10.0f, "shorter edges do not count") \
     X(window.orientation_min_px, REAL, "px", 0.0f, 1.0e4f, 2.0f, "flatter edges have no orientation") \
     X(window.side_min_px, REAL, "px", 0.1f, 1.0e4f, 10.0f, "a side edge nearer to edge-on gives no length") \
-    X(window.orientation_memory, COUNT, "images", 1, 1000, 20, "low-pass of the orientation") \
+    X(window.orientation_memory, COUNT, "images", 1, 1000, 20, "images that the low-pass of the orientation remembers") \
     X(window.min_baseline_m, REAL, "m", 1.0e-3f, 1.0e4f, 0.1f, "less camera motion over the window gives no solution")
 #else
 #define GOE_SETTINGS_WINDOW(X)

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds the pages of the C interface from lib/goe.h and port/flight/goe_flight.h with Doxygen; its warnings are errors.
+# Builds the pages of the C interface from the public headers of lib and port/flight with Doxygen; its warnings are errors.
 #
 #   tools/api_pages.sh [DIR]   writes DIR/html/index.html; default: build/api
 set -euo pipefail

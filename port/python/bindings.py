@@ -2,8 +2,9 @@
 
     python bindings.py --lib DIR --flight DIR --cmake DIR [--out FILE]
 
-Types, constants and functions are taken from goe.h, goe_flight.h and the glue's headers as they are, and the C compiler
-holds cffi's idea of every size and offset against its own. CMakeLists.txt runs this whenever the package is built.
+Types, constants and functions are taken from goe.h with its parts, goe_flight.h and the glue's headers as they are, and
+the C compiler holds cffi's idea of every size and offset against its own. CMakeLists.txt runs this whenever the package
+is built.
 
 ``fingerprint`` identifies the sources of a module: a checkout can check whether the installed one is its own.
 Without ``--out`` it is printed.
@@ -60,12 +61,25 @@ OWN_MEMORY = {  # structs of which Python reads these fields only
 LIMITS = ("GOE_WINDOW_MAX", "GOE_CAMERAS_MAX", "GOE_FLIGHT_SLOTS")  # as compiled
 CONSTANT = re.compile(r"^#define (GOE_\w+) +((?:0x)?[0-9A-Fa-f]+)u?(?=\s)", re.MULTILINE)
 GUARD = re.compile(r"#ifndef (\w+)\n#define \1 ")
+OWN_PART = re.compile(r'^#include "(\w+\.h)"\n', re.MULTILINE)
+PRIVATE = ("goe_state.h",)
 
 # ------------------------------------------------------------------------------------------------------- declarations
 
 
 def without_comments(text: str) -> str:
     return re.sub(r"/\*.*?\*/", " ", text, flags=re.DOTALL)
+
+
+def with_parts(header: Path) -> str:
+    """The text of goe.h with its public parts in place of their #include; of another header its own text."""
+
+    def part(match: re.Match[str]) -> str:
+        path = header.with_name(match[1])
+        return match[0] if path.name in PRIVATE else path.read_text(encoding="utf-8")
+
+    text = header.read_text(encoding="utf-8")
+    return OWN_PART.sub(part, text) if header.name == "goe.h" else text
 
 
 def the_one(pattern: str, text: str, what: str) -> str:
@@ -153,7 +167,7 @@ def main() -> None:
         print(printed)
         return
     folders = {"goe.h": given.lib, "goe_flight.h": given.flight}
-    headers = {name: (folders.get(name, PACKAGE / "csrc") / name).read_text(encoding="utf-8") for name in TYPES}
+    headers = {name: with_parts(folders.get(name, PACKAGE / "csrc") / name) for name in TYPES}
     module(headers, printed, given.out)
 
 

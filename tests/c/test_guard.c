@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "check.h"
-#include "goe_settings.h"
+#include "goe_settings_internal.h"
 #include "scene.h"
 
 #define IMAGES 12

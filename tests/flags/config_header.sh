@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Limits and parts from the firmware's own header, GOE_CONFIG_HEADER; and limits that goe.h refuses.
+# Limits and parts from the firmware's own header, GOE_CONFIG_HEADER; and limits that goe_limits.h refuses.
 set -euo pipefail
 . "$(dirname "$0")/common.sh"
 
@@ -28,7 +28,7 @@ for bad in -DGOE_WINDOW_MAX=2 -DGOE_WINDOW_MAX=65 -DGOE_CAMERAS_MAX=0 -DGOE_CAME
     if compile "${words[@]}" "$root/lib/goe_settings.c"; then
         fail "$bad compiles"
     fi
-    grep -q "must be" log || fail "$bad: goe.h does not say why"
+    grep -q "must be" log || fail "$bad: goe_limits.h does not say why"
 done
 for good in 3 64; do
     compile -DGOE_WINDOW_MAX=$good "$root/lib/goe_settings.c" || fail "GOE_WINDOW_MAX=$good: $(cat log)"

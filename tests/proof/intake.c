@@ -5,7 +5,7 @@
 
 #include "any.h"
 #include "goe_guard.h"
-#include "goe_settings.h"
+#include "goe_settings_internal.h"
 #include "goe_settings_list.h"
 #include "image/goe_intake.h"
 

@@ -17,6 +17,7 @@ from ci.cost.longest.loop_bounds import Row
 from ci.cost.longest.proving import Proof
 from ci.cost.longest.trip_counts import Trips
 from ci.cost.modules import bytes_of_object
+from goe_tools.places import PUBLIC_HEADERS, interface
 
 ROOT = Path(__file__).resolve().parents[2]
 ROWS_MOST = 440  # of the ledger: some 11 rows for each public function
@@ -252,7 +253,7 @@ def test_committed_pages_show_the_committed_ledger() -> None:
 
 
 def copy_of_pages(folder: Path) -> Path:
-    for page in (*pages.PAGES, pages.HEADER):
+    for page in (*pages.PAGES, *(Path("lib") / name for name in PUBLIC_HEADERS)):
         (folder / page).parent.mkdir(parents=True, exist_ok=True)
         (folder / page).write_bytes((ROOT / page).read_bytes())
     return folder
@@ -298,21 +299,21 @@ def test_a_cost_that_the_header_understates_is_reported(tmp_path: Path) -> None:
     """[A23]"""
     root = copy_of_pages(tmp_path)
     ledger = committed()
-    header = root / pages.HEADER
-    limits = stated.stated(header.read_text(encoding="utf-8"))
+    header = root / "lib" / "goe_hazard.h"
+    limits = stated.stated(interface(root / "lib"))
     assert limits["instructions proved: goe_update"] == 48000
     assert limits["instructions proved: goe_update with lens distortion"] == 70000
     assert limits["instructions proved: goe_update, window"] == 5500
     assert len(limits) == 2 * len(PUBLIC) + 2
-    hazard = r"at most \d+ instructions(, \d+ bytes of stack\. No loop)"
+    hazard = r"at most \d+ instructions(, \d+ bytes of stack\. \*/\nGOE_NODISCARD goe_status_t goe_hazard\()"
     text = re.sub(hazard, r"at most 10 instructions\1", header.read_text(encoding="utf-8"))
     header.write_text(text, encoding="utf-8")
     proved = ledger[stated.TARGET]["instructions proved: goe_hazard"]
     assert pages.wrong_pages(root, ledger) == [
-        f"lib/goe.h: instructions proved: goe_hazard: at most 10, but {stated.TARGET} has {proved}"
+        f"public headers: instructions proved: goe_hazard: at most 10, but {stated.TARGET} has {proved}"
     ]
-    header.write_text("nothing", encoding="utf-8")
-    with pytest.raises(ValueError, match="states no cost of goe_settings_default, goe_init"):
+    (root / "lib" / "goe.h").write_text("nothing", encoding="utf-8")
+    with pytest.raises(ValueError, match="state no cost of goe_settings_default, goe_init"):
         pages.wrong_pages(root, ledger)
 
 
@@ -344,7 +345,7 @@ def test_the_table_of_guarantees_shows_where_they_do_not_apply() -> None:
 def test_measured_is_at_most_proved_is_at_most_stated() -> None:
     """[A23]"""
     figures = committed()[stated.TARGET]
-    limits = stated.stated((ROOT / pages.HEADER).read_text(encoding="utf-8"))
+    limits = stated.stated(interface())
     proved = book.below(figures, book.PROVED)
     assert set(PUBLIC) < set(proved)
     for name in proved:

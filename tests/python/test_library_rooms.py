@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 
 import pytest
+from goe_tools.places import PUBLIC_HEADERS
 
 LIBRARY = Path(__file__).resolve().parents[2] / "lib"
 
@@ -20,7 +21,7 @@ FLOORS = [
     {"hazard"},
     {"chain"},
 ]
-CONTRACT = {"goe.h", "goe_state.h", "goe_settings_list.h"}
+CONTRACT = {*PUBLIC_HEADERS, "goe_state.h", "goe_settings_list.h"}
 COVARIANCE = {"goe_guard.h", "goe_guard.c", "goe_latest.h", "goe_covariance.h", "goe_covariance.c"}
 
 

@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from goe_tools import library
+from goe_tools.places import interface
 
 goe = pytest.importorskip("goe", reason="the Python package is not installed (tools/setup.sh)")
 flight = goe.flight
@@ -23,7 +24,7 @@ flight = goe.flight
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "port" / "python"
 NAN = float("nan")
-HEADER = (ROOT / "lib" / "goe.h").read_text(encoding="utf-8")
+HEADER = interface()
 
 
 def settings() -> goe.Settings:
@@ -73,7 +74,7 @@ def test_a_package_of_other_sources_is_refused(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr(importlib.import_module("goe"), "FINGERPRINT", "0" * 64)
     library.package.cache_clear()
     try:
-        with pytest.raises(FileNotFoundError, match=r"other sources.*tools/setup\.sh"):
+        with pytest.raises(FileNotFoundError, match=r"not built from the sources in .*tools/setup\.sh"):
             library.ready()
     finally:
         library.package.cache_clear()
@@ -202,13 +203,13 @@ def test_objects_can_be_sent_to_other_processes() -> None:
     ("kind", "prefix", "left_out", "file"),
     [
         (goe.Status, "GOE_", {"BAD_SETTINGS", "BAD_ARGUMENT", "NOT_INITIALIZED"}, "lib/goe.h"),
-        (goe.Method, "GOE_METHOD_", set(), "lib/goe.h"),
-        (goe.Model, "GOE_MODEL_", {"NONE", "AUTO"}, "lib/goe.h"),
-        (goe.Shape, "GOE_MODEL_", {"NONE", "BOX", "PRISM"}, "lib/goe.h"),
+        (goe.Method, "GOE_METHOD_", set(), "lib/goe_settings.h"),
+        (goe.Model, "GOE_MODEL_", {"NONE", "AUTO"}, "lib/goe_settings.h"),
+        (goe.Shape, "GOE_MODEL_", {"NONE", "BOX", "PRISM"}, "lib/goe_settings.h"),
         (goe.Reason, "GOE_REASON_", {"NONE"}, "lib/goe.h"),
         (flight.FlightStatus, "GOE_FLIGHT_", {"BAD_SETTINGS", "BAD_ARGUMENT", "NOT_INITIALIZED"},
          "port/flight/goe_flight.h"),
-        (goe.Decision, "GOE_DECISION_", set(), "lib/goe.h"),
+        (goe.Decision, "GOE_DECISION_", set(), "lib/goe_hazard.h"),
         (flight.Action, "GOE_FLIGHT_", set(), "port/flight/goe_flight.h"),
     ],
 )  # fmt: skip

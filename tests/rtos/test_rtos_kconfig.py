@@ -10,7 +10,7 @@ import kconfiglib
 import pytest
 from kconfig_of import NUTTX, ROOT, ZEPHYR, apply, parse
 
-HEADERS = (ROOT / "lib" / "goe.h").read_text() + (ROOT / "port" / "flight" / "goe_flight.h").read_text()
+HEADERS = (ROOT / "lib" / "goe_limits.h").read_text() + (ROOT / "port" / "flight" / "goe_flight.h").read_text()
 NUMBERS = ("GOE_WINDOW_MAX", "GOE_CAMERAS_MAX", "GOE_FLIGHT_SLOTS")
 PARTS = ("GOE_WITH_WINDOW", "GOE_WITH_FILTER", "GOE_WITH_HAZARD", "GOE_WITH_TARGET_MOTION")
 
@@ -58,7 +58,7 @@ def test_ranges_are_those_of_the_headers(port: Path, tmp_path: Path, name: str) 
 
 @ports
 def test_every_choice_of_parts_compiles(port: Path, tmp_path: Path) -> None:
-    """goe.h needs a method, the flight layer the hazard, late poses the filter method."""
+    """goe_limits.h needs a method, the flight layer the hazard, late poses the filter method."""
     parsed = parse(port, tmp_path)
     found = set()
     for chosen in product("yn", repeat=6):

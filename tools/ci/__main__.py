@@ -16,6 +16,7 @@ COMMANDS = {  # name: module with add_arguments and run, and its description
     "packages": (".packages.command", "stage packages for other package managers, or check their manifests"),
     "tidy_commands": (".tidy_commands", "write one compile command for each source, for clang-tidy"),
     "settings": (".settings_table", "print, write or check the manual's table of the library's settings"),
+    "settings_header": (".settings_header", "print, write or check the structures of the settings, lib/goe_settings.h"),
 }
 
 

@@ -10,7 +10,7 @@ parts         cost of a firmware without some parts of the library
 measuring     all figures of a target
 book          the ledger's file
 growth        figures that grew compared with the ledger
-stated        the costs in goe.h
+stated        the costs in the public headers
 guarantees    the guarantees in README.md, and the targets that meet them
 pages         the tables for readers
 ledger        the command: python -m ci ledger

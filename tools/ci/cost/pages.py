@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from goe_tools.logs.marked_block import MarkedBlock
+from goe_tools.places import interface
 
 from . import book, guarantees, stated
 from .book import Figures, Ledger, below, number
@@ -113,12 +114,11 @@ def readme_tables(ledger: Ledger) -> str:
     return "\n".join([*target_table(few), ""])
 
 
-HEADER = Path("lib/goe.h")
 PAGES = {Path("README.md"): readme_tables, Path("tests/targets/LEDGER.md"): ledger_tables}
 
 
 def wrong_pages(root: Path, ledger: Ledger) -> list[str]:
-    """Pages with other tables than the ledger's, guarantees missing in README.md, understated costs in goe.h."""
+    """Pages with other tables than the ledger's, guarantees missing in README.md, understated costs in the headers."""
     wrong = [
         f"{page}: its tables differ from the ledger: run python -m ci ledger --write"
         for page, tables in PAGES.items()
@@ -126,7 +126,7 @@ def wrong_pages(root: Path, ledger: Ledger) -> list[str]:
     ]
     wrong += guarantees.not_stated(TABLES.around(root / "README.md"))
     if stated.TARGET in ledger:
-        wrong += stated.understated((root / HEADER).read_text(encoding="utf-8"), ledger[stated.TARGET])
+        wrong += stated.understated(interface(root / "lib"), ledger[stated.TARGET])
     return wrong
 
 

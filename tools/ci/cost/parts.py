@@ -15,6 +15,7 @@ from itertools import product
 from pathlib import Path
 
 from bench.running import ROOT, LedgerError, output_of
+from goe_tools.places import interface
 
 from .building import Build
 from .modules import bytes_of_object, plain_command, size_of_state
@@ -33,7 +34,7 @@ class Part:
 
 
 def parts_known(header: str) -> bool:
-    """Whether goe.h has the parts."""
+    """Whether the public headers have the parts."""
     return all(re.search(rf"\bGOE_WITH_{part.upper()}\b", header) for part in PARTS)
 
 
@@ -69,11 +70,12 @@ def code_bytes(built: Build, sources: Sequence[Path], definitions: Sequence[str]
 
 def measured_parts(built: Build, folder: Path, library: Path = ROOT / "lib") -> list[Part]:
     """One entry for each combination of parts; none if goe.h has no parts."""
-    if not parts_known((library / "goe.h").read_text(encoding="utf-8")):
+    headers = interface(library)
+    if not parts_known(headers):
         return []
     sources = sorted(library.rglob("*.c"))
     chosen = combinations()
-    if "GOE_WITH_TARGET_MOTION" in (library / "goe.h").read_text(encoding="utf-8"):
+    if "GOE_WITH_TARGET_MOTION" in headers:
         chosen.append(("everything but target_motion", ["-DGOE_WITH_TARGET_MOTION=0"]))
     return [
         Part(name, code_bytes(built, sources, definitions, folder), size_of_state(built, folder, definitions))

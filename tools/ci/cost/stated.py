@@ -1,4 +1,4 @@
-"""Compares the limits that lib/goe.h states for each function with the proved figures."""
+"""Compares the limits that the public headers state for each function with the proved figures."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from . import book
 from .book import Figures, key, number
 from .instructions import PUBLIC, UPDATES, WITH_LENS
 
-TARGET = "m4f-gcc-o2"  # the target named in goe.h
+TARGET = "m4f-gcc-o2"  # the target that goe.h names
 COST = re.compile(
     r"Cost: at most (?P<instructions>\d+) instructions, (?P<stack>\d+) bytes of stack"
     r"(?:; (?P<lens>\d+) with lens distortion)?(?:; window: (?P<window>\d+))?\."
@@ -17,10 +17,10 @@ COST = re.compile(
 )
 
 
-def stated(header: str) -> dict[str, int]:
+def stated(headers: str) -> dict[str, int]:
     """The stated figures, by the ledger's names."""
     found: dict[str, int] = {}
-    for cost in COST.finditer(header):
+    for cost in COST.finditer(headers):
         name = cost["name"]
         places = {
             "instructions": key(book.PROVED, name),
@@ -31,14 +31,14 @@ def stated(header: str) -> dict[str, int]:
         found |= {places[group]: int(cost[group]) for group in places if cost[group]}
     missing = [name for name in PUBLIC if key(book.STACK, name) not in found]
     if missing:
-        raise ValueError(f"lib/goe.h states no cost of {', '.join(missing)}")
+        raise ValueError(f"the public headers state no cost of {', '.join(missing)}")
     return found
 
 
-def understated(header: str, figures: Figures) -> list[str]:
-    """Costs above the header's limits."""
+def understated(headers: str, figures: Figures) -> list[str]:
+    """Costs above the stated limits."""
     return [
-        f"lib/goe.h: {name}: at most {limit}, but {TARGET} has {number(figures, name):g}"
-        for name, limit in stated(header).items()
+        f"public headers: {name}: at most {limit}, but {TARGET} has {number(figures, name):g}"
+        for name, limit in stated(headers).items()
         if number(figures, name) > limit
     ]

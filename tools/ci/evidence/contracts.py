@@ -11,6 +11,8 @@ import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
+from goe_tools.places import PUBLIC_HEADERS
+
 FUNCTION = re.compile(  # static in a .c file or inline in a header; a prototype in a header
     r"^(?P<head>(?:\w+ +)*?\w[\w ]*[ *]+\**)(?P<name>\w+)\((?P<parameters>[^;{}()]*)\)[ \n]*[;{]", re.MULTILINE
 )
@@ -27,7 +29,6 @@ OPEN = {  # further conditions of every such structure, once it is filled in
     "goe_view_t": "goe_view_is_open",
 }
 WRITTEN = ("goe_observation_t", "goe_view_t")  # for these also the structure itself, if it is not const
-PUBLIC = "goe.h"  # its functions accept a null pointer for any argument
 
 
 def blank(match: re.Match[str]) -> str:
@@ -85,7 +86,7 @@ def with_contracts(text: str, name: str) -> str:
     found, at = "", 0
     for match in functions(text, name.endswith(".c")):
         if not has_contract(text[: match.start()]):
-            found += text[at : match.start()] + contract(match["parameters"], name == PUBLIC)
+            found += text[at : match.start()] + contract(match["parameters"], name in PUBLIC_HEADERS)
             at = match.start()
     return found + text[at:]
 

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from bench.count_plugin import build_plugin
-from goe_tools.places import ROOT
+from goe_tools.places import interface
 
 from ..cost import book, stated
 from ..cost.book import Figures, key
@@ -87,7 +87,7 @@ def run(amount: Amount) -> Result:
         figures = instruction_figures(built, build_plugin(folder), folder) | stack_figures(built)
         trips = trip_counts.measured(built, code, folder)
         changed = identity.changed(built, folder, jobs=amount.jobs)
-    limits = stated.stated((ROOT / "lib" / "goe.h").read_text(encoding="utf-8"))
+    limits = stated.stated(interface())
     unused, wrong = proving.unused(code), trip_counts.exceeded(trips)
     rows = [*call_rows(figures, proofs, limits), *table_rows(trips, unused, changed)]
     return Result(rows, report(proofs, trips, [*unused, *wrong, *changed]))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from goe_tools.places import ROOT
+from goe_tools.places import ROOT, interface
 
 NEEDS = {"target_motion": ("filter",)}  # parts that require others
 
@@ -25,7 +25,7 @@ class Part:
     """A part of the library that may be left out: GOE_WITH_..."""
 
     name: str  # target_motion
-    text: str  # one line, from goe.h
+    text: str  # one line, from goe_limits.h
 
     @property
     def define(self) -> str:
@@ -73,7 +73,8 @@ class Facts:
 
     @cached_property
     def header(self) -> str:
-        return (self.root / "lib" / "goe.h").read_text(encoding="utf-8")
+        """All public ones."""
+        return interface(self.root / "lib")
 
     @cached_property
     def version(self) -> str:
@@ -95,7 +96,7 @@ class Facts:
     def parts(self) -> tuple[Part, ...]:
         found = re.findall(r"^#ifndef GOE_WITH_(\w+)\n#define GOE_WITH_\1 1 /\* (.*) \*/$", self.header, re.MULTILINE)
         if not found:
-            raise ValueError("lib/goe.h: no part, GOE_WITH_...")
+            raise ValueError("lib/goe_limits.h: no part, GOE_WITH_...")
         return tuple(Part(name.lower(), text) for name, text in found)
 
     @cached_property
@@ -112,7 +113,7 @@ class Facts:
             default = re.search(rf"^#define {define} (\d+)", both, re.MULTILINE)
             bounds = re.search(rf"^#if {define} < (\d+) \|\| {define} > (\d+)$", both, re.MULTILINE)
             if not default or not bounds:
-                raise ValueError(f"goe.h, goe_flight.h: {define} has no default or no bounds")
+                raise ValueError(f"goe_limits.h, goe_flight.h: {define} has no default or no bounds")
             limits.append(Limit(define, int(bounds[1]), int(bounds[2]), int(default[1]), text))
         return tuple(limits)
 

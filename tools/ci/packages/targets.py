@@ -99,9 +99,10 @@ def arduino(facts: Facts, words: Words, folder: Path) -> list[Path]:
     library no flags."""
     goe = Stage(facts, words, folder / "goe")
     goe.copy_library("src")
-    if facts.header.count(CONFIG_PLACE) != 1:
-        raise ValueError("lib/goe.h: no place for GOE_CONFIG_HEADER")
-    goe.write("src/goe.h", facts.header.replace(CONFIG_PLACE, CONFIG + CONFIG_PLACE))
+    limits = (facts.root / "lib" / "goe_limits.h").read_text(encoding="utf-8")
+    if limits.count(CONFIG_PLACE) != 1:
+        raise ValueError("lib/goe_limits.h: no place for GOE_CONFIG_HEADER")
+    goe.write("src/goe_limits.h", limits.replace(CONFIG_PLACE, CONFIG + CONFIG_PLACE))
     goe.render("src/goe_config.h", "arduino/goe_config.h.j2")
     goe.copy_tree("port/arduino/examples", "examples")
     goe.render("library.properties", "arduino/library.properties.j2", flight=False, architectures=ARDUINO_CORES)

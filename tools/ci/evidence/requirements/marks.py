@@ -16,11 +16,17 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from goe_tools.places import ROOT
+from goe_tools.places import PUBLIC_HEADERS, ROOT
 
-HEADERS = {"lib/goe.h": "lib/goe_settings_list.h", "port/flight/goe_flight.h": "port/flight/goe_flight_settings_list.h"}
-PAGES = ("README.md", "lib/window/README.md", "lib/refined/README.md")
-NOT_OF_THE_INTERFACE = {"GOE_H", "GOE_NODISCARD", "GOE_FLIGHT_H"}
+HEADERS = {  # public headers, and the list of the settings that one has
+    **{f"lib/{name}": "" for name in PUBLIC_HEADERS},
+    "lib/goe.h": "lib/goe_settings_list.h",
+    "port/flight/goe_flight.h": "port/flight/goe_flight_settings_list.h",
+}
+PAGES = ("README.md", "lib/DESIGN.md", "lib/window/README.md", "lib/refined/README.md")
+GUARDS = {Path(name).name.upper().replace(".", "_") for name in HEADERS}
+NOT_OF_THE_INTERFACE = {*GUARDS, "GOE_NODISCARD"}
+STRUCTURE = re.compile(r"typedef struct \{(.*?)\} (goe_\w+);", re.DOTALL)
 SETTINGS = re.compile(r"goe_(camera|navigation|detector|((window|filter|flight)_)?settings)_t")  # named by path
 SUFFIXES = (".c", ".cpp", ".py", ".sh", ".cmake", "CMakeLists.txt")
 MARK = re.compile(r"\[([A-Z]\d+)\]")
@@ -87,11 +93,20 @@ def fields_of(body: str) -> Iterator[str]:
         yield from re.findall(r"(\w+)\s*(?:,|$)", re.sub(r"\[[^\]]*\]", "", line).strip())
 
 
-def fields_in(name: str, text: str, public: str) -> Iterator[Promise]:
+def times_of_fields(name: str, root: Path) -> Counter[str]:
+    """How many structures of a header, and of those next to it, have a field."""
+    texts = [without_comments(root / each) for each in HEADERS if (root / each).is_file() and same_folder(each, name)]
+    structures = [body for text in texts for body, _ in STRUCTURE.findall(text)]
+    return Counter(each for body in structures for each in fields_of(body))
+
+
+def same_folder(one: str, other: str) -> bool:
+    return Path(one).parent == Path(other).parent
+
+
+def fields_in(name: str, text: str, public: str, shared: Counter[str]) -> Iterator[Promise]:
     """Fields of public structures; if several structures have a field, the code must name its owner: pose.height_m."""
-    structures = re.findall(r"typedef struct \{(.*?)\} (goe_\w+);", text, re.DOTALL)
-    shared = Counter(each for body, _ in structures for each in fields_of(body))
-    for match in re.finditer(r"typedef struct \{(.*?)\} (goe_\w+);", text, re.DOTALL):
+    for match in STRUCTURE.finditer(text):
         private = "{ /* goe_" in public.splitlines()[line_of(text, match.start()) - 1] or match[2] == "goe_flight_t"
         for each in () if SETTINGS.fullmatch(match[2]) or private else fields_of(match[1]):
             owner = match[2][: -len("_t")].rpartition("_")[2]
@@ -112,7 +127,7 @@ def names_in(name: str, listed: str, root: Path) -> Iterator[Promise]:
     for key, at in dict(found).items():
         if key not in NOT_OF_THE_INTERFACE:
             yield Promise(key, f"{name}:{line_of(text, at)}", frozenset({key}))
-    yield from fields_in(name, text, read(root / name))
+    yield from fields_in(name, text, read(root / name), times_of_fields(name, root))
     table = without_comments(root / listed) if (root / listed).is_file() else ""
     for match in re.finditer(r"\b(?:X|GOE_FLIGHT_SETTING)\(([\w.]+)(\[0\])?, ", table):
         place, key = f"{listed}:{line_of(table, match.start())}", match[1]
