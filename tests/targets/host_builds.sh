@@ -1,11 +1,18 @@
 #!/usr/bin/env bash
-# The hashes of the replay, and of the replay through the flight layer, are the golden ones for every compiler of this machine and every
-# optimization level.
+# The hashes of the replay, and of the replay through the flight layer, are the golden ones for each compiler of this machine, without
+# optimization, for speed and for size, vectorized, and optimized at link time. With --all at every level, for a release.
 #
-#   host_builds.sh <golden hash> <golden hash of the flight layer>
+#   host_builds.sh [--all] <golden hash> <golden hash of the flight layer>
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 . "$here/../flags/common.sh"
+levels=(-O0 -O2 -Os "-O3 -march=native -funroll-loops")
+others=("gcc -O3 -march=native -flto" "gcc -O2 -m32 -msse2 -mfpmath=sse" "clang-19 -O3 -march=native -flto -fuse-ld=lld")
+if [ "$1" = --all ]; then
+    levels+=(-O1 -O3 "-O3 -march=native")
+    others+=("gcc -O2 -flto" "clang-19 -O2 -flto" "clang-19 -O3 -march=native -flto")
+    shift
+fi
 golden=$1
 flight_golden=$2
 
@@ -46,13 +53,12 @@ try() {
 
 for compiler in gcc clang-19; do
     command -v "$compiler" >/dev/null || continue
-    for level in -O0 -O1 -O2 -Os -O3 "-O3 -march=native" "-O3 -march=native -funroll-loops"; do
+    for level in "${levels[@]}"; do
         # shellcheck disable=SC2086 # several flags
         try "$compiler" $level
     done
 done
-for flags in "gcc -O2 -flto" "gcc -O3 -march=native -flto" "gcc -O2 -m32 -msse2 -mfpmath=sse" "clang-19 -O2 -flto" \
-    "clang-19 -O3 -march=native -flto" "clang-19 -O3 -march=native -flto -fuse-ld=lld"; do
+for flags in "${others[@]}"; do
     command -v "${flags%% *}" >/dev/null || continue
     # shellcheck disable=SC2086 # several words
     if possible $flags; then
