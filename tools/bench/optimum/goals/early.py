@@ -31,8 +31,8 @@ def early_group(group: str, amount: Amount) -> list[Goal]:
         tasks = [Task(scene, NOISES[noise], (1, number)) for number, scene in enumerate(paper_scenes())]
         outcomes = perform_all(tasks, amount, f"{group} {noise}")
         criteria: dict[str, Callable[[Outcome], np.ndarray]] = {
-            "filter, own 2 sigma": lambda o: 2 * o.refined.sigma[:, Z0] < KNOWN_SHARE * o.truth.z0_m,
-            "filter, true error": lambda o: np.abs(o.refined.error[:, Z0]) < KNOWN_SHARE * o.truth.z0_m,
+            "filter, own 2 sigma": lambda o: 2 * o.filter.sigma[:, Z0] < KNOWN_SHARE * o.truth.z0_m,
+            "filter, true error": lambda o: np.abs(o.filter.error[:, Z0]) < KNOWN_SHARE * o.truth.z0_m,
             "window, true error": lambda o: np.abs(o.window.error[:, Z0]) < KNOWN_SHARE * o.truth.z0_m,
         }
         for label, criterion in criteria.items():

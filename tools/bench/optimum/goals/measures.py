@@ -38,7 +38,7 @@ def efficiency(outcomes: Sequence[Outcome]) -> np.ndarray:
     by_case: dict[str, list[np.ndarray]] = {}
     for o in outcomes:
         if o.bound is not None:
-            by_case.setdefault(o.name, []).append(o.refined.error[-1] / np.maximum(o.bound, 1e-12))
+            by_case.setdefault(o.name, []).append(o.filter.error[-1] / np.maximum(o.bound, 1e-12))
     with np.errstate(invalid="ignore"):
         squares = [np.array(rows) ** 2 for rows in by_case.values()]
     rows = []
@@ -76,9 +76,9 @@ def coverage_goals(group: str, outcomes: Sequence[Outcome], wanted: Range = COVE
         numbers = ALL if box else tuple(np.flatnonzero(DISC_QUANTITIES))
         inside, there, first, last = [], [], [], []
         for o in chosen:
-            valid = np.isfinite(o.refined.error) & np.isfinite(o.refined.sigma)
+            valid = np.isfinite(o.filter.error) & np.isfinite(o.filter.sigma)
             with np.errstate(invalid="ignore"):
-                hit = valid & (np.abs(o.refined.error) < 2 * o.refined.sigma)
+                hit = valid & (np.abs(o.filter.error) < 2 * o.filter.sigma)
             inside.append(hit)
             there.append(valid)
             start = np.argmax(valid, 0)
@@ -102,7 +102,7 @@ def coverage_goals(group: str, outcomes: Sequence[Outcome], wanted: Range = COVE
 def nees(outcome: Outcome) -> float:
     """Normalized error squared over the number of quantities at the end; NaN unless all have an answer."""
     numbers = np.arange(6) if outcome.box else np.flatnonzero(DISC_QUANTITIES)
-    error = outcome.refined.error[-1, numbers]
+    error = outcome.filter.error[-1, numbers]
     covariance = outcome.covariance[np.ix_(numbers, numbers)]
     if not np.isfinite(error).all() or (np.diag(covariance) <= 0).any():
         return math.nan
@@ -140,7 +140,7 @@ def window_goals(
 ) -> list[Goal]:
     """Median errors at the end compared with the window method's on the same flights."""
     ours, theirs = np.abs(ends(outcomes)), np.abs(ends(outcomes, "window"))
-    sigma = np.array([o.refined.sigma[-1] for o in outcomes])
+    sigma = np.array([o.filter.sigma[-1] for o in outcomes])
     both = np.isfinite(ours) & np.isfinite(theirs)
     median = nan_quantile(np.where(both, ours, np.nan), 0.5)
     window = nan_quantile(np.where(both, theirs, np.nan), 0.5)

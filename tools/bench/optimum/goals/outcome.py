@@ -38,7 +38,7 @@ class Outcome:
     truth: Obstacle
     time_s: np.ndarray
     reach_s: float
-    refined: Judgement
+    filter: Judgement
     window: Judgement
     covariance: np.ndarray  # (6, 6) at the end
     nis: float  # sums over the track
@@ -58,7 +58,7 @@ class Outcome:
         return self.truth.kind == "box"
 
 
-def _refined_only(track: Track) -> Track:
+def _filter_only(track: Track) -> Track:
     """Without the window method's answers before the start of the filter method, whose sigmas mean less."""
     track.values[track.method != METHODS["filter"]] = np.nan
     return track
@@ -76,7 +76,7 @@ def outcome_of(flight: Flight) -> Outcome:
     by_window = int((position & (track.method == METHODS["window"])).sum())
     window = estimate(flight, settings_of(flight, method="window"))
     return Outcome(
-        flight.name, flight.group, flight.truth, flight.time_s, flight.reach_s, judge(_refined_only(track), flight),
+        flight.name, flight.group, flight.truth, flight.time_s, flight.reach_s, judge(_filter_only(track), flight),
         judge(window, flight), track.covariance[-1], float(track.nis.sum()), float(track.nis_rows.sum()),
         float(track.nis_ratio[-1]), _misfit_most(track), bool(track.suspect.any()), int(position.sum()), by_window,
     )  # fmt: skip
@@ -88,7 +88,7 @@ def perform(task: Task) -> Outcome:
     result.seed = task.seed
     if task.bound:
         best = bound(flight)
-        last = result.refined.renamed[-1]
+        last = result.filter.renamed[-1]
         result.bound = renamed_sigma(flight.truth, best.covariance) if last else best.sigma
     if task.offline:
         result.offline = _offline_error(flight)

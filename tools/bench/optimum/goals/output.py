@@ -44,7 +44,7 @@ def print_worst(title: str, outcomes: Sequence[Outcome], count: int) -> None:
     for i in np.argsort(-ratios)[:count]:
         o = outcomes[i]
         with np.errstate(invalid="ignore"):
-            sigmas = o.refined.error[-1] / o.refined.sigma[-1]
+            sigmas = o.filter.error[-1] / o.filter.sigma[-1]
         cells = "".join(f"{_number_text(value):>9}" for value in sigmas)
         print(f"  {f'{title}: {o.name}, seed {o.seed}':70} NEES {_number_text(ratios[i]):>8}{cells}")
 

@@ -25,13 +25,13 @@ TABLE3_NUMBERS = dict(zip(TABLE3_QUANTITIES, (Z0, X0, WIDTH, LENGTH, HEIGHT)))
 
 def _extent(outcome: Outcome, quantity: int) -> float:
     """|mean| + 2 sigma of the last answers' errors in Table 3's unit: percent, or meters for the height."""
-    errors = outcome.refined.error[:, quantity]
+    errors = outcome.filter.error[:, quantity]
     known = errors[np.isfinite(errors)]
     if not len(known):
         return math.nan
     known = known[int((1 - FRACTION) * len(known)) :]
     size = outcome.truth.values
-    if outcome.refined.renamed[-1]:
+    if outcome.filter.renamed[-1]:
         size = size[[X0, Z0, ORIENTATION, LENGTH, WIDTH, HEIGHT]]
     scale = 1.0 if quantity == HEIGHT else 100.0 / abs(size[quantity]) if size[quantity] else math.nan
     return float((abs(known.mean()) + 2 * known.std()) * scale)
