@@ -1,7 +1,7 @@
 /* Parts of the library and compile-time limits. Included by goe.h. SPDX-License-Identifier: MIT
  *
- * They may come from a header of the firmware's own: -DGOE_CONFIG_HEADER='"my_goe_config.h"'. [A24] All translation units of a
- * program must agree; goe_init() refuses an estimator of another size. */
+ * A header of the firmware may define them: -DGOE_CONFIG_HEADER='"my_goe_config.h"'. [A24] All translation units of a program
+ * must use the same values; goe_init() refuses an estimator of another size. */
 #ifndef GOE_LIMITS_H
 #define GOE_LIMITS_H
 
@@ -9,24 +9,24 @@
 #include GOE_CONFIG_HEADER
 #endif
 
-/* Parts that may be left out, code and state: 1 or 0. At least one method is needed. */
+/* Parts. 1 compiles the part's code and state, 0 leaves both out. At least one method is needed. */
 #ifndef GOE_WITH_WINDOW
-#define GOE_WITH_WINDOW 1 /* the window method; without it the filter answers nothing until it has started */
+#define GOE_WITH_WINDOW 1 /* the window method; without it there is no estimate until the filter has started */
 #endif
 #ifndef GOE_WITH_FILTER
 #define GOE_WITH_FILTER 1 /* the filter method */
 #endif
 #ifndef GOE_WITH_HAZARD
-#define GOE_WITH_HAZARD 1 /* goe_hazard() */
+#define GOE_WITH_HAZARD 1 /* goe_hazard, goe_decide, goe_rule_default, goe_earliest_tcpa_s */
 #endif
 #ifndef GOE_WITH_TARGET_MOTION
-#define GOE_WITH_TARGET_MOTION 1 /* filter: corrects pose latency, and follows an obstacle that moves */
+#define GOE_WITH_TARGET_MOTION 1 /* filter: corrects pose latency; estimates the velocity of a moving obstacle */
 #endif
 #if !GOE_WITH_WINDOW && !GOE_WITH_FILTER
 #error "GOE_WITH_WINDOW or GOE_WITH_FILTER must be 1"
 #endif
 
-/* Largest window that goe_settings_t.window.points may ask for, in image points; 3 to 64. Each point costs 40 bytes. */
+/* Largest value of goe_settings_t.window.points, 3 to 64. Each image of the window costs 40 bytes. */
 #ifndef GOE_WINDOW_MAX
 #define GOE_WINDOW_MAX 8
 #endif
@@ -34,7 +34,7 @@
 #error "GOE_WINDOW_MAX must be 3 to 64"
 #endif
 
-/* Cameras of one aircraft, 1 to 8. Each further one costs 112 bytes. */
+/* Largest number of cameras of one aircraft, 1 to 8. Each additional camera costs 112 bytes. */
 #ifndef GOE_CAMERAS_MAX
 #define GOE_CAMERAS_MAX 1
 #endif
@@ -42,7 +42,7 @@
 #error "GOE_CAMERAS_MAX must be 1 to 8"
 #endif
 
-/* A result that the caller must not ignore. */
+/* Marks a result that the caller must not ignore. */
 #if defined(__GNUC__) || defined(__clang__)
 #define GOE_NODISCARD __attribute__((warn_unused_result))
 #else
