@@ -90,8 +90,8 @@ extern "C" {
 
 /* ---------------------------------------------------------------------------------------------------------- status -- */
 
-/* Result of an image or of a call. GOE_OK and GOE_PARTIAL mean a new solution. The other positive statuses mean no new solution,
- * but no fault. The negative ones mean a fault and no new solution. "Image taken" means that goe stored the image, and that
+/* Result of an image or of a call. GOE_OK and GOE_PARTIAL mean a new solution. The other positive statuses mean no new
+ * solution, but no fault. The negative ones mean a fault and no new solution. "Image taken" means that goe stored the image, and that
  * later images build on it. The numbers 5 to 31, -16 to -31 and all below -35 are unused. [A25] */
 typedef enum {
     GOE_OK = 0,           /* new solution from this image and earlier ones; from another call: success */

@@ -36,8 +36,8 @@ typedef struct {
 
 /* The predicted closest approach under this intent. The sigmas are of first order, from the covariance of the estimate and the
  * error of the velocity. Filter: a constant error of goe_pose_t.height_m moves camera and top by the same amount, and does not
- * change the clearance. The conflict probability uses the clearance at tcpa_s. Elsewhere within the margin, climb or descent may
- * reduce the clearance by up to climb * margin_m / speed: add that to goe_intent_t.clearance_m. The conflict probability is
+ * change the clearance. The conflict probability uses the clearance at tcpa_s. Elsewhere within the margin, climb or descent
+ * may reduce the clearance by up to climb * margin_m / speed: add that to goe_intent_t.clearance_m. The conflict probability is
  * an upper bound if the errors of distance and clearance are negatively correlated. */
 typedef struct {
     float tcpa_s;      /* time until the distance to the outline is smallest for the first time. If the path crosses the
