@@ -91,7 +91,7 @@ extern "C" {
 /* ---------------------------------------------------------------------------------------------------------- status -- */
 
 /* Result of an image or of a call. GOE_OK and GOE_PARTIAL mean a new solution. The other positive statuses mean no new
- * solution, but no fault. The negative ones mean a fault and no new solution. "Image taken" means that goe stored the image, and that
+ * solution, but no fault. The negative ones mean a fault and no new solution. "Image taken" means that goe stored the image:
  * later images build on it. The numbers 5 to 31, -16 to -31 and all below -35 are unused. [A25] */
 typedef enum {
     GOE_OK = 0,           /* new solution from this image and earlier ones; from another call: success */
@@ -163,7 +163,7 @@ typedef struct {
 /* A detector's upright bounding box in raw pixels. Do not supply the smoothed boxes of a tracker: they lag. */
 typedef struct {
     float left_px, top_px, right_px, bottom_px; /* read only with its bit in sides; each +-1e5; left < right, top < bottom */
-    uint8_t sides; /* mask of GOE_SIDE_...; 0: no box. Clear the bit of a side that is cut, hidden or not reliable */
+    uint8_t sides; /* mask of GOE_SIDE_...; 0: no box. Clear the bit of a side that is cut, hidden or unreliable */
 } goe_box_t;
 
 #define GOE_SIDE_LEFT 0x01u
@@ -269,7 +269,7 @@ void goe_settings_default(goe_settings_t *settings);
  *   estimator_size  sizeof(goe_estimator_t) as the caller compiles it
  *   bad_field       receives the name of the first bad setting ("camera.fx_px"), otherwise null. May be null
  * Returns GOE_OK, GOE_BAD_ARGUMENT, GOE_BAD_SETTINGS. After a failure the estimator is unchanged.
- * Cost: at most 7900 instructions, 160 bytes of stack. */
+ * Cost: at most 8200 instructions, 160 bytes of stack. */
 GOE_NODISCARD goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator_size, const goe_settings_t *settings,
                                     const char **bad_field);
 

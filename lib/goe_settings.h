@@ -52,7 +52,6 @@ typedef struct {
 
 /* Errors of the pose, for the filter method. goe_hazard() uses velocity_bias_sd_m_s with both methods. */
 typedef struct {
-    float velocity_bias_sd_m_s;  /* constant error of the aircraft's velocity, north and east; 0 to 100 m/s; default 0.05 */
     float attitude_bias_sd_deg;  /* constant attitude error of each body axis, with mounting; 1e-3 to 30 deg; default 0.5 */
     float attitude_white_sd_deg; /* attitude error, new in each image; 1e-4 to 30 deg; default 0.1 */
     float attitude_walk_sd_deg;  /* random walk of the attitude error; 0 to 30 deg/s^0.5; default 0 */
@@ -62,6 +61,7 @@ typedef struct {
     float height_white_sd_m;     /* error of pose.height_m, new in each image; 0 to 1e3 m; default 0 */
     float terrain_slope_sd;      /* slope of the ground below the aircraft, m per m flown; 0 to 1; default 0 */
     float terrain_height_sd_m;   /* height error of the obstacle's ground, used with boxes; 0 to 1e3 m; default 2 */
+    float velocity_bias_sd_m_s;  /* constant error of the aircraft's velocity, north and east; 0 to 100 m/s; default 0.05 */
 } goe_navigation_t;
 
 /* Errors of the features, for the filter method. */

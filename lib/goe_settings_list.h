@@ -39,10 +39,6 @@
     X(heading_auto, TRUTH, "", 0, 1, 1, "Z takes the yaw of the vehicle at the track's first image") \
     X(heading_deg, REAL, "deg", -360.0f, 360.0f, 0.0f, "heading of Z without heading_auto, clockwise from north")
 
-/* Used with every method: the default sigma of an intent's velocity. */
-#define GOE_SETTINGS_VELOCITY(X) \
-    X(navigation.velocity_bias_sd_m_s, REAL, "m/s", 0.0f, 100.0f, 0.05f, "constant error of the aircraft's velocity, north and east")
-
 #if GOE_WITH_FILTER
 #define GOE_SETTINGS_FILTER(X) \
     X(navigation.attitude_bias_sd_deg, REAL, "deg", 1.0e-3f, 30.0f, 0.5f, "constant attitude error of each body axis, with mounting") \
@@ -71,6 +67,10 @@
 #else
 #define GOE_SETTINGS_FILTER(X)
 #endif
+
+/* Used with every method: the default sigma of an intent's velocity. */
+#define GOE_SETTINGS_VELOCITY(X) \
+    X(navigation.velocity_bias_sd_m_s, REAL, "m/s", 0.0f, 100.0f, 0.05f, "constant error of the aircraft's velocity, north and east")
 
 #if GOE_WITH_WINDOW
 #define GOE_SETTINGS_WINDOW(X) \

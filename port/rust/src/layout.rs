@@ -153,12 +153,12 @@ layout! {
         attitude_white_sd_deg: 4,
         attitude_walk_sd_deg: 8,
         height_bias_sd_m: 12,
-        velocity_bias_sd_m_s: 16,
-        position_walk_sd_m: 20,
-        position_white_sd_m: 24,
-        height_white_sd_m: 28,
-        terrain_slope_sd: 32,
-        terrain_height_sd_m: 36,
+        position_walk_sd_m: 16,
+        position_white_sd_m: 20,
+        height_white_sd_m: 24,
+        terrain_slope_sd: 28,
+        terrain_height_sd_m: 32,
+        velocity_bias_sd_m_s: 36,
     }
     goe_pixel_t: 12 {
         u_px: 0,

@@ -59,8 +59,6 @@ pub struct Navigation {
     pub attitude_walk_sd_deg: f32,
     /// Constant error of [`Pose::height_m`](crate::Pose::height_m), m; 1e-3 to 1e3; default 0.5.
     pub height_bias_sd_m: f32,
-    /// Constant error of the own horizontal velocity, each axis, m/s; 0 to 100; default 0.05.
-    pub velocity_bias_sd_m_s: f32,
     /// Random walk of the own position, m per square root of a second; 0 to 100; default 0.05.
     pub position_walk_sd_m: f32,
     /// Error of the own position that is new in each image, each axis, m; 0 to 100; default 0. Upright boxes only.
@@ -71,6 +69,8 @@ pub struct Navigation {
     pub terrain_slope_sd: f32,
     /// How far the obstacle's ground may lie off that which the height is above, m; 0 to 1e3; default 2. Boxes only.
     pub terrain_height_sd_m: f32,
+    /// Constant error of the own horizontal velocity, each axis, m/s; 0 to 100; default 0.05.
+    pub velocity_bias_sd_m_s: f32,
 }
 
 /// How wrong the detector's features are, one sigma each; for the filter method.
