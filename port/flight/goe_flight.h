@@ -1,36 +1,39 @@
 /*
  * goe_flight - the layer between a detector, an autopilot and the estimator
  *
- * In: attitude and position as the autopilot publishes them, detections as a detector sends them, late and with clocks of their
- * own. Out: which obstacles there are, where, what hazard they are from now on, and what to do about the worst one.
+ * Input: attitude and position as the autopilot publishes them; detections as a detector sends them, late and with other clocks.
+ * Output: the obstacles, their positions, their hazards from now on, and an order that avoids the worst one.
  *
  * Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT
  *
- * THIS HEADER IS THE MANUAL. It rests on goe.h alone; README.md has a drawing of the flow and what it costs.
+ * THIS HEADER IS THE MANUAL. It needs only goe.h; README.md has a drawing of the data flow and the costs.
  *
  *   autopilot   goe_flight_attitude(), goe_flight_position()   each sample, as it comes
  *   detector    goe_flight_frame()                             each image, also when nothing is in view
  *   reaction    goe_flight_assess()                            at any rate, 5 to 50 Hz; then goe_flight_obstacle(), _sectors()
  *
  * ---------------------------------------------------------------------------------------------------------------------
- * Frames      as goe.h: earth = local north, east, down (NED), m; body = forward, right, down; attitude = Hamilton quaternion
+ * Frames      as in goe.h: earth = local north, east, down (NED), m; body = forward, right, down; attitude = Hamilton quaternion
  *             (w, x, y, z), body to NED.
- * Time        uint32_t microseconds of the autopilot's clock. It may wrap: only differences count, and no two times that are
- *             compared lie more than half an hour apart.
- * Memory      goe_flight_t is owned by the caller, fixed in size, and all there is: no heap, no hidden statics, no recursion.
- * Threads     Every function touches only what its arguments point at; one goe_flight_t needs the caller's lock.
- * Arithmetic  float only; of the C library sqrtf, memcpy and memset. Compiled with -ffp-contract=off the results have the same
- *             bits on every IEEE 754 target.
- * Safety      Every output is finite. Values that are not finite are refused by their exponent bits, also under -ffast-math.
- * Bit flips   A flipped bit in goe_flight_t leads to no write out of bounds. Settings, cameras among them, are sealed: a frame and an
- *             assessment return GOE_FLIGHT_CORRUPTED. An estimator that returns GOE_CORRUPTED begins again, with the settings
- *             of another slot if its own are lost; until it knows a position again the slot keeps position and hazard, suspect, and
- *             its warning. The rest (poses, clocks, positions, the active order) is not sealed.
- * Cost        On a Cortex-M4F (gcc), in instructions: a sample at most 1,250, a frame 44,700 for each obstacle in it, an assessment
- *             28,700 with one obstacle, 23,200 for each further one with a position and, while a hazard is answered, the ways that
- *             are looked at: at most 3 times 4 + 4 GOE_FLIGHT_SLOTS of them, each against every obstacle; goe_flight_obstacle() 980,
- *             goe_flight_sectors() 6,600, goe_flight_init() 12,400 for each slot. No loop runs longer than GOE_FLIGHT_SECTORS.
- * Failure     A call that returns a negative status, or GOE_FLIGHT_TOO_NEW, changed nothing but counters.
+ * Time        uint32_t microseconds of the autopilot's clock. It may wrap: the layer uses only differences. Two compared times
+ *             must not be more than half an hour apart.
+ * Memory      The caller owns goe_flight_t. It has a fixed size and contains all state: no heap, no hidden statics, no recursion.
+ * Threads     Every function accesses only the memory that its arguments point at. The caller must lock a shared goe_flight_t.
+ * Arithmetic  float only. From the C library the layer uses sqrtf, memcpy and memset. Compiled with -ffp-contract=off, the results
+ *             have the same bits on every IEEE 754 target.
+ * Safety      Every output is finite. The layer refuses values that are not finite by their exponent bits, also under -ffast-math.
+ * Bit flips   A flipped bit in goe_flight_t causes no write out of bounds. Settings and cameras are sealed: with a broken seal a
+ *             frame and an assessment return GOE_FLIGHT_CORRUPTED. An estimator that returns GOE_CORRUPTED starts again; if its
+ *             settings are lost, it takes those of another slot. Until it has a position again, the slot keeps its position, hazard
+ *             and warning, marked suspect. The rest (poses, clocks, positions, the active order) is not sealed.
+ * Cost        On a Cortex-M4F (gcc), in instructions: a sample at most 1,250; a frame 44,700 for each obstacle in it; an assessment
+ *             28,700 with one obstacle and 23,200 for each further one with a position. While there is a hazard or an order, an
+ *             assessment also examines paths: at most 3 times (4 + 4 GOE_FLIGHT_SLOTS), each against every obstacle.
+ *             goe_flight_obstacle() 980; goe_flight_sectors() 6,600; goe_flight_init() 12,400 for each slot. No loop runs longer
+ *             than GOE_FLIGHT_SECTORS.
+ * Failure     A call that returns a negative status, or GOE_FLIGHT_TOO_NEW, changes nothing except counters, with two exceptions:
+ *             after a failed goe_flight_init() *flight cannot be used, and the 16th GOE_FLIGHT_BAD_TIME in a row calls
+ *             goe_flight_restart().
  */
 #ifndef GOE_FLIGHT_H
 #define GOE_FLIGHT_H
@@ -43,18 +46,18 @@
 
 /* ------------------------------------------------------------------------------------------------- compile-time limits -- */
 
-/* As those of goe.h they may come from GOE_CONFIG_HEADER. */
+/* Like the limits of goe.h, these may be defined in GOE_CONFIG_HEADER. */
 #ifndef GOE_FLIGHT_SLOTS
-#define GOE_FLIGHT_SLOTS 4 /* obstacles that are followed at a time, 1 to 16; each costs an estimator and 128 bytes */
+#define GOE_FLIGHT_SLOTS 4 /* most obstacles at a time, 1 to 16; each takes an estimator and 128 bytes */
 #endif
 #if GOE_FLIGHT_SLOTS < 1 || GOE_FLIGHT_SLOTS > 16
 #error "GOE_FLIGHT_SLOTS must be 1 to 16"
 #endif
 
-#define GOE_FLIGHT_SAMPLES 32    /* of each ring of the pose's history: 0.6 s or more */
-#define GOE_FLIGHT_CANDIDATES 6  /* detections that wait for their confirmation */
-#define GOE_FLIGHT_DETECTIONS 32 /* most that goe_flight_frame() takes at once */
-#define GOE_FLIGHT_SECTORS 72    /* of goe_flight_sectors(), 5 degrees each, the first centered on north */
+#define GOE_FLIGHT_SAMPLES 32    /* samples in each ring of the pose history: 0.6 s or more */
+#define GOE_FLIGHT_CANDIDATES 6  /* new obstacles that wait for confirmation */
+#define GOE_FLIGHT_DETECTIONS 32 /* most detections in one call of goe_flight_frame() */
+#define GOE_FLIGHT_SECTORS 72    /* sectors of goe_flight_sectors(), 5 degrees each, the first centered on north */
 
 #ifdef __cplusplus
 extern "C" {
@@ -64,129 +67,132 @@ extern "C" {
 
 typedef enum {
     GOE_FLIGHT_OK = 0,
-    GOE_FLIGHT_TOO_NEW = 1, /* no pose so new yet: keep the frame and ask again after the next sample; nothing was taken */
-    GOE_FLIGHT_TOO_OLD = -1,   /* older than the history or settings.delay_max_s, or in a gap of the samples: drop the frame */
+    GOE_FLIGHT_TOO_NEW = 1, /* the poses are older than the frame: keep it and call again after the next sample */
+    GOE_FLIGHT_TOO_OLD = -1,   /* older than the history or settings.delay_max_s, or in a gap of samples: drop it */
     GOE_FLIGHT_NO_POSE = -2,   /* no sample of attitude or position since the start or the latest unknown reset */
-    GOE_FLIGHT_BAD_TIME = -3,  /* a sample that is not newer than the one before it. After 16 of them in a row the clock is
-                                  taken to have been set back: goe_flight_restart() is done */
+    GOE_FLIGHT_BAD_TIME = -3,  /* a sample that is not newer than the previous one. The 16th in a row shows that the
+                                  clock was set back: the layer then calls goe_flight_restart() */
     GOE_FLIGHT_NOT_FINITE = -4,
     GOE_FLIGHT_OUT_OF_RANGE = -5, /* a number outside the range stated at its field */
-    GOE_FLIGHT_BAD_ATTITUDE = -6, /* the quaternion's norm is off 1 by more than 1 % */
+    GOE_FLIGHT_BAD_ATTITUDE = -6, /* the quaternion's norm differs from 1 by more than 1 % */
     GOE_FLIGHT_NOTHING = -7,      /* no such obstacle */
     GOE_FLIGHT_BAD_SETTINGS = -32,
     GOE_FLIGHT_BAD_ARGUMENT = -33, /* a null pointer, or a goe_flight_t of another size */
     GOE_FLIGHT_NOT_INITIALIZED = -34,
-    GOE_FLIGHT_CORRUPTED = -35 /* settings, here or of all estimators, are not what goe_flight_init() left: call it again. Until then
-                                  nothing is known, which is not "clear" */
+    GOE_FLIGHT_CORRUPTED = -35 /* settings of the layer or of all estimators changed after goe_flight_init(): call
+                                  it again. Until then nothing is known, which is not "clear" */
 } goe_flight_status_t;
 
 /* -------------------------------------------------------------------------------------------------------- settings -- */
 
 /* How the autopilot reports the resets of its filter. */
 enum {
-    GOE_FLIGHT_RESETS_COUNT = 0, /* marks are 8 bit counters: one up is a reset with the delta given, more an unknown one. PX4 */
-    GOE_FLIGHT_RESETS_TIME = 1   /* marks are times of the latest reset: any change is one reset. ArduPilot */
+    GOE_FLIGHT_RESETS_COUNT = 0, /* PX4: marks are 8 bit counters. One more: a reset by the given delta; any other
+                                    change: an unknown reset */
+    GOE_FLIGHT_RESETS_TIME = 1   /* ArduPilot: marks are times of the latest reset. Any change is one reset */
 };
 
-/* Where the height above the ground comes from. Chosen once per track, in this order; see goe_flight_position_t. */
+/* Sources of the height above the ground. The layer chooses one per track, in this order; see goe_flight_position_t. */
 enum { GOE_FLIGHT_RANGE_FINDER, GOE_FLIGHT_TERRAIN, GOE_FLIGHT_HOME, GOE_FLIGHT_HEIGHTS };
 
-/* Field: meaning; range; default. goe_flight_settings_list.h has the same as one table. */
+/* Field: meaning; range; default. goe_flight_settings_list.h lists ranges and defaults as a table. */
 typedef struct {
     /* detector */
-    float score_min;      /* a detection of less is not looked at; 0 to 1; 0.3 */
-    float confirm_images; /* images, at most 1 s apart, with a detection of a new obstacle before it gets a slot; 1 to 20; 3 */
-    float detector_timeout_s; /* without a frame for this long the detector counts as dead; 0.05 to 60; 1 */
-    float track_timeout_s; /* an obstacle undetected for this long is given up, unless it is ahead on the course or an order
-                             is about it; 1 to 600; 10 */
+    float score_min;      /* detections with a lower score are ignored; 0 to 1; 0.3 */
+    float confirm_images; /* images with a new obstacle, at most 1 s apart, before it gets a slot; 1 to 20; 3 */
+    float detector_timeout_s; /* the detector counts as dead after this time without a frame; 0.05 to 60; 1 */
+    float track_timeout_s; /* an obstacle is dropped after this time undetected, unless it is a hazard ahead. While an
+                              order is active, all obstacles are kept for at least 30 s; 1 to 600; 10 */
     /* time */
-    float delay_s;     /* least time from sending to arrival, which no one-way clock can see; 0 to 0.5; 0.005 */
-    float delay_sd_s;  /* its one-sigma, and that of any capture time whose sender gives none; 0 to 0.5; 0.005 */
-    float delay_max_s; /* a frame that comes later after its exposure is refused; 0.02 to 0.5; 0.4 */
+    float delay_s;     /* least time from sending to arrival, which one-way messages cannot show; 0 to 0.5; 0.005 */
+    float delay_sd_s;  /* one sigma of delay_s, and of a capture time without a sigma; 0 to 0.5; 0.005 */
+    float delay_max_s; /* frames that arrive later than this after their exposure are refused; 0.02 to 0.5; 0.4 */
     float resets;      /* GOE_FLIGHT_RESETS_...; 0 or 1; 0 */
-    /* height: one sigma, and the highest that the range finder is believed at */
-    float range_finder_sd_m;  /* 0.001 to 100; 0.3 */
-    float range_finder_max_m; /* 0 to 1000; 40 */
-    float terrain_sd_m;       /* 0.001 to 1000; 3 */
-    float home_sd_m;          /* 0.001 to 1000; 5 */
+    /* sources of the height */
+    float range_finder_sd_m;  /* one sigma of the range finder's height; 0.001 to 100; 0.3 */
+    float range_finder_max_m; /* greatest height at which the layer uses the range finder; 0 to 1000; 40 */
+    float terrain_sd_m;       /* one sigma of the height above the terrain database; 0.001 to 1000; 3 */
+    float home_sd_m;          /* one sigma of the height above home; 0.001 to 1000; 5 */
     /* wanted distances */
-    float margin_m;      /* to the outline, horizontally; 0 to 1000; 15 */
-    float clearance_m;   /* over the top; 0 to 1000; 10 */
-    float conflict_probability_max; /* probability of violating both from which on there is a reaction; 0.001 to 1; 0.1 */
+    float margin_m;      /* horizontal distance to the outline; 0 to 1000; 15 */
+    float clearance_m;   /* vertical distance over the top; 0 to 1000; 10 */
+    float conflict_probability_max; /* least conflict probability that causes a reaction; 0.001 to 1; 0.1 */
     float suspect_factor; /* factor on margin and clearance while the estimate is suspect; 1 to 10; 1.5 */
-    float stale_growth_m_s; /* by which both grow while the estimate is not renewed; 0 to 100; 1 */
-    /* what the aircraft can do */
-    float bank_deg;    /* of an avoiding turn; 5 to 70; 30 */
-    float roll_in_s;   /* from the order to that turn, link and mode change included; 0 to 20; 1.5 */
-    float climb_m_s;   /* of an avoiding climb; 0.1 to 50; 2.5 */
-    float climb_in_s;  /* from the order to that climb; 0 to 20; 2 */
-    float loiter_m;    /* radius of the circle that the autopilot flies about a reposition point; 0: it flies through; 0 to
-                          1e4; 0 */
-    float reserve_s;   /* an order comes this much before its last moment; 0 to 60; 3 */
-    float confirm_s;   /* the hazard must stay for this long before an order, unless none is left; 0 to 10; 0.3 */
-    float hold_s;      /* ... and its end before the order is taken back; 0 to 60; 2 */
-    /* where no order is given; hazards are reported all the same. A height below the ground by twice home_sd_m, as in a valley,
-       withholds nothing */
-    float order_height_m;  /* no new order below this height above the ground; 0: at any; 0 to 1000; 5 */
-    float order_speed_m_s; /* ... nor below this speed over the ground; 0 to 100; 5 */
+    float stale_growth_m_s; /* growth of margin and clearance while the estimate is not updated; 0 to 100; 1 */
+    /* abilities of the aircraft */
+    float bank_deg;    /* bank angle of an avoiding turn; 5 to 70; 30 */
+    float roll_in_s;   /* time from the order to that turn, with link and mode change; 0 to 20; 1.5 */
+    float climb_m_s;   /* rate of an avoiding climb; 0.1 to 50; 2.5 */
+    float climb_in_s;  /* time from the order to that climb; 0 to 20; 2 */
+    float loiter_m;    /* radius of the autopilot's circle around a target; 0: it flies straight on; 0 to 1e4; 0 */
+    float reserve_s;   /* an order comes this long before the last possible moment; 0 to 60; 3 */
+    float confirm_s;   /* an order comes after the hazard has lasted this long, at once if it is late; 0 to 10; 0.3 */
+    float hold_s;      /* an order ends after the hazard has been over for this long; 0 to 60; 2 */
+    /* Limits of orders; hazards are reported in any case. A height of more than twice home_sd_m below the ground, as in
+       a valley, withholds no order */
+    float order_height_m;  /* no new order below this height above the ground; 0: no limit; 0 to 1000; 5 */
+    float order_speed_m_s; /* no new order below this speed over the ground; 0 to 100; 5 */
 } goe_flight_settings_t;
 
 /* ----------------------------------------------------------------------------------------------------------- input -- */
 
 typedef struct {
-    uint32_t time_us; /* of the sample itself (PX4: timestamp_sample), not of its arrival; increasing */
+    uint32_t time_us; /* time of the sample (PX4: timestamp_sample), not of its arrival; increasing */
     float q[4];       /* w, x, y, z; norm 1 within 1 % */
-    uint32_t reset;   /* mark: changes with every reset of attitude or heading. Any such reset ends all tracks, as an unknown
-                         reset of the position does: obstacles are kept, suspect, until an image places them again */
+    uint32_t reset;   /* mark that changes with every reset of attitude or heading. Such a reset ends all tracks, like
+                         an unknown reset of the position. Obstacles are kept, suspect, until an image gives a new
+                         position */
 } goe_flight_attitude_t;
 
 typedef struct {
     uint32_t time_us;
     float position_ned_m[3];   /* vehicle's reference point, each +-1e6 */
     float velocity_ned_m_s[3]; /* over the ground, each +-1e3 */
-    float height_m[GOE_FLIGHT_HEIGHTS]; /* of the reference point above the ground, vertical; read if valid; +-1e5 */
-    uint8_t height_valid;               /* bit 1 << GOE_FLIGHT_RANGE_FINDER, ...: which of them hold. The ground of a track is
-                                           that of its first image: later a range finder would read roofs. With none the
-                                           origin's down = 0 is the ground, as good as home */
-    bool origin_known;                  /* the origin of NED, for latitude and longitude */
+    float height_m[GOE_FLIGHT_HEIGHTS]; /* vertical, of the reference point above the ground; read if valid; +-1e5 */
+    uint8_t height_valid;               /* bits 1 << GOE_FLIGHT_RANGE_FINDER, ...: the valid heights. A track keeps the
+                                           ground of its first image, because a range finder would later measure roofs.
+                                           Without a valid height the ground is down = 0, with the sigma of home */
+    bool origin_known;                  /* the latitude and longitude of the NED origin are known */
     int32_t origin_lat_e7, origin_lon_e7; /* degrees times 1e7; +-89e7, +-180e7 */
     uint32_t reset_horizontal, reset_vertical; /* marks of resets, see goe_flight_settings_t.resets */
-    bool reset_delta_known;             /* else any reset is an unknown one: ends all tracks, empties the history. The kept
-                                           obstacles moves along as far as the velocity shows the jump */
-    float reset_delta_ned_m[3];         /* new minus old of the latest reset of each; read when a mark changed. Down: the
-                                           ground of every track moves along, whether height_m jumped or not, so that no height
-                                           above ground changes. A track that begins later has the ground of its own sample */
+    bool reset_delta_known;             /* false: any reset is unknown, ends all tracks and empties the history. The
+                                           layer shifts kept obstacles by the jump that the velocity reveals */
+    float reset_delta_ned_m[3];         /* new minus old position at the latest reset; read when a mark changed. The
+                                           ground of every track shifts by the down part, even if height_m did not jump,
+                                           so no height above the ground changes. A later track takes the ground of its
+                                           first sample */
 } goe_flight_position_t;
 
 /* Clock of goe_flight_frame_t.capture_us. */
 enum {
-    GOE_FLIGHT_AUTOPILOT_CLOCK = 0, /* the autopilot's: nothing to estimate */
-    GOE_FLIGHT_SENDER_CLOCK = 1, /* the sender's: offset from goe_flight_timesync() or, one-way, the least of arrival - sending
-                                    over 10 to 20 s, less delay_s */
+    GOE_FLIGHT_AUTOPILOT_CLOCK = 0, /* the autopilot's clock: the layer estimates no offset */
+    GOE_FLIGHT_SENDER_CLOCK = 1, /* the sender's clock. Its offset comes from goe_flight_timesync(); without it, the
+                                    offset is the least (arrival - sending) over 10 to 20 s, minus delay_s */
     GOE_FLIGHT_AGE = 2           /* age of the image at sending: capture = arrival - delay_s - age */
 };
 
-/* One obstacle in one image. A box, or points, or both, as in goe_image_t. */
+/* One obstacle in one image: a box, or points, or both, as in goe_image_t. */
 typedef struct {
-    uint32_t id;   /* of the detector's tracker, of each camera's own; 0: it has none, and the place in the image decides */
+    uint32_t id;   /* from the tracker of the camera's detector; 0: no id, and the position in the image decides */
     float score;   /* 0 to 1 */
     float pixel_px; /* one sigma of box and points; 0: as in the settings; 0 to 100 */
-    goe_box_t box; /* raw pixels; give all four sides, also at the border of the image: the estimator detects truncation */
-    goe_pixel_t left, right, top, base_left, base_near, base_right; /* left, right, top within the image's border count as
-                                                                       invisible, and with a side the top */
+    goe_box_t box; /* raw pixels; give all four sides, also at the image border: the estimator detects truncation */
+    goe_pixel_t left, right, top, base_left, base_near, base_right; /* left, right, top in the image's border zone
+                                                                       count as invisible; so does top if left or
+                                                                       right does */
 } goe_flight_detection_t;
 
 typedef struct {
     uint32_t arrival_us; /* autopilot's clock */
     uint32_t capture_us; /* middle of the exposure, by the clock of time_base; or the age */
-    uint32_t sent_us;    /* GOE_FLIGHT_SENDER_CLOCK: when it was sent; = capture_us if not known: then delay_s is from the
-                            exposure on */
-    uint32_t time_sd_us; /* one sigma of capture_us as the sender knows it; 0: settings.delay_sd_s */
-    uint8_t time_base;
-    uint8_t camera; /* number of the camera that took it; one that is set, below GOE_CAMERAS_MAX */
-    uint8_t number; /* of detections in the image. 0: nothing in view, which shows that the detector is alive */
-    uint8_t count;  /* of those here, 0 to GOE_FLIGHT_DETECTIONS. Less than number: the others come in further calls with the
-                       same capture time */
+    uint32_t sent_us;    /* sending time, for GOE_FLIGHT_SENDER_CLOCK. If it is unknown, set it to capture_us: delay_s
+                            then counts from the exposure */
+    uint32_t time_sd_us; /* one sigma of capture_us from the sender; 0: settings.delay_sd_s */
+    uint8_t time_base;   /* one of the clocks above */
+    uint8_t camera; /* number of the camera that took the image; a configured one, below GOE_CAMERAS_MAX */
+    uint8_t number; /* detections in the image. 0: nothing in view; such a frame shows that the detector is alive */
+    uint8_t count;  /* detections in this call, 0 to GOE_FLIGHT_DETECTIONS. If fewer than number, the others follow in
+                       further calls with the same capture time */
     const goe_flight_detection_t *detection;
 } goe_flight_frame_t;
 
@@ -194,86 +200,90 @@ typedef struct {
 
 typedef enum {
     GOE_FLIGHT_NONE = 0,
-    GOE_FLIGHT_LEFT = 1,      /* fly to target_ned_m, to the left of the obstacle, looking along the course */
-    GOE_FLIGHT_RIGHT = 2,     /* ... right of it */
-    GOE_FLIGHT_CLIMB = 3,     /* straight on, up to target_ned_m: the top is surely below that by then */
-    GOE_FLIGHT_GO_AROUND = 4, /* break off the approach */
-    GOE_FLIGHT_HOLD = 5       /* neither side nor top can be passed in time: turn away, to target_ned_m before the obstacle, and
-                                 loiter */
+    GOE_FLIGHT_LEFT = 1,      /* fly to target_ned_m, to the left of the obstacle as viewed along the course */
+    GOE_FLIGHT_RIGHT = 2,     /* fly to target_ned_m, to the right of the obstacle */
+    GOE_FLIGHT_CLIMB = 3,     /* fly straight on and climb to target_ned_m, which is above the top at two sigma */
+    GOE_FLIGHT_GO_AROUND = 4, /* abort the approach */
+    GOE_FLIGHT_HOLD = 5       /* turn away to target_ned_m before the obstacle and loiter: no time is left to pass it
+                                 beside or above */
 } goe_flight_action_t;
 
-/* Why it is this action. */
+/* The reason of the action. */
 typedef enum {
-    GOE_FLIGHT_REASON_NONE = 0,  /* no order, and none is withheld */
-    GOE_FLIGHT_REASON_CLEAR = 1, /* the order keeps clear of everything known */
-    GOE_FLIGHT_REASON_LEAST_BAD = 2, /* nothing is free: the order has the largest clearance that was found */
+    GOE_FLIGHT_REASON_NONE = 0,  /* no order is given, and none is withheld */
+    GOE_FLIGHT_REASON_CLEAR = 1, /* the path of the order is clear of all known obstacles */
+    GOE_FLIGHT_REASON_LEAST_BAD = 2, /* no path is clear: the order has the largest distance that was found */
     /* an order is due and withheld, because the aircraft ... */
     GOE_FLIGHT_REASON_LOW = 3,   /* is lower than order_height_m */
     GOE_FLIGHT_REASON_SLOW = 4,  /* is slower than order_speed_m_s */
     GOE_FLIGHT_REASON_LANDING = 5 /* flares, or has touched down */
 } goe_flight_reason_t;
 
-/* What the aircraft does, for goe_flight_assess(). Any other number counts as GOE_FLIGHT_FLYING. */
+/* The phase of flight, for goe_flight_assess(). Any other number counts as GOE_FLIGHT_FLYING. */
 enum {
     GOE_FLIGHT_FLYING = 0,
-    GOE_FLIGHT_APPROACH = 1, /* it is landing: to go around comes first */
+    GOE_FLIGHT_APPROACH = 1, /* the aircraft is landing: the layer prefers a go-around */
     GOE_FLIGHT_FLARE = 2,    /* no order is given, and an active one ends */
-    GOE_FLIGHT_LANDED = 3    /* it has touched down: the same. Obstacles behind the runway are not on its course */
+    GOE_FLIGHT_LANDED = 3    /* the aircraft has touched down: no order, as in the flare. Obstacles beyond the runway
+                                are not on its course */
 };
 
-/* What goe_flight_assess() finds. The worst obstacle is that of the largest conflict_probability / (1 + 0.1 tcpa_s). */
+/* The result of goe_flight_assess(). The worst obstacle has the largest conflict_probability / (1 + 0.1 tcpa_s). */
 typedef struct {
     goe_flight_action_t action;
-    bool late;             /* the action needs longer than there is: it may not suffice */
-    bool suspect;          /* the worst obstacle's estimate is: margins were widened */
-    bool detector_alive;   /* within detector_timeout_s, of every camera, a frame came that can be read: without detections, or with one of good
-                              numbers. Once false, false until the next such frame */
+    bool late;             /* the action needs more time than is left: it may not suffice */
+    bool suspect;          /* the worst obstacle's estimate is suspect: margins were widened */
+    bool detector_alive;   /* every camera sent a readable frame within detector_timeout_s: an empty one, or one with a
+                              valid detection. Once false, it stays false until the next such frame */
     bool pose_alive;       /* samples of attitude and position came within 0.5 s */
-    int8_t worst;          /* slot, for goe_flight_obstacle(); -1: no hazard is known, which is "clear" only if both are alive */
-    int8_t avoided;        /* slot of the obstacle that the action is about; -1: none, or it was given up */
-    uint8_t obstacles;     /* with a position */
-    float needed_s;        /* time that the action needs, or the best one would, if there is a worst obstacle */
-    float target_ned_m[3]; /* 0 if GOE_FLIGHT_NONE. The height of CLIMB and GO_AROUND clears the highest top that is known on the
-                              course by clearance_m at two sigma; it rises with the estimate and never sinks while the order is active */
+    int8_t worst;          /* slot, for goe_flight_obstacle(); -1: no known hazard. That is "clear" only if detector and
+                              pose are alive */
+    int8_t avoided;        /* slot of the obstacle that the action avoids; -1: none, or its track has ended */
+    uint8_t obstacles;     /* number of obstacles with a position */
+    float needed_s;        /* time that the action needs; without an action, time that the best action would need; 0
+                              without a worst obstacle */
+    float target_ned_m[3]; /* 0 if GOE_FLIGHT_NONE. The height of CLIMB and GO_AROUND clears the highest known top on
+                              the course by clearance_m at two sigma; it rises with the estimate and never sinks while
+                              the order is active */
     goe_flight_reason_t reason;
-    float clear_m;         /* of LEFT, RIGHT and HOLD: the least distance that the ways in which the order may be flown keep from any
-                              known outline, two sigmas of its place taken off; at most 1000. Else 0 */
+    float clear_m;         /* LEFT, RIGHT, HOLD: least distance of the order's path from any known outline, minus two
+                              sigmas of that obstacle's position; at most 1000. Otherwise 0 */
     int32_t target_lat_e7, target_lon_e7; /* 0 if the origin is not known */
-    goe_hazard_t hazard;   /* of the worst obstacle, from now; all zero if there is none */
+    goe_hazard_t hazard;   /* hazard of the worst obstacle from now on; all zero if there is none */
 } goe_flight_assessment_t;
 
-/* One obstacle. An unknown value is 0 and not in valid. */
+/* One obstacle. An unknown value is 0 and has no bit in valid. */
 typedef struct {
     uint32_t id;
     unsigned valid;          /* GOE_HAS_POSITION, _HEIGHT, _WIDTH, _LENGTH, _ORIENTATION */
     goe_model_t model;
     bool suspect, receding;  /* receding: on the present course its distance grows */
     bool in_view;            /* detected in the latest image of the camera that detected it last */
-    bool has_hazard;         /* hazard is known: assessed with a position */
-    float age_s;             /* since it was last measured, from the latest assessment */
-    float center_ned_m[3];   /* middle of the visible base; down: of its ground */
-    float covariance_ne_m2[3]; /* of the center: north north, north east, east east */
-    float radius_m;          /* of the circle about the center that contains the outline */
-    float height_m, height_sd_m; /* of the top above the ground */
+    bool has_hazard;         /* the obstacle has been assessed with a position, so hazard is valid */
+    float age_s;             /* time from its last measurement to the latest assessment */
+    float center_ned_m[3];   /* middle of the visible base; its down is the obstacle's ground */
+    float covariance_ne_m2[3]; /* covariance of the center: north north, north east, east east */
+    float radius_m;          /* radius of the circle around the center that contains the outline */
+    float height_m, height_sd_m; /* height of the top above the ground, and its sigma */
     float width_m, length_m;
     float length_heading_deg; /* of the length axis, clockwise from north, 0 to 180 */
-    float nearest_ned_m[3];  /* of the circle from the aircraft, at the aircraft's height or the top, whichever is lower */
-    float nearest_body_m[3]; /* the same relative to the aircraft, body axes */
+    float nearest_ned_m[3];  /* nearest point of the circle, at the lower of aircraft and top */
+    float nearest_body_m[3]; /* the nearest point relative to the aircraft, body axes */
     int32_t lat_e7, lon_e7;  /* center; 0 if the origin is not known */
-    goe_hazard_t hazard;     /* from the latest goe_flight_assess() on */
+    goe_hazard_t hazard;     /* from the time of the latest goe_flight_assess() on */
 } goe_flight_obstacle_t;
 
-#define GOE_FLIGHT_SECTOR_UNKNOWN 65535u /* outside the view of every camera whose detector is alive, or the pose dead */
+#define GOE_FLIGHT_SECTOR_UNKNOWN 65535u /* outside the view of every live camera, or the pose is dead */
 
 /* Counted since goe_flight_init(); they saturate. */
 typedef struct {
-    uint16_t taken;   /* frames */
+    uint16_t taken;   /* accepted frames */
     uint16_t late;    /* frames that came too late for the history */
-    uint16_t early;   /* calls that were answered by GOE_FLIGHT_TOO_NEW */
+    uint16_t early;   /* calls that returned GOE_FLIGHT_TOO_NEW */
     uint16_t refused; /* samples, frames or detections that were not finite or out of range */
     uint16_t weak;    /* detections below score_min */
     uint16_t renumbered; /* tracks that took over a new id */
-    uint16_t evicted; /* tracks given up for a new obstacle */
+    uint16_t evicted; /* tracks that ended because a new obstacle took their slot */
     uint16_t full;    /* confirmed detections that found no slot */
     uint16_t resets;  /* known jumps */
     uint16_t lost;    /* unknown resets and restarts: all tracks ended */
@@ -281,7 +291,8 @@ typedef struct {
 
 /* ----------------------------------------------------------------------------------------------------------- state -- */
 
-/* Transparent, for the caller to place and count; private but for counters and capture_us. Each type names the file that maintains it. */
+/* These types are visible so that the caller can allocate them. Only counters and capture_us are public. Each comment
+ * names the file that maintains the type. */
 
 typedef struct { /* goe_history.c */
     uint32_t time_us;
@@ -303,16 +314,16 @@ typedef struct { /* goe_history.c */
 typedef struct { /* goe_marks.c: the autopilot's reset counters */
     uint32_t attitude, horizontal, vertical;
     goe_flag_t attitude_known, position_known; /* a first mark has come */
-    float jumps_ned_m[3];                /* sum of all known ones, modulo nothing: bounded to 1e6 */
+    float jumps_ned_m[3];                /* sum of all known jumps, limited to 1e6 */
 } goe_flight_marks_t;
 
 typedef struct { /* goe_clock.c: sender's clock to autopilot's */
-    uint32_t offset_us;    /* autopilot's minus sender's: by goe_flight_timesync(); or the least of this bucket ... */
-    uint32_t before_us;    /* ... and of the one before it */
-    uint32_t bucket_us;    /* when this bucket began */
-    float excess_us;       /* running mean of how far arrivals lie above the least */
+    uint32_t offset_us;    /* autopilot's minus sender's, by goe_flight_timesync(); or the least in this interval */
+    uint32_t before_us;    /* the least in the previous interval */
+    uint32_t bucket_us;    /* start of this interval */
+    float excess_us;       /* running mean of the delays above the least */
     float synced_sd_us;
-    uint8_t count, strange; /* of this filter; arrivals in a row that are off by more than a second */
+    uint8_t count, strange; /* of this filter; arrivals in a row that differ by more than a second */
     goe_flag_t has_before, synced;
 } goe_flight_clock_t;
 
@@ -327,34 +338,34 @@ typedef struct { /* goe_slot.c */
     goe_estimator_t estimator;
     goe_hazard_t hazard; /* from the latest assessment; goe_lookout.c */
     uint32_t id;
-    uint32_t taken_us, detected_us; /* exposure of the latest image taken, and of that with a detection */
-    float jumps_ned_m[3];       /* the history's sum at the latest image taken */
+    uint32_t taken_us, detected_us; /* exposure of the latest accepted image, and of the latest detection */
+    float jumps_ned_m[3];       /* sum of all known jumps at the latest accepted image */
     float ground_down_m, height_sd_m; /* of the track, fixed at its first image */
     float center_ne_m[2], covariance_ne_m2[3];
     float top_m, top_sd_m, width_m, length_m, length_heading_deg;
     float age_s; /* at taken_us */
     int16_t box_px[4];
     uint8_t valid, model, reset_count;
-    uint8_t camera; /* that saw it last */
+    uint8_t camera; /* that detected it last */
     goe_flag_t used, fresh_track, suspect, in_view, assessed;
-    goe_flag_t remembered; /* place and hazard are from before the estimator was lost */
+    goe_flag_t remembered; /* position and hazard are from before the estimator was lost */
 } goe_flight_slot_t;
 
 typedef struct { /* goe_reaction.c: the active order */
-    float from_ne_m[2], course_ne[2]; /* where it was given, and the course then: the line to go back to */
-    uint32_t rising_us, falling_us;   /* since when there is a hazard, and an end of it */
+    float from_ne_m[2], course_ne[2]; /* position and course when it was given: the line to return to */
+    uint32_t rising_us, falling_us;   /* start of the hazard, and of its end */
     float target_ned_m[3];
     float along_ne[2];  /* the course when the target was chosen */
     float clear_m;      /* as reported */
     uint32_t ordered_us;
     uint8_t action;
-    int8_t slot; /* its obstacle; -1: none, or given up */
-    int8_t edge; /* the slot past whose outline the target lies; -1: the target does not follow one */
+    int8_t slot; /* its obstacle; -1: none, or its track has ended */
+    int8_t edge; /* the slot whose outline determines the target; -1: none */
     int8_t side; /* -1: left, 1: right, also of HOLD; 0: none */
     uint8_t changes; /* of the side */
     uint8_t reason;
     goe_flag_t rising, falling, late;
-    goe_flag_t gap; /* the target lies in the middle between slot and edge */
+    goe_flag_t gap; /* the target is in the middle between slot and edge */
 } goe_flight_reaction_t;
 
 typedef struct { /* goe_flight.c */
@@ -373,15 +384,15 @@ typedef struct {
     goe_flight_marks_t marks;
     goe_flight_clock_t clock;
     goe_flight_reaction_t reaction;
-    goe_flight_counters_t counters; /* may be read */
+    goe_flight_counters_t counters; /* public */
     int64_t base_us;                /* the newest sample's time, never wrapping */
-    uint32_t frame_us[GOE_CAMERAS_MAX]; /* base_us when the latest frame of each camera was taken ... */
+    uint32_t frame_us[GOE_CAMERAS_MAX]; /* base_us at the latest accepted frame of each camera */
     uint32_t assessed_us;
-    uint32_t capture_us; /* exposure of the latest frame taken, autopilot's clock; may be read */
+    uint32_t capture_us; /* exposure of the latest accepted frame, autopilot's clock; public */
     float velocity_ned_m_s[3];
-    float ground_down_m; /* by the best source of the newest sample ... */
-    uint8_t ground_source; /* ... which is this, GOE_FLIGHT_RANGE_FINDER, ... */
-    uint8_t had_frame; /* ... bit i: one was of camera i */
+    float ground_down_m; /* ground by the best source of the newest sample */
+    uint8_t ground_source; /* that source: GOE_FLIGHT_RANGE_FINDER, ... */
+    uint8_t had_frame; /* bit i: camera i has had a frame */
     goe_flag_t origin_known;
     int32_t origin_lat_e7, origin_lon_e7;
     goe_flight_candidate_t candidate[GOE_FLIGHT_CANDIDATES];
@@ -393,80 +404,86 @@ typedef struct {
 /* Sets every field to its default. A null pointer is ignored. */
 void goe_flight_settings_default(goe_flight_settings_t *settings);
 
-/* Checks both settings, copies them, starts with nothing known.
+/* Checks the settings of estimator and layer, copies them, and clears all state.
  *   flight_size  sizeof(goe_flight_t) in the caller's compilation
- *   estimator    as for goe_init; width_px and height_px of every camera must be set too. With boxes the sigma of the height's source, a
- *                setting of the layer, replaces navigation.height_bias_sd_m. Leave height_white_sd_m at 0: a track's heights
- *                are one reading and the changes of down
+ *   estimator    as for goe_init; width_px and height_px of every camera must be set too. With boxes the layer replaces
+ *                navigation.height_bias_sd_m by the sigma of the height's source, one of its settings. Leave height_white_sd_m
+ *                at 0: a track takes one height, and after that only the changes of down
  *   settings     null: the defaults
- *   bad_field    where to put the name of the first bad setting; null if not wanted
+ *   bad_field    receives the name of the first bad setting; null if not wanted
  * Returns GOE_FLIGHT_OK, _BAD_ARGUMENT or _BAD_SETTINGS; on failure *flight cannot be used. */
 GOE_NODISCARD goe_flight_status_t goe_flight_init(goe_flight_t *flight, size_t flight_size, const goe_settings_t *estimator,
                                                   const goe_flight_settings_t *settings, const char **bad_field);
 
-/* Changes the layer's settings in flight: poses, clocks, obstacles and an active order stay, and the next assessment judges by the new
- * settings. The settings of the estimators at initialization stay too.
+/* Changes the layer's settings in flight. Poses, clocks, obstacles, an active order and the settings of the estimators stay; the next
+ * assessment uses the new settings.
  *   settings   null: the defaults
  *   bad_field  as for goe_flight_init
  * Returns GOE_FLIGHT_OK, _BAD_ARGUMENT, _BAD_SETTINGS, _NOT_INITIALIZED, or _CORRUPTED: then call goe_flight_init(). On failure the
- * settings stay as they were. */
+ * settings do not change. */
 GOE_NODISCARD goe_flight_status_t goe_flight_change_settings(goe_flight_t *flight, const goe_flight_settings_t *settings,
                                                              const char **bad_field);
 
-/* Take a sample of the pose. Samples closer than 20 ms are thinned.
+/* Take a sample of the pose. The history keeps samples at least 20 ms apart.
  * Return GOE_FLIGHT_OK, _BAD_TIME, _NOT_FINITE, _OUT_OF_RANGE, _BAD_ATTITUDE, _BAD_ARGUMENT, _NOT_INITIALIZED. */
 goe_flight_status_t goe_flight_attitude(goe_flight_t *flight, const goe_flight_attitude_t *sample);
 goe_flight_status_t goe_flight_position(goe_flight_t *flight, const goe_flight_position_t *sample);
 
-/* The pose at a time, height_m that of camera 0: position linear between the two samples about it, attitude by the cubic
- * through them and their neighbors, as far as these exist; the height by the best source known now. pose->time_us does not wrap and is in
- * the same clock.
- *   attitude_sd_deg  uncertainty of the attitude for a time whose one sigma is time_sd_us; null if not wanted
+/* Interpolates the pose at a time: the position linearly between the two nearest samples, the attitude by the cubic through them
+ * and their neighbors, if these exist. height_m is that of camera 0, by the best source at present. pose->time_us uses the
+ * autopilot's clock, too, but does not wrap.
+ *   attitude_sd_deg  one sigma of the attitude if the time has one sigma of time_sd_us; null if not wanted
  * Returns GOE_FLIGHT_OK, _TOO_NEW, _TOO_OLD, _NO_POSE, _BAD_ARGUMENT, _NOT_INITIALIZED; all zero unless _OK. */
 goe_flight_status_t goe_flight_pose(const goe_flight_t *flight, uint32_t time_us, uint32_t time_sd_us, goe_pose_t *pose,
                                     float *attitude_sd_deg);
 
-/* The sender's clock from a two-way exchange: autopilot's minus sender's (modulo 2^32), and its one sigma. From then on it
- * replaces the one-way estimate, until sd_us is 0xFFFFFFFF: not known any more.
+/* Sets the offset of the sender's clock from a two-way exchange: autopilot's minus sender's time (modulo 2^32), and its one sigma.
+ * It replaces the one-way estimate until a call with sd_us 0xFFFFFFFF, which means unknown.
  * Returns GOE_FLIGHT_OK, _BAD_ARGUMENT, _NOT_INITIALIZED. */
 goe_flight_status_t goe_flight_timesync(goe_flight_t *flight, uint32_t offset_us, uint32_t sd_us);
 
-/* Takes an image's detections. A detection that is not finite or out of range is left out and counted; a known id goes to its
- * slot; a new one takes over the track that is not in this image and whose predicted position is inside its box; any other waits until
- * it is confirmed. With the last detection of an image the other tracks of its camera are updated as undetected. An obstacle
- * visible to two cameras at once may have two slots until both know its position.
+/* Takes the detections of an image:
+ *   - A detection that is not finite or out of range is ignored and counted.
+ *   - A detection with a known id updates the slot with that id.
+ *   - A detection with a new id takes over a track that has no detection in this image and whose predicted position is in its box.
+ *   - Any other detection waits until it is confirmed.
+ * After the last detection of an image, the other tracks of its camera are updated as undetected. An obstacle visible to two
+ * cameras at once may have two slots until both have its position.
  * Returns GOE_FLIGHT_OK, _TOO_NEW, _TOO_OLD, _NO_POSE, _OUT_OF_RANGE (time base, camera, count), _BAD_ARGUMENT, _NOT_INITIALIZED,
  * _CORRUPTED. */
 goe_flight_status_t goe_flight_frame(goe_flight_t *flight, const goe_flight_frame_t *frame);
 
-/* The hazards ahead from now on, at the velocity of the newest sample, and the reaction: README.md has the rule as a table.
- *   now_us    autopilot's clock; older than the newest sample: counts as that
+/* Finds the hazards ahead from now on, at the velocity of the newest sample, and the reaction; README.md has the rule as a table.
+ *   now_us    time by the autopilot's clock; a time before the newest sample is replaced by that sample's time
  *   phase     GOE_FLIGHT_FLYING, _APPROACH, _FLARE or _LANDED
- *   result    written by every call unless null; all zero (worst, avoided -1) on failure: that is not "clear" then
+ *   result    every call writes it, unless null. On failure it is all zero (worst, avoided -1), which does not mean "clear"
  * Returns GOE_FLIGHT_OK, _NO_POSE, _BAD_ARGUMENT, _NOT_INITIALIZED, _CORRUPTED. */
 goe_flight_status_t goe_flight_assess(goe_flight_t *flight, uint32_t now_us, uint8_t phase,
                                       goe_flight_assessment_t *result);
 
-/* One obstacle, slot 0 to GOE_FLIGHT_SLOTS - 1, as of the latest image, with the hazard of the latest assessment.
- * Returns GOE_FLIGHT_OK, _NOTHING, _NO_POSE, _BAD_ARGUMENT, _NOT_INITIALIZED, _CORRUPTED (a flipped bit made a number of it infinite);
- * all zero unless _OK. */
+/* Reads one obstacle, slot 0 to GOE_FLIGHT_SLOTS - 1, as of the latest image, with the hazard of the latest assessment.
+ * Returns GOE_FLIGHT_OK, _NOTHING, _NO_POSE, _BAD_ARGUMENT, _NOT_INITIALIZED, _CORRUPTED (a flipped bit made one of its numbers
+ * infinite). *obstacle is all zero unless _OK. */
 goe_flight_status_t goe_flight_obstacle(const goe_flight_t *flight, int slot, goe_flight_obstacle_t *obstacle);
 
-/* Nearest obstacle by bearing: sector i is centered on 5 i degrees from north; cm, at most max_cm; max_cm + 1: nothing there as
- * far as the camera's view; GOE_FLIGHT_SECTOR_UNKNOWN elsewhere. Obstacles that the latest assessment clears in height by more than the
- * clearance, at two sigma, are left out. For PX4's obstacle_distance: increment 5, GLOBAL frame.
+/* Finds the distance of the nearest obstacle in each sector; sector i is centered on the bearing 5 i degrees. Values in cm:
+ *   - at most max_cm: the distance
+ *   - max_cm + 1: the sector is in the camera's view and has no obstacle
+ *   - GOE_FLIGHT_SECTOR_UNKNOWN: all other sectors
+ * Obstacles that the latest assessment clears in height by more than the clearance, at two sigma, are ignored. For PX4's
+ * obstacle_distance use increment 5 and the frame GLOBAL.
  *   max_cm  1 to 65000
  * Returns GOE_FLIGHT_OK, _NO_POSE (all unknown), _OUT_OF_RANGE, _BAD_ARGUMENT, _NOT_INITIALIZED. */
 goe_flight_status_t goe_flight_sectors(const goe_flight_t *flight, uint32_t max_cm, uint16_t sector_cm[GOE_FLIGHT_SECTORS]);
 
-/* Forgets poses, clocks, obstacles and the reaction; keeps settings and counters. After a restart of the autopilot.
+/* Deletes poses, clocks, obstacles and the reaction; keeps settings and counters. Call it after a restart of the autopilot.
  * Returns GOE_FLIGHT_OK, _BAD_ARGUMENT or _NOT_INITIALIZED. */
 goe_flight_status_t goe_flight_restart(goe_flight_t *flight);
 
 /* A short lower-case name for an action ("none", "left", ...), never null; "unknown" for any other number. */
 const char *goe_flight_action_text(goe_flight_action_t action);
 
-/* The same for a reason ("none", "clear", "least_bad", "low", "slow", "landing"). */
+/* A short lower-case name for a reason ("none", "clear", "least_bad", "low", "slow", "landing"), like goe_flight_action_text(). */
 const char *goe_flight_reason_text(goe_flight_reason_t reason);
 
 #ifdef __cplusplus

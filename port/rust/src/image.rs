@@ -44,7 +44,7 @@ pub struct Pixel {
     pub v_px: f32,
 }
 
-/// A detector's upright box in the raw image; each ±1e5. `None`: that side is cut, hidden or not believed.
+/// A detector's upright box in the raw image; each ±1e5. `None`: that side is cut, hidden or unreliable.
 ///
 /// Feed raw detections: a tracker's smoothed boxes lag, which no sigma knows of.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -36,7 +36,7 @@ class Pixel(NamedTuple):
 
 
 class BoundingBox(NamedTuple):
-    """A detector's upright box in the raw image, px; each within 1e5. None: that side is cut, hidden or not believed.
+    """A detector's upright box in the raw image, px; each within 1e5. None: that side is cut, hidden or unreliable.
 
     Feed raw detections: a tracker's smoothed boxes lag, which no sigma knows of.
     """

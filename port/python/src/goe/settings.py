@@ -375,59 +375,59 @@ class FlightSettings(_Group):
     """Settings of the flight layer, in addition to those of the estimators."""
 
     score_min: float = flight("score_min")
-    """A detection of less is not looked at."""
+    """Detections with a lower score are ignored."""
     confirm_images: float = flight("confirm_images")
-    """Images with a detection of a new obstacle before it is followed."""
+    """Images with a new obstacle, at most 1 s apart, before it gets a slot."""
     detector_timeout_s: float = flight("detector_timeout_s")
-    """Without a frame for this long the detector counts as dead, s."""
+    """The detector counts as dead after this time without a frame, s."""
     track_timeout_s: float = flight("track_timeout_s")
-    """An obstacle undetected for this long is given up, s."""
+    """An obstacle is dropped after this time undetected, s."""
     delay_s: float = flight("delay_s")
     """Least time from sending to arrival, s."""
     delay_sd_s: float = flight("delay_sd_s")
-    """Its one sigma, and that of any capture time whose sender gives none, s."""
+    """One sigma of ``delay_s``, and of a capture time without a sigma, s."""
     delay_max_s: float = flight("delay_max_s")
-    """A frame that comes later after its exposure is refused, s."""
+    """Frames that arrive later than this after their exposure are refused, s."""
     resets: float = flight("resets")
     """How the autopilot reports resets: 0 by counters (PX4), 1 by times (ArduPilot)."""
     range_finder_sd_m: float = flight("range_finder_sd_m")
     """One sigma of the range finder, m."""
     range_finder_max_m: float = flight("range_finder_max_m")
-    """The highest that it is believed at, m."""
+    """Greatest height at which the layer uses the range finder, m."""
     terrain_sd_m: float = flight("terrain_sd_m")
     """One sigma of the terrain's height, m."""
     home_sd_m: float = flight("home_sd_m")
     """One sigma of the height over home, m."""
     margin_m: float = flight("margin_m")
-    """Wanted to the outline, horizontally, m."""
+    """Wanted horizontal distance to the outline, m."""
     clearance_m: float = flight("clearance_m")
-    """Wanted over the top, m."""
+    """Wanted vertical distance over the top, m."""
     conflict_probability_max: float = flight("conflict_probability_max")
-    """Probability of violating both from which on there is a reaction."""
+    """Least conflict probability that causes a reaction."""
     suspect_factor: float = flight("suspect_factor")
     """Factor on margin and clearance while the estimate is suspect."""
     stale_growth_m_s: float = flight("stale_growth_m_s")
-    """By which both grow while the estimate is not renewed, m/s."""
+    """Growth of margin and clearance while the estimate is not updated, m/s."""
     bank_deg: float = flight("bank_deg")
     """Bank of an avoiding turn, degrees."""
     roll_in_s: float = flight("roll_in_s")
-    """From the order to that turn, s."""
+    """Time from the order to that turn, s."""
     climb_m_s: float = flight("climb_m_s")
     """Rate of an avoiding climb, m/s."""
     climb_in_s: float = flight("climb_in_s")
-    """From the order to that climb, s."""
+    """Time from the order to that climb, s."""
     loiter_m: float = flight("loiter_m")
-    """Radius of the circle that the autopilot flies about a point, m; 0: it flies through."""
+    """Radius of the autopilot's circle around a target, m; 0: it flies straight on."""
     reserve_s: float = flight("reserve_s")
-    """An order comes this much before its last moment, s."""
+    """An order comes this long before the last possible moment, s."""
     confirm_s: float = flight("confirm_s")
-    """The hazard must stay for this long before an order, s."""
+    """An order comes after the hazard has lasted this long, s."""
     hold_s: float = flight("hold_s")
-    """... and its end before the order is taken back, s."""
+    """An order ends after the hazard has been over for this long, s."""
     order_height_m: float = flight("order_height_m")
-    """No new order below this height above the ground, m; 0: at any."""
+    """No new order below this height above the ground, m; 0: no limit."""
     order_speed_m_s: float = flight("order_speed_m_s")
-    """... nor below this speed over the ground, m/s."""
+    """No new order below this speed over the ground, m/s."""
 
     def check(self) -> None:
         """Raises SettingError for the first setting that is outside its range or no number."""
