@@ -22,59 +22,59 @@ pub const DETECTIONS: usize = ffi::GOE_FLIGHT_DETECTIONS;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlightSettings {
-    /// A detection of less is not looked at; 0 to 1; default 0.3.
+    /// Detections with a lower score are ignored; 0 to 1; default 0.3.
     pub score_min: f32,
-    /// Images with a detection of a new obstacle before it is followed; 1 to 20; default 3.
+    /// Images with a new obstacle, at most 1 s apart, before it gets a slot; 1 to 20; default 3.
     pub confirm_images: f32,
-    /// Without a frame for this long the detector counts as dead, s; 0.05 to 60; default 1.
+    /// The detector counts as dead after this time without a frame, s; 0.05 to 60; default 1.
     pub detector_timeout_s: f32,
-    /// An obstacle undetected for this long is given up, s; 1 to 600; default 10.
+    /// An obstacle is dropped after this time undetected, s; 1 to 600; default 10.
     pub track_timeout_s: f32,
     /// Least time from sending to arrival, s; 0 to 0.5; default 0.005.
     pub delay_s: f32,
-    /// Its one sigma, and that of any capture time whose sender gives none, s; 0 to 0.5; default 0.005.
+    /// One sigma of `delay_s`, and of a capture time without a sigma, s; 0 to 0.5; default 0.005.
     pub delay_sd_s: f32,
-    /// A frame that comes later after its exposure is refused, s; 0.02 to 0.5; default 0.4.
+    /// Frames that arrive later than this after their exposure are refused, s; 0.02 to 0.5; default 0.4.
     pub delay_max_s: f32,
     /// How the autopilot reports resets: 0 by counters (PX4), 1 by times (ArduPilot); default 0.
     pub resets: f32,
     /// One sigma of the range finder, m; 0.001 to 100; default 0.3.
     pub range_finder_sd_m: f32,
-    /// The highest that it is believed at, m; 0 to 1000; default 40.
+    /// Greatest height at which the layer uses the range finder, m; 0 to 1000; default 40.
     pub range_finder_max_m: f32,
     /// One sigma of the terrain's height, m; 0.001 to 1000; default 3.
     pub terrain_sd_m: f32,
     /// One sigma of the height over home, m; 0.001 to 1000; default 5.
     pub home_sd_m: f32,
-    /// Wanted to the outline, horizontally, m; 0 to 1000; default 15.
+    /// Wanted horizontal distance to the outline, m; 0 to 1000; default 15.
     pub margin_m: f32,
-    /// Wanted over the top, m; 0 to 1000; default 10.
+    /// Wanted vertical distance over the top, m; 0 to 1000; default 10.
     pub clearance_m: f32,
-    /// Probability of violating both from which on there is a reaction; 0.001 to 1; default 0.1.
+    /// Least conflict probability that causes a reaction; 0.001 to 1; default 0.1.
     pub conflict_probability_max: f32,
     /// Factor on margin and clearance while the estimate is suspect; 1 to 10; default 1.5.
     pub suspect_factor: f32,
-    /// By which both grow while the estimate is not renewed, m/s; 0 to 100; default 1.
+    /// Growth of margin and clearance while the estimate is not updated, m/s; 0 to 100; default 1.
     pub stale_growth_m_s: f32,
     /// Bank of an avoiding turn, degrees; 5 to 70; default 30.
     pub bank_deg: f32,
-    /// From the order to that turn, s; 0 to 20; default 1.5.
+    /// Time from the order to that turn, s; 0 to 20; default 1.5.
     pub roll_in_s: f32,
     /// Rate of an avoiding climb, m/s; 0.1 to 50; default 2.5.
     pub climb_m_s: f32,
-    /// From the order to that climb, s; 0 to 20; default 2.
+    /// Time from the order to that climb, s; 0 to 20; default 2.
     pub climb_in_s: f32,
-    /// Radius of the circle that the autopilot flies about a point, m; 0: it flies through; up to 1e4; default 0.
+    /// Radius of the autopilot's circle around a target, m; 0: it flies straight on; up to 1e4; default 0.
     pub loiter_m: f32,
-    /// An order comes this much before its last moment, s; 0 to 60; default 3.
+    /// An order comes this long before the last possible moment, s; 0 to 60; default 3.
     pub reserve_s: f32,
-    /// The hazard must stay for this long before an order, s; 0 to 10; default 0.3.
+    /// An order comes after the hazard has lasted this long, s; 0 to 10; default 0.3.
     pub confirm_s: f32,
-    /// ... and its end before the order is taken back, s; 0 to 60; default 2.
+    /// An order ends after the hazard has been over for this long, s; 0 to 60; default 2.
     pub hold_s: f32,
     /// No new order below this height above the ground, m; 0 to 1000; default 5.
     pub order_height_m: f32,
-    /// ... nor below this speed over the ground, m/s; 0 to 100; default 5.
+    /// No new order below this speed over the ground, m/s; 0 to 100; default 5.
     pub order_speed_m_s: f32,
 }
 
@@ -455,9 +455,9 @@ impl fmt::Display for Action {
 pub enum OrderReason {
     /// No order, and none is withheld.
     None,
-    /// The order keeps clear of everything known.
+    /// The path of the order is clear of all known obstacles.
     Clear,
-    /// Nothing is free: the order has the largest clearance that was found.
+    /// No path is clear: the order has the largest distance that was found.
     LeastBad,
     /// An order is due and withheld: the aircraft is lower than `order_height_m`.
     Low,

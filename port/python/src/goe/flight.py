@@ -92,9 +92,9 @@ class OrderReason(IntEnum):
     NONE = 0
     """No action, and none is withheld."""
     CLEAR = 1
-    """The action keeps clear of everything known."""
+    """The path of the order is clear of all known obstacles."""
     LEAST_BAD = 2
-    """Nothing is free: the action has the largest clearance that was found."""
+    """No path is clear: the order has the largest distance that was found."""
     LOW = 3
     """An action is due and withheld: the aircraft is lower than ``order_height_m``."""
     SLOW = 4
