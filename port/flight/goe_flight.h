@@ -205,7 +205,7 @@ typedef enum {
     GOE_FLIGHT_CLIMB = 3,     /* fly straight on and climb to target_ned_m, which is above the top at two sigma */
     GOE_FLIGHT_GO_AROUND = 4, /* abort the approach */
     GOE_FLIGHT_HOLD = 5       /* turn away to target_ned_m before the obstacle and loiter: no time is left to pass it
-                                 beside or above */
+                                 at a side or above */
 } goe_flight_action_t;
 
 /* The reason of the action. */
