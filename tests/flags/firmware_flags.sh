@@ -4,8 +4,8 @@
 #
 #   firmware_flags.sh px4|ardupilot|betaflight|inav
 #
-# Every host compiler there is, C99, at both of the firmware's levels: code, which is tested, and warnings that only come with code. The
-# other dialects are read by dialects.sh.
+# C99: code, which is tested, and warnings that only come with code. gcc compiles at the firmware's usual level, clang at the other;
+# with GOE_LONG=1 each compiles at both. The other dialects are read by dialects.sh.
 #
 # The safety tests are those of safety_objects.sh, linked with the firmware's flags, which may change the floating-point unit's mode.
 # UNITY_INCLUDE and UNITY_LIBRARY locate the test framework, SAFETY_OBJECTS the objects of safety_objects.sh.
@@ -57,8 +57,12 @@ mapfile -t present < <(compilers gcc clang-19)
 for compiler in "${present[@]}"; do
     mapfile -t common < <(known "$compiler" "${flags[@]}")
     cd "$scratch/objects"
-    level=$(known "$compiler" "${levels[1]}")
-    for level in "${levels[0]}" "${level:--O3}"; do
+    second=$(known "$compiler" "${levels[1]}")
+    chosen=("${levels[0]}" "${second:--O3}")
+    if [ -z "${GOE_LONG:-}" ] && [ ${#present[@]} -gt 1 ]; then
+        if [ "$compiler" = gcc ]; then chosen=("${chosen[0]}"); else chosen=("${chosen[1]}"); fi
+    fi
+    for level in "${chosen[@]}"; do
         compile "$compiler" -std=c99 "$level" "${common[@]}"
         run_safety "$compiler" "$level" "${common[@]}"
     done

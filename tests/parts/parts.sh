@@ -3,7 +3,9 @@
 # warning under the flags of the firmwares, passes the unit tests of its parts, and answers with the same bits as every other
 # combination with the same part.
 #
-# The whole library is in the build that runs this test, with its unit tests; here it only answers.
+# The whole library is in the build that runs this test, with its unit tests; here it only answers. Every combination is read for
+# warnings. Four are compiled and tested: each method with the hazard, the filter alone, and all but target motion; with GOE_LONG=1
+# all are.
 #
 #   parts.sh <folder for the builds> <folder of unity.c> <program parts of the whole library>
 set -euo pipefail
@@ -60,10 +62,11 @@ answers() {
 for window in 1 0; do
     for filter in 1 0; do
         for hazard in 1 0; do
-            case $window$filter$hazard in
+            case $window$filter$hazard${GOE_LONG:+all} in
                 00*) ;;
-                111) syntax && answers "the whole" "$whole" 1 ;;
-                *) combination $window $filter $hazard 1 ;;
+                111*) syntax && answers "the whole" "$whole" 1 ;;
+                101* | 011* | *all) combination $window $filter $hazard 1 ;;
+                *) syntax "-DGOE_WITH_WINDOW=$window" "-DGOE_WITH_FILTER=$filter" "-DGOE_WITH_HAZARD=$hazard" ;;
             esac
         done
     done

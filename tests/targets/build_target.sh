@@ -28,9 +28,9 @@ case $preset in
 esac
 
 # The safety tests run at full length on one processor; on the others most compiler faults show early.
-# The other tests run a part. GOE_TARGETS_LONG=1: full length everywhere, as tools/evidence.sh --long does.
+# The other tests run a part. GOE_LONG=1: full length everywhere, as tools/evidence.sh --long does.
 length=()
-if [ -n "${GOE_TARGETS_LONG:-}" ]; then
+if [ -n "${GOE_LONG:-}" ]; then
     length=(-DGOE_TARGET_SHARE=1)
 elif [ "$preset" != m4f-gcc-o2 ]; then
     length=(-DPORT_ENVIRONMENT=GOE_TEST_UPDATES=2000)

@@ -25,9 +25,6 @@ endfunction()
 
 # [A13]
 goe_target_test(replay_host_builds host_builds.sh ${golden} ${flight_golden})
-# [A13]
-goe_target_test(replay_every_host_build host_builds.sh --all ${golden} ${flight_golden})
-set_tests_properties(replay_every_host_build PROPERTIES LABELS "targets;release")
 # [GOE_SELF_CONTRACTED, GOE_SELF_EXCESS, GOE_SELF_FLUSHED, GOE_SELF_REASSOCIATED, GOE_SELF_RECIPROCAL, goe_self_check]
 goe_target_test(self_check_host host_self_check.sh ${golden})
 

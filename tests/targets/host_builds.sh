@@ -1,17 +1,16 @@
 #!/usr/bin/env bash
 # The hashes of the replay, and of the replay through the flight layer, are the golden ones for each compiler of this machine, without
-# optimization, for speed and for size, vectorized, and optimized at link time. With --all at every level, for a release.
+# optimization, for speed and for size, vectorized, and optimized at link time. GOE_LONG=1: every level.
 #
-#   host_builds.sh [--all] <golden hash> <golden hash of the flight layer>
+#   host_builds.sh <golden hash> <golden hash of the flight layer>
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 . "$here/../flags/common.sh"
 levels=(-O0 -O2 -Os "-O3 -march=native -funroll-loops")
 others=("gcc -O3 -march=native -flto" "gcc -O2 -m32 -msse2 -mfpmath=sse" "clang-19 -O3 -march=native -flto -fuse-ld=lld")
-if [ "$1" = --all ]; then
+if [ -n "${GOE_LONG:-}" ]; then
     levels+=(-O1 -O3 "-O3 -march=native")
     others+=("gcc -O2 -flto" "clang-19 -O2 -flto" "clang-19 -O3 -march=native -flto")
-    shift
 fi
 golden=$1
 flight_golden=$2
