@@ -36,9 +36,10 @@
  *   earth       north, east, down (NED), meters, local, any origin
  *   body        forward, right, down (FRD); the attitude is a Hamilton quaternion (w, x, y, z), body to NED
  *   camera      x right, y down, z along the optical axis; pixel (u, v) = (right, down) from the top left corner
- *   trajectory  "T": X right, Y down, Z forward along the flight direction. T is ALWAYS LEVEL, also on a glide slope; its
- *               origin moves with the camera. [A4] By default Z has the nose's heading at the track's first image with a
- *               feature. In a crosswind the course differs from that heading. Set heading_deg to define T exactly
+ *   trajectory  "T": X right, Y down, Z forward along the flight direction. T is ALWAYS LEVEL, also on a glide slope. [A4]
+ *               X0 and Z0 count from the camera at the track's first image with a feature, X and Z from the camera now. By
+ *               default Z has the nose's heading at that first image. In a crosswind the course differs from that heading:
+ *               set heading_auto to false and heading_deg to define T exactly
  *
  *   view from above, north up; the aircraft flies along Z; an obstacle on its left has X < 0
  *
@@ -92,23 +93,23 @@ extern "C" {
 
 /* Result of an image or of a call. GOE_OK and GOE_PARTIAL mean a new solution. The other positive statuses mean no new
  * solution, but no fault. The negative ones mean a fault and no new solution. "Image taken" means that goe stored the image:
- * later images build on it. The numbers 5 to 31, -16 to -31 and all below -35 are unused. [A25] */
+ * later images build on it. Numbers above 4, -16 to -31 and below -35 are unused. [A25] */
 typedef enum {
     GOE_OK = 0,           /* new solution from this image and earlier ones; from another call: success */
     GOE_PARTIAL = 1,      /* new solution, but a part of the image was refused or not usable: see fault_counts */
-    GOE_CONVERGING = 2,   /* image taken; no solution yet: too few images, or the range's sigma is over 25 % of it */
+    GOE_CONVERGING = 2,   /* image taken; no solution yet: few images, or sigma of the range above range_sd_rel_max */
     GOE_STALE = 3,        /* image taken; it adds no information, and the earlier solution remains */
     GOE_NO_DETECTION = 4, /* image taken, for its pose only: no feature is visible. This is not a fault */
     /* faults of a feature; the image is taken */
     GOE_BEHIND_CAMERA = -1, /* a ray points backward or sideways: its third component in T is <= 0.05 of its norm */
     GOE_LENS_FAILED = -2,   /* a pixel is too far from the axis: the inversion of the lens model does not converge */
-    GOE_SWAPPED = -3,       /* left is not to the left of right by 1e-4 focal lengths, or base corners are out of order */
+    GOE_SWAPPED = -3,       /* left is less than 1e-4 focal lengths to the left of right, or base corners are out of order */
     GOE_EDGE_ON = -4,       /* no length: the camera views the front edge from its end or from behind */
-    GOE_NO_EDGE = -5,       /* model line, and no line point: no edge reaches window.edge_min_px, orientation_min_px */
+    GOE_NO_EDGE = -5,       /* model line: no edge reaches both window.edge_min_px and orientation_min_px */
     GOE_BAD_HEIGHT = -6,    /* window: no obstacle height, because the camera's height is <= 0. Counted, never returned */
     /* faults of the window method's solution; the image is taken */
     GOE_NO_BASELINE = -7, /* the camera moved less than window.min_baseline_m */
-    GOE_NO_PARALLAX = -8, /* the obstacle does not grow in the images: it is not static and ahead, or noise prevails */
+    GOE_NO_PARALLAX = -8, /* the obstacle does not grow in the images: it moves, is not ahead, or noise prevails */
     GOE_ABEAM = -9,       /* the solution is abeam of the camera or behind it: Z <= 0 */
     /* faults of an image; the image is refused */
     GOE_NOT_FINITE = -10,   /* a NaN or an infinity in the pose or in a visible feature */
@@ -116,7 +117,7 @@ typedef enum {
     GOE_BAD_TIME = -12,     /* the time is unknown, repeated or runs backward. After a false jump ahead call goe_reset */
     GOE_BAD_ATTITUDE = -13, /* the quaternion's norm differs from 1 by more than 1 % */
     /* faults of a box; the image is taken */
-    GOE_BOX_INCOMPLETE = -14, /* fewer than two usable sides. A usable side is in box.sides, not cut by the border, in order */
+    GOE_BOX_INCOMPLETE = -14, /* fewer than two sides are in box.sides, uncut by the border and in order (left < right) */
     GOE_NO_HEIGHT = -15,      /* filter: height_m is exactly 0 with a box; goe treats it as unknown, sigma 1000 m */
     /* faults of a call */
     GOE_BAD_SETTINGS = -32,    /* goe_init: a setting is outside its range; bad_field names it */
@@ -146,8 +147,8 @@ typedef struct {
     int64_t time_us;         /* any origin; strictly increasing; GOE_TIME_UNKNOWN is refused */
     float position_ned_m[3]; /* the vehicle's reference point, each +-1e6; choose an origin within 10 km */
     float height_m;          /* camera above the ground at the obstacle, +-1e5. Exactly 0 with a box means "not set". With
-                              * boxes goe uses the first height, and then the changes of down (see
-                              * navigation.height_white_sd_m) */
+                              * boxes goe uses the first height and the changes of down. Points alone use each height,
+                              * unless navigation.height_white_sd_m is set */
     float attitude[4];       /* quaternion w, x, y, z from body FRD to NED; its norm is 1 within 1 % */
     uint8_t reset_count;     /* reset counter of the autopilot's filter; it may wrap */
     bool reset_delta_known;  /* whether reset_delta_ned_m is set; read only after a change of reset_count */
@@ -201,7 +202,7 @@ typedef struct {
 #define GOE_HAS_LENGTH 0x02u      /* length: a line or box whose side edge is visible */
 #define GOE_HAS_HEIGHT 0x04u      /* height */
 #define GOE_HAS_ORIENTATION 0x08u /* orientations and axes */
-#define GOE_HAS_CENTER 0x10u      /* center: a disc, or a line or box with length */
+#define GOE_HAS_CENTER 0x10u      /* center: a disc or prism, or a line or box with length */
 #define GOE_HAS_WIDTH 0x20u       /* width */
 #define GOE_HAS_VELOCITY 0x40u    /* velocity: the obstacle moves, and the filter estimates its velocity */
 
@@ -220,15 +221,15 @@ typedef enum {
     GOE_REASON_MOVES,      /* the obstacle moves. Without GOE_HAS_VELOCITY the reported position is wrong */
     GOE_REASON_BASE,       /* the points supplied as base corners are other points; the filter no longer uses them */
     GOE_REASON_SHAPE,      /* the settings require a disc, but the silhouette is that of another shape */
-    GOE_REASON_LATE,       /* poses are late or early by latency_s, which the filter corrects; also if not suspect */
+    GOE_REASON_LATE,       /* poses are late or early by latency_s, which the filter corrects; also without suspect */
     GOE_REASON_NOISE       /* errors exceed the settings, or the obstacle has another shape */
 } goe_reason_t;
 
 typedef struct {
     goe_method_t method;   /* method of this estimate; 0 if none */
-    goe_model_t model;     /* model of x0 to width and of the center */
+    goe_model_t model;     /* model of position, sizes and center */
     unsigned valid;        /* mask of GOE_HAS_... */
-    bool fresh;            /* x0 to width are solved from the latest image; false: stale, from an earlier image */
+    bool fresh;            /* position and width are solved from the latest image; false: stale, from an earlier image */
     bool suspect;          /* filter: residuals do not fit; sigmas may be too small. Widen margins, keep warnings */
     goe_reason_t reason;   /* most significant reason */
     int images_used;       /* number of images, 0 to 32767 */
@@ -241,14 +242,14 @@ typedef struct {
     float orientation_deg; /* angle of the side edge (length axis) from Z, clockwise from above, -90 < b <= 90 */
     float orientation_raw_deg;   /* window: orientation from the latest image alone; filter: orientation_deg */
     float front_orientation_deg; /* angle of the front edge (width axis) from Z */
-    float length_axis[2], width_axis[2]; /* unit vectors (X, Z): along the side edge; along the front edge, to its right */
+    float length_axis[2], width_axis[2]; /* unit vectors (X, Z) along the side edge, and 90 degrees right of it */
     float length_axis_ne[2], width_axis_ne[2]; /* the same unit vectors in (north, east) */
     float trajectory_heading_deg; /* heading of Z, clockwise from north, -180 to 180; constant over the track */
     float center_north_m, center_east_m; /* middle of the base in the NED frame of the latest pose ... */
     float center_ne_m2;                  /* ... and the covariance of north and east */
     float velocity_north_m_s, velocity_east_m_s; /* velocity of a moving obstacle */
     float latency_s;  /* filter: delay of the poses relative to the images, which the filter corrects */
-    float residual;   /* window: RMS residual of equation (5), in the unit of m/S; filter: 0 */
+    float residual;   /* window: RMS residual of the fit (5), lib/window/README.md; filter: 0 */
     float baseline_m; /* window: spread of the camera's path; filter: distance of the camera from the track's start */
     float nis;        /* filter: normalized innovation squared of the latest image ... */
     int nis_rows;     /* ... and its expected value */
@@ -261,7 +262,8 @@ typedef struct {
 
 /* ------------------------------------------------------------------------------------------------------- functions -- */
 
-/* Sets the defaults for the usual sensors of a small aircraft. The caller must set fx_px, fy_px, cx_px, cy_px. May be null.
+/* Sets the defaults for the usual sensors of a small aircraft. The caller must set fx_px, fy_px, cx_px, cy_px. The pointer may
+ * be null.
  * Cost: at most 1010 instructions, 40 bytes of stack. */
 void goe_settings_default(goe_settings_t *settings);
 
@@ -274,15 +276,15 @@ GOE_NODISCARD goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator
                                     const char **bad_field);
 
 /* Processes one image and reports the estimate after it. Judge that by its valid, fresh, age_s and sigma, not by the status.
- *   estimate  always written, unless null (GOE_BAD_ARGUMENT). It is all zero with GOE_BAD_ARGUMENT, GOE_NOT_INITIALIZED and
- *             GOE_CORRUPTED. With any other negative status it is the last estimate, marked stale
+ *   estimate  always written; a null pointer returns GOE_BAD_ARGUMENT. It is all zero with GOE_BAD_ARGUMENT,
+ *             GOE_NOT_INITIALIZED and GOE_CORRUPTED. With any other negative status it is the last estimate, marked stale
  * Returns GOE_OK, a positive status, GOE_BEHIND_CAMERA to GOE_NO_HEIGHT (except GOE_BAD_HEIGHT), GOE_BAD_ARGUMENT,
- * GOE_NOT_INITIALIZED, GOE_CORRUPTED. All faults are counted; a fault of the solution is returned before one of a feature.
+ * GOE_NOT_INITIALIZED, GOE_CORRUPTED. All faults are counted. If a feature and the solution fail, the solution's is returned.
  * Cost: at most 48000 instructions, 1408 bytes of stack; 70000 with lens distortion; window: 5500.
  * The figure of the window method is valid without lens distortion only. */
 goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, goe_estimate_t *estimate);
 
-/* Ends the track; keeps settings and counters. Call it before another obstacle, or before a new view of the same obstacle.
+/* Ends the track; keeps settings and counters. Call it before another obstacle, or when one returns into view after a turn.
  * Returns GOE_OK, GOE_BAD_ARGUMENT, GOE_NOT_INITIALIZED, GOE_CORRUPTED.
  * Cost: at most 1640 instructions, 64 bytes of stack. */
 goe_status_t goe_reset(goe_estimator_t *estimator);

@@ -15,7 +15,7 @@ enum { GOE_X0, GOE_Z0, GOE_ORIENTATION, GOE_WIDTH, GOE_LENGTH, GOE_HEIGHT, GOE_Q
 
 /* Writes the covariance of x0_m, z0_m, orientation_deg, width_m, length_m, height_m of the latest estimate, in meters and
  * degrees. Rows and columns of a quantity that is not valid are 0. The diagonal contains the squared sigmas. For a stale
- * estimate, x0 and z0 include the growth of the sigmas of x_m and z_m with age, and no variance is below the squared sigma.
+ * estimate the variances of x0 and z0 are larger: they include the growth of the sigmas of x_m and z_m with age.
  * All elements off the diagonal are 0 for an estimate of the window method, and for one from before a restart or a change of
  * the model.
  *   covariance  always written, unless null; all zero after a failure
@@ -29,7 +29,7 @@ typedef struct {
     float velocity_ned_m_s[3]; /* velocity relative to the ground, each +-1e3 */
     float margin_m;            /* wanted horizontal distance to the obstacle's outline; 0 to 1e4 */
     float clearance_m;         /* wanted height above its top; 0 to 1e4 */
-    float since_image_s;       /* time since the latest image, by latency or silence of the detector; 0 to 1e3. goe
+    float since_image_s;       /* time since the exposure of the latest image; 0 to 1e3. goe
                                 * assumes flight at this velocity since then, and predicts times from now on */
     float velocity_sd_m_s;     /* sigma of each axis of the velocity; 0 to 100; 0: navigation.velocity_bias_sd_m_s */
 } goe_intent_t;
@@ -37,16 +37,16 @@ typedef struct {
 /* The predicted closest approach under this intent. The sigmas are of first order, from the covariance of the estimate and the
  * error of the velocity. Filter: a constant error of goe_pose_t.height_m moves camera and top by the same amount, and does not
  * change the clearance. The conflict probability uses the clearance at tcpa_s. Elsewhere within the margin, climb or descent
- * may reduce the clearance by up to climb * margin_m / speed: add that to goe_intent_t.clearance_m. The conflict probability is
- * an upper bound if the errors of distance and clearance are negatively correlated. */
+ * may reduce the clearance by up to vertical speed * margin_m / horizontal speed: add that to goe_intent_t.clearance_m. The
+ * conflict probability is an upper bound if the errors of distance and clearance are negatively correlated. */
 typedef struct {
     float tcpa_s;      /* time until the distance to the outline is smallest for the first time. If the path crosses the
-                        * outline: time until it enters. 0 if the distance already grows, and inside the outline */
+                        * outline: time until it enters. 0 if the distance already grows, or inside the outline */
     float dcpa_m;      /* horizontal distance to the outline at that time; 0 if the path crosses the outline */
     float clearance_m; /* height of the camera above the top at that time, negative below the top. In a descent across
                         * the outline: where the path leaves the outline. 0 if has_clearance is false */
-    float tcpa_sd_s;   /* 0 if tcpa_s is 0. It covers the whole face if either end of a nearly parallel face may be
-                        * closest */
+    float tcpa_sd_s;   /* 0 if tcpa_s is 0. If either end of a nearly parallel face may be closest, it spans the
+                        * times of both ends */
     float dcpa_sd_m;   /* if the path crosses the outline: sigma of the penetration depth */
     float clearance_sd_m;
     float conflict_probability; /* probability that margin and clearance are both violated, 0 to 1. If has_clearance is
@@ -79,15 +79,15 @@ typedef struct {
 typedef enum {
     GOE_DECISION_UNKNOWN = 0, /* too little is known. This does not mean "safe": keep the previous decision. Either
                                * no position is valid; or the probability is below conflict_probability_max, but one
-                               * sigma could violate both distances; or the probability is not below it, and
-                               * tcpa_s - 2 tcpa_sd_s is within act_within_s, but goe_earliest_tcpa_s() is not; or
-                               * two seconds of detections gave no new estimate */
+                               * sigma could violate both distances; or the probability is reached, and only the
+                               * linear bound tcpa_s - 2 tcpa_sd_s is within act_within_s; or two seconds of detections
+                               * gave no new estimate */
     GOE_DECISION_CLEAR = 1,   /* no reason to act now */
     GOE_DECISION_ACT = 2,     /* go around, or avoid */
     GOE_DECISION_KEEP = 3     /* the call failed: keep the previous decision */
 } goe_decision_t;
 
-/* Sets *rule to its defaults. May be null.
+/* Sets *rule to its defaults. rule may be null.
  * Cost: at most 40 instructions, 16 bytes of stack. */
 void goe_rule_default(goe_rule_t *rule);
 

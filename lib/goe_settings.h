@@ -46,13 +46,13 @@ typedef struct {
     float offset_m[3];     /* camera relative to pose.position_ned_m, body FRD; -1e4 to 1e4 m; default 0 */
     float width_px;        /* width of the image; 0 if unknown; 0 to 1e5 px; default 0 */
     float height_px;       /* height of the image; 0 if unknown; 0 to 1e5 px; default 0 */
-    float border_rel;      /* border strip where no side is measured, as a fraction of the image's width; 0 to 0.5; default 0.012 */
-    float truncation_rel;  /* border strip of a cut box's left or right, as a fraction of the image's width; 0 to 0.5; default 0.04 */
+    float border_rel;      /* a side this near to the border is not measured; fraction of the image's width; 0 to 0.5; default 0.012 */
+    float truncation_rel;  /* a box whose left or right is this near to the border is cut; same fraction; 0 to 0.5; default 0.04 */
 } goe_camera_t;
 
 /* Errors of the pose, for the filter method. goe_hazard() uses velocity_bias_sd_m_s with both methods. */
 typedef struct {
-    float attitude_bias_sd_deg;  /* constant attitude error of each body axis, with mounting; 1e-3 to 30 deg; default 0.5 */
+    float attitude_bias_sd_deg;  /* constant attitude error of each body axis, including the mounting's; 1e-3 to 30 deg; default 0.5 */
     float attitude_white_sd_deg; /* attitude error, new in each image; 1e-4 to 30 deg; default 0.1 */
     float attitude_walk_sd_deg;  /* random walk of the attitude error; 0 to 30 deg/s^0.5; default 0 */
     float height_bias_sd_m;      /* constant error of pose.height_m; 1e-3 to 1e3 m; default 0.5 */
@@ -67,7 +67,7 @@ typedef struct {
 /* Errors of the features, for the filter method. */
 typedef struct {
     float point_noise_px;         /* error of an image point, new in each image; 0.05 to 100 px; default 0.5 */
-    float point_noise_rel;        /* error of points left, right, top, as a fraction of the width; 0 to 1; default 0 */
+    float point_noise_rel;        /* error of points left, right, top, as a fraction of the obstacle's width in px; 0 to 1; default 0 */
     float point_correlation;      /* correlation of a point's error from image to image; 0 to 0.95; default 0 */
     float shape_error_rel;        /* model error of a disc, as a fraction of its width; 0 to 1; default 0 */
     float box_noise_px;           /* error of a box's side, new in each image; 0.05 to 100 px; default 1 */
@@ -81,15 +81,15 @@ typedef struct {
     int points;               /* images in the fit and in the sliding means; 3 to GOE_WINDOW_MAX; default 8 */
     int line_points;          /* model auto: line points before the line replaces the disc; 1 to 1000; default 8 */
     float edge_min_px;        /* length of the shortest edge that counts; 0 to 1e4 px; default 10 */
-    float orientation_min_px; /* smallest height of an edge that gives an orientation; 0 to 1e4 px; default 2 */
-    float side_min_px;        /* distance from edge-on below which a side gives no length; 0.1 to 1e4 px; default 10 */
+    float orientation_min_px; /* least vertical distance of an edge's ends that gives an orientation; 0 to 1e4 px; default 2 */
+    float side_min_px;        /* a side with an end nearer to x' = 0 gives no length; 0.1 to 1e4 px; default 10 */
     int orientation_memory;   /* memory of the orientation's low-pass; 1 to 1000; default 20 */
     float min_baseline_m;     /* smallest camera motion over the window that gives a solution; 1e-3 to 1e4 m; default 0.1 */
 } goe_window_settings_t;
 
 /* Settings of the filter method. */
 typedef struct {
-    float prior_width_m;    /* prior width, correct to a factor of 3, where the ground gives no range; 0.1 to 1e3 m; default 6 */
+    float prior_width_m;    /* assumed width where the ground gives no range; sigma: a factor of 3; 0.1 to 1e3 m; default 6 */
     float gate_sigma;       /* a point with a larger innovation is rejected; 1 to 100 sigma; default 5 */
     float huber_sigma;      /* a point with a larger innovation counts less; 0.5 to 100 sigma; default 2.5 */
     float nis_ratio_max;    /* NIS ratio above which an estimate is suspect; 0.01 to 1e3; default 1.9 */

@@ -30,8 +30,8 @@
     X(camera.offset_m[2], REAL, "m", -1.0e4f, 1.0e4f, 0.0f, "lever arm, body down") \
     X(camera.width_px, REAL, "px", 0.0f, 1.0e5f, 0.0f, "width of the image; 0 if unknown") \
     X(camera.height_px, REAL, "px", 0.0f, 1.0e5f, 0.0f, "height of the image; 0 if unknown") \
-    X(camera.border_rel, REAL, "", 0.0f, 0.5f, 0.012f, "border strip where no side is measured, as a fraction of the image's width") \
-    X(camera.truncation_rel, REAL, "", 0.0f, 0.5f, 0.04f, "border strip of a cut box's left or right, as a fraction of the image's width")
+    X(camera.border_rel, REAL, "", 0.0f, 0.5f, 0.012f, "a side this near to the border is not measured; fraction of the image's width") \
+    X(camera.truncation_rel, REAL, "", 0.0f, 0.5f, 0.04f, "a box whose left or right is this near to the border is cut; same fraction")
 
 #define GOE_SETTINGS_GENERAL(X) \
     X(method, CHOICE, "", GOE_METHOD_MIN, GOE_METHOD_MAX, GOE_METHOD_MAX, "1 window, 2 filter") \
@@ -41,7 +41,7 @@
 
 #if GOE_WITH_FILTER
 #define GOE_SETTINGS_FILTER(X) \
-    X(navigation.attitude_bias_sd_deg, REAL, "deg", 1.0e-3f, 30.0f, 0.5f, "constant attitude error of each body axis, with mounting") \
+    X(navigation.attitude_bias_sd_deg, REAL, "deg", 1.0e-3f, 30.0f, 0.5f, "constant attitude error of each body axis, including the mounting's") \
     X(navigation.attitude_white_sd_deg, REAL, "deg", 1.0e-4f, 30.0f, 0.1f, "attitude error, new in each image") \
     X(navigation.attitude_walk_sd_deg, REAL, "deg/s^0.5", 0.0f, 30.0f, 0.0f, "random walk of the attitude error") \
     X(navigation.height_bias_sd_m, REAL, "m", 1.0e-3f, 1.0e3f, 0.5f, "constant error of pose.height_m") \
@@ -51,14 +51,14 @@
     X(navigation.terrain_slope_sd, REAL, "", 0.0f, 1.0f, 0.0f, "slope of the ground below the aircraft, m per m flown") \
     X(navigation.terrain_height_sd_m, REAL, "m", 0.0f, 1.0e3f, 2.0f, "height error of the obstacle's ground, used with boxes") \
     X(detector.point_noise_px, REAL, "px", 0.05f, 100.0f, 0.5f, "error of an image point, new in each image") \
-    X(detector.point_noise_rel, REAL, "", 0.0f, 1.0f, 0.0f, "error of points left, right, top, as a fraction of the width") \
+    X(detector.point_noise_rel, REAL, "", 0.0f, 1.0f, 0.0f, "error of points left, right, top, as a fraction of the obstacle's width in px") \
     X(detector.point_correlation, REAL, "", 0.0f, 0.95f, 0.0f, "correlation of a point's error from image to image") \
     X(detector.shape_error_rel, REAL, "", 0.0f, 1.0f, 0.0f, "model error of a disc, as a fraction of its width") \
     X(detector.box_noise_px, REAL, "px", 0.05f, 100.0f, 1.0f, "error of a box's side, new in each image") \
     X(detector.box_noise_rel, REAL, "", 0.0f, 1.0f, 0.07f, "slow error of a side, as a fraction of the box's width or height") \
     X(detector.box_correlation_time_s, REAL, "s", 0.0f, 100.0f, 1.2f, "correlation time of box_noise_rel") \
     X(detector.truncation_noise_rel, REAL, "", 0.0f, 10.0f, 1.0f, "error of a cut box's sides, as a fraction of its width or height") \
-    X(filter.prior_width_m, REAL, "m", 0.1f, 1.0e3f, 6.0f, "prior width, correct to a factor of 3, where the ground gives no range") \
+    X(filter.prior_width_m, REAL, "m", 0.1f, 1.0e3f, 6.0f, "assumed width where the ground gives no range; sigma: a factor of 3") \
     X(filter.gate_sigma, REAL, "sigma", 1.0f, 100.0f, 5.0f, "a point with a larger innovation is rejected") \
     X(filter.huber_sigma, REAL, "sigma", 0.5f, 100.0f, 2.5f, "a point with a larger innovation counts less") \
     X(filter.nis_ratio_max, REAL, "", 0.01f, 1.0e3f, 1.9f, "NIS ratio above which an estimate is suspect") \
@@ -77,8 +77,8 @@
     X(window.points, COUNT, "images", 3, GOE_WINDOW_MAX, GOE_WINDOW_DEFAULT, "images in the fit and in the sliding means") \
     X(window.line_points, COUNT, "images", 1, 1000, 8, "model auto: line points before the line replaces the disc") \
     X(window.edge_min_px, REAL, "px", 0.0f, 1.0e4f, 10.0f, "length of the shortest edge that counts") \
-    X(window.orientation_min_px, REAL, "px", 0.0f, 1.0e4f, 2.0f, "smallest height of an edge that gives an orientation") \
-    X(window.side_min_px, REAL, "px", 0.1f, 1.0e4f, 10.0f, "distance from edge-on below which a side gives no length") \
+    X(window.orientation_min_px, REAL, "px", 0.0f, 1.0e4f, 2.0f, "least vertical distance of an edge's ends that gives an orientation") \
+    X(window.side_min_px, REAL, "px", 0.1f, 1.0e4f, 10.0f, "a side with an end nearer to x' = 0 gives no length") \
     X(window.orientation_memory, COUNT, "images", 1, 1000, 20, "memory of the orientation's low-pass") \
     X(window.min_baseline_m, REAL, "m", 1.0e-3f, 1.0e4f, 0.1f, "smallest camera motion over the window that gives a solution")
 #else

@@ -21,7 +21,7 @@
  * Threads     Every function accesses only the memory that its arguments point at. The caller must lock a shared goe_flight_t.
  * Arithmetic  float only. From the C library the layer uses sqrtf, memcpy and memset. Compiled with -ffp-contract=off, the results
  *             have the same bits on every IEEE 754 target.
- * Safety      Every output is finite. The layer refuses values that are not finite by their exponent bits, also under -ffast-math.
+ * Safety      Every output is finite. The layer refuses non-finite values, which it detects by their exponent bits, also under -ffast-math.
  * Bit flips   A flipped bit in goe_flight_t causes no write out of bounds. Settings and cameras are sealed: with a broken seal a
  *             frame and an assessment return GOE_FLIGHT_CORRUPTED. An estimator that returns GOE_CORRUPTED starts again; if its
  *             settings are lost, it takes those of another slot. Until it has a position again, the slot keeps its position, hazard
@@ -173,7 +173,7 @@ enum {
 
 /* One obstacle in one image: a box, or points, or both, as in goe_image_t. */
 typedef struct {
-    uint32_t id;   /* from the tracker of the camera's detector; 0: no id, and the position in the image decides */
+    uint32_t id;   /* from the tracker of the camera's detector; 0: no id; the layer matches by the position in the image */
     float score;   /* 0 to 1 */
     float pixel_px; /* one sigma of box and points; 0: as in the settings; 0 to 100 */
     goe_box_t box; /* raw pixels; give all four sides, also at the image border: the estimator detects truncation */
@@ -267,7 +267,7 @@ typedef struct {
     float height_m, height_sd_m; /* height of the top above the ground, and its sigma */
     float width_m, length_m;
     float length_heading_deg; /* of the length axis, clockwise from north, 0 to 180 */
-    float nearest_ned_m[3];  /* nearest point of the circle, at the lower of aircraft and top */
+    float nearest_ned_m[3];  /* nearest point of the circle, at the height of the aircraft or of the top, whichever is lower */
     float nearest_body_m[3]; /* the nearest point relative to the aircraft, body axes */
     int32_t lat_e7, lon_e7;  /* center; 0 if the origin is not known */
     goe_hazard_t hazard;     /* from the time of the latest goe_flight_assess() on */
@@ -353,7 +353,7 @@ typedef struct { /* goe_slot.c */
 
 typedef struct { /* goe_reaction.c: the active order */
     float from_ne_m[2], course_ne[2]; /* position and course when it was given: the line to return to */
-    uint32_t rising_us, falling_us;   /* start of the hazard, and of its end */
+    uint32_t rising_us, falling_us;   /* when the hazard began, and when it was over */
     float target_ned_m[3];
     float along_ne[2];  /* the course when the target was chosen */
     float clear_m;      /* as reported */
@@ -470,7 +470,7 @@ goe_flight_status_t goe_flight_obstacle(const goe_flight_t *flight, int slot, go
  *   - at most max_cm: the distance
  *   - max_cm + 1: the sector is in the camera's view and has no obstacle
  *   - GOE_FLIGHT_SECTOR_UNKNOWN: all other sectors
- * Obstacles that the latest assessment clears in height by more than the clearance, at two sigma, are ignored. For PX4's
+ * Obstacles whose top the aircraft passes by more than the clearance, at two sigma, are ignored. For PX4's
  * obstacle_distance use increment 5 and the frame GLOBAL.
  *   max_cm  1 to 65000
  * Returns GOE_FLIGHT_OK, _NO_POSE (all unknown), _OUT_OF_RANGE, _BAD_ARGUMENT, _NOT_INITIALIZED. */
