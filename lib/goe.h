@@ -131,7 +131,8 @@ typedef enum {
  * unknown size ended. Counters saturate. */
 #define GOE_FAULT_COUNTS 16
 
-/* Whether goe_update() took the image. goe stores nothing of a refused image: supply the delta of its reset again. */
+/* Whether goe_update() took the image: pass a variable, as the macro evaluates it several times. goe stores nothing of a
+ * refused image: supply the delta of its reset again. */
 #define GOE_IMAGE_TAKEN(status)                                                                                        \
     (((int)(status) > (int)GOE_NOT_FINITE) |                                                                           \
      (((int)(status) < (int)GOE_BAD_ATTITUDE) & ((int)(status) > (int)GOE_BAD_SETTINGS)))
@@ -164,7 +165,7 @@ typedef struct {
 /* A detector's upright bounding box in raw pixels. Do not supply the smoothed boxes of a tracker: they lag. */
 typedef struct {
     float left_px, top_px, right_px, bottom_px; /* read only with its bit in sides; each +-1e5; left < right, top < bottom */
-    uint8_t sides; /* mask of GOE_SIDE_...; 0: no box. Clear the bit of a side that is cut, hidden or unreliable */
+    uint8_t sides; /* mask of GOE_SIDE_...; 0: no box. Set the bits of the sides that are neither cut, hidden nor unreliable */
 } goe_box_t;
 
 #define GOE_SIDE_LEFT 0x01u
@@ -236,7 +237,7 @@ typedef struct {
     float age_s;           /* time since the image of the last solution; 0 to 4000 */
     float x0_m, z0_m;      /* reference point relative to the camera at the track's first image, T axes */
     float x_m, z_m;        /* reference point relative to the camera at the latest image, also if stale */
-    float width_m;         /* disc: diameter; line, box: length of the front edge */
+    float width_m;         /* disc: diameter; line, box: length of the front edge; prism: across the first line of sight */
     float length_m;        /* length of the side edge */
     float height_m;        /* top above the ground */
     float orientation_deg; /* angle of the side edge (length axis) from Z, clockwise from above, -90 < b <= 90 */
@@ -262,8 +263,7 @@ typedef struct {
 
 /* ------------------------------------------------------------------------------------------------------- functions -- */
 
-/* Sets the defaults for the usual sensors of a small aircraft. The caller must set fx_px, fy_px, cx_px, cy_px. The pointer may
- * be null.
+/* Sets the defaults for a small aircraft's sensors. The caller must set fx_px, fy_px, cx_px, cy_px. settings may be null.
  * Cost: at most 1010 instructions, 40 bytes of stack. */
 void goe_settings_default(goe_settings_t *settings);
 
@@ -284,7 +284,7 @@ GOE_NODISCARD goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator
  * The figure of the window method is valid without lens distortion only. */
 goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, goe_estimate_t *estimate);
 
-/* Ends the track; keeps settings and counters. Call it before another obstacle, or when one returns into view after a turn.
+/* Ends the track; keeps settings and counters. Call it before another obstacle, or when features are over 80 degrees from Z.
  * Returns GOE_OK, GOE_BAD_ARGUMENT, GOE_NOT_INITIALIZED, GOE_CORRUPTED.
  * Cost: at most 1640 instructions, 64 bytes of stack. */
 goe_status_t goe_reset(goe_estimator_t *estimator);

@@ -29,7 +29,7 @@ typedef struct {
     float velocity_ned_m_s[3]; /* velocity relative to the ground, each +-1e3 */
     float margin_m;            /* wanted horizontal distance to the obstacle's outline; 0 to 1e4 */
     float clearance_m;         /* wanted height above its top; 0 to 1e4 */
-    float since_image_s;       /* time since the exposure of the latest image; 0 to 1e3. goe
+    float since_image_s;       /* time since the exposure of the latest image that goe took, not refused; 0 to 1e3. goe
                                 * assumes flight at this velocity since then, and predicts times from now on */
     float velocity_sd_m_s;     /* sigma of each axis of the velocity; 0 to 100; 0: navigation.velocity_bias_sd_m_s */
 } goe_intent_t;
