@@ -28,8 +28,8 @@
  *     }
  *
  * Order of calls: goe_settings_default, goe_init; then for every image goe_update, followed by goe_decide or goe_hazard. Call
- * goe_reset before another obstacle. This header declares images and estimates. It includes goe_limits.h (parts, limits),
- * goe_settings.h, goe_hazard.h (closest approach, decision, covariance) and goe_diagnostics.h (self-check).
+ * goe_reset before another obstacle. This header includes goe_limits.h (parts, limits), goe_settings.h, goe_hazard.h (closest
+ * approach, decision, covariance) and goe_diagnostics.h (self-check).
  * DESIGN.md explains the methods and measures their limits; GLOSSARY.md defines the terms.
  *
  * Frames
@@ -99,7 +99,7 @@ typedef enum {
     GOE_PARTIAL = 1,      /* new solution, but a part of the image was refused or not usable: see fault_counts */
     GOE_CONVERGING = 2,   /* image taken; no solution yet: few images, or sigma of the range above range_sd_rel_max */
     GOE_STALE = 3,        /* image taken; it adds no information, and the earlier solution remains */
-    GOE_NO_DETECTION = 4, /* image taken, for its pose only: no feature is visible. This is not a fault */
+    GOE_NO_DETECTION = 4, /* image taken for its pose: no feature is visible. Not a fault */
     /* faults of a feature; the image is taken */
     GOE_BEHIND_CAMERA = -1, /* a ray points backward or sideways: its third component in T is <= 0.05 of its norm */
     GOE_LENS_FAILED = -2,   /* a pixel is too far from the axis: the inversion of the lens model does not converge */
@@ -165,7 +165,7 @@ typedef struct {
 /* A detector's upright bounding box in raw pixels. Do not supply the smoothed boxes of a tracker: they lag. */
 typedef struct {
     float left_px, top_px, right_px, bottom_px; /* read only with its bit in sides; each +-1e5; left < right, top < bottom */
-    uint8_t sides; /* mask of GOE_SIDE_...; 0: no box. Set the bits of the sides that are neither cut, hidden nor unreliable */
+    uint8_t sides; /* mask of GOE_SIDE_...; 0: no box. Set the bits of sides that are not cut, hidden or unreliable */
 } goe_box_t;
 
 #define GOE_SIDE_LEFT 0x01u
@@ -250,7 +250,7 @@ typedef struct {
     float center_ne_m2;                  /* ... and the covariance of north and east */
     float velocity_north_m_s, velocity_east_m_s; /* velocity of a moving obstacle */
     float latency_s;  /* filter: delay of the poses relative to the images, which the filter corrects */
-    float residual;   /* window: RMS residual of the fit (5), lib/window/README.md; filter: 0 */
+    float residual;   /* window: RMS residual of the fit (5); filter: 0 */
     float baseline_m; /* window: spread of the camera's path; filter: distance of the camera from the track's start */
     float nis;        /* filter: normalized innovation squared of the latest image ... */
     int nis_rows;     /* ... and its expected value */

@@ -64,6 +64,18 @@ def test_the_settings_header_is_the_lists() -> None:
     assert main(["settings_header", "--check"]) == 0
 
 
+def test_the_header_is_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    other = tmp_path / "goe_settings.h"
+    other.write_text("something else", encoding="utf-8")
+    monkeypatch.setattr(settings_header, "HEADER", other)
+    assert main(["settings_header", "--check"]) == 1
+    assert "settings_header --write" in capsys.readouterr().out
+    assert main(["settings_header", "--write"]) == 0
+    assert other.read_bytes() == (LIB / "goe_settings.h").read_bytes()
+
+
 def test_a_changed_list_changes_the_header(capsys: pytest.CaptureFixture[str]) -> None:
     text = settings_header.LIST.read_text(encoding="utf-8")
     made = settings_header.header(text)

@@ -171,6 +171,7 @@ RUN_BY = {
     "python -m goe_tools view --png --theme dark": By("tests/python/test_view_command.py", '"view"'),
     "python -m goe_tools view --svg": By("tests/python/test_view_command.py", '"view"'),
     "python -m ci settings --write lib/README.md": By("tests/python/test_settings_table.py", '"settings", "--write"'),
+    "python -m ci settings_header --write": By("tests/python/test_public_headers.py", '"settings_header", "--write"'),
 }
 
 # Commands in a foreign source tree that no test machine has.
