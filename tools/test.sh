@@ -211,6 +211,12 @@ show_slowest() {
     done | sort -rn | head -n 5
 }
 
+# The tests that failed in a step, by the summaries of pytest and CTest.
+failed_tests() {
+    sed -nE 's/^(FAILED|ERROR) (.*::.*)/        \2/p; s/^[[:space:]]*([0-9]+ - .* \((Failed|Timeout|Not Run|[A-Za-z ]*Exception[^)]*|SEGFAULT|Subprocess [a-z]+)\)).*/        \1/p' \
+        "$(log_of "$1")"
+}
+
 finish() {
     local name failed=()
     for name in "${steps[@]}"; do
@@ -220,9 +226,10 @@ finish() {
     show_slowest
     [ ${#skipped[@]} = 0 ] || printf 'skipped: %s\n' "${skipped[@]}"
     [ ${#missing[@]} = 0 ] || printf 'FAILED, as CI must skip nothing: %s\n' "${missing[@]}"
-    if [ ${#failed[@]} != 0 ]; then
-        printf 'FAILED: %s\n' "${failed[@]}"
-    fi
+    for name in "${failed[@]}"; do
+        echo "FAILED: $name"
+        failed_tests "$name"
+    done
     if [ ${#failed[@]} != 0 ] || [ ${#missing[@]} != 0 ]; then
         echo "failed in $SECONDS s; ${#skipped[@]} skipped"
         exit 1
@@ -281,7 +288,7 @@ pytest_affected() {
         run_pytest "${files[@]}"
     fi
 }
-run_pytest() { "$python" -m pytest -q -rs -p no:cacheprovider -c tools/pyproject.toml "$@"; }
+run_pytest() { "$python" -m pytest -q -rfEs --rootdir "$root" -p no:cacheprovider -c tools/pyproject.toml "$@"; }
 
 # ---------------------------------------------------------------------------------------------------------------- run
 

@@ -54,7 +54,8 @@ class Checkout:
 
     def _program(self, file: Path, lines: str) -> None:
         file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(f'#!/bin/sh\n{lines}\ncase "$*" in *"${{FAILING:-no such word}}"*) exit 1 ;; esac\n')
+        ends = 'case "$*" in *"${FAILING:-no such word}"*) exit 1 ;; esac'
+        file.write_text(f'#!/bin/sh\n{lines}\necho "$PRINTED"\n{ends}\n')
         file.chmod(0o755)
 
     def _git(self, *words: str) -> None:
@@ -95,6 +96,20 @@ def test_a_step_that_fails_fails_the_run(checkout: Checkout, failing: str, step:
     assert done.returncode == 1
     assert f"FAILED: {step}\n" in done.stdout
     assert done.stdout.splitlines()[-1].startswith("failed in ")
+
+
+@pytest.mark.parametrize(
+    ("failing", "printed", "named"),
+    [
+        ("pytest", "FAILED tests/python/test_a.py::test_b - ValueError", "tests/python/test_a.py::test_b - ValueError"),
+        ("-L unit", "      7 - c_box (Failed)                  unit", "7 - c_box (Failed)"),
+        ("-L unit", "     12 - c_row (Timeout)", "12 - c_row (Timeout)"),
+    ],
+)
+def test_the_last_lines_name_the_failed_tests(checkout: Checkout, failing: str, printed: str, named: str) -> None:
+    done = checkout.run("tools/test.sh", "--quick", failing=failing, PRINTED=printed)
+    lines = [line.strip() for line in done.stdout.splitlines()]
+    assert named in lines[lines.index("slowest steps, and their share of the processors:") :]
 
 
 def test_nothing_runs_after_a_build_that_fails(checkout: Checkout) -> None:
