@@ -66,7 +66,7 @@ def assert_same(some: list[Outcome], others: list[Outcome]) -> None:
     for one, other in zip(some, others):
         assert one.name == other.name and one.nis == other.nis and one.nis_ratio == other.nis_ratio
         assert np.array_equal(one.covariance, other.covariance, equal_nan=True)
-        assert np.array_equal(one.refined.error, other.refined.error, equal_nan=True)
+        assert np.array_equal(one.filter.error, other.filter.error, equal_nan=True)
 
 
 @pytest.fixture(scope="module")
