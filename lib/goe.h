@@ -16,21 +16,22 @@
  *         return;
  *     }
  *     goe_image_t image = {0};
+ *     double taken_s = 0.0;
  *     while (next_image(&image.pose, &image.box)) {
  *         goe_estimate_t estimate;
- *         goe_update(&estimator, &image, &estimate);
- *         if (estimate.valid & GOE_HAS_POSITION) {
- *             show(estimate.x_m, estimate.z_m, estimate.sigma.z_m);
- *         }
- *         const goe_intent_t intent = {{20.0f, 0.0f, 1.0f}, 15.0f, 10.0f, 0.0f, 0.0f};
+ *         const goe_status_t status = goe_update(&estimator, &image, &estimate);
+ *         taken_s = GOE_IMAGE_TAKEN(status) ? exposure_s() : taken_s;
+ *         show(&estimate);
+ *         const float since_s = (float)(now_s() - taken_s);
+ *         const goe_intent_t intent = {{20.0f, 0.0f, 1.0f}, 15.0f, 10.0f, since_s, 0.0f};
  *         const goe_decision_t decision = goe_decide(&estimator, &intent, NULL, NULL);
  *         go_around = decision == GOE_DECISION_ACT || (go_around && decision != GOE_DECISION_CLEAR);
  *     }
  *
  * Order of calls: goe_settings_default, goe_init; then for every image goe_update, followed by goe_decide or goe_hazard. Call
- * goe_reset before another obstacle. This header includes goe_limits.h (parts, limits), goe_settings.h, goe_hazard.h (closest
+ * goe_reset before another obstacle. Included are goe_limits.h (parts, limits), goe_settings.h, goe_hazard.h (closest
  * approach, decision, covariance) and goe_diagnostics.h (self-check).
- * DESIGN.md explains the methods and measures their limits; GLOSSARY.md defines the terms.
+ * DESIGN.md explains methods and measured limits; GLOSSARY.md defines the terms.
  *
  * Frames
  *   earth       north, east, down (NED), meters, local, any origin
@@ -95,8 +96,8 @@ extern "C" {
  * solution, but no fault. The negative ones mean a fault and no new solution. "Image taken" means that goe stored the image:
  * later images build on it. Numbers above 4, -16 to -31 and below -35 are unused. [A25] */
 typedef enum {
-    GOE_OK = 0,           /* new solution from this image and earlier ones; from another call: success */
-    GOE_PARTIAL = 1,      /* new solution, but a part of the image was refused or not usable: see fault_counts */
+    GOE_OK = 0,           /* new solution from this image and earlier ones; a call: success */
+    GOE_PARTIAL = 1,      /* new solution, but part of the image was refused or unusable: see fault_counts */
     GOE_CONVERGING = 2,   /* image taken; no solution yet: few images, or sigma of the range above range_sd_rel_max */
     GOE_STALE = 3,        /* image taken; it adds no information, and the earlier solution remains */
     GOE_NO_DETECTION = 4, /* image taken for its pose: no feature is visible. Not a fault */
@@ -122,7 +123,7 @@ typedef enum {
     /* faults of a call */
     GOE_BAD_SETTINGS = -32,    /* goe_init: a setting is outside its range; bad_field names it */
     GOE_BAD_ARGUMENT = -33,    /* a null pointer, or an estimator size that differs from the library's */
-    GOE_NOT_INITIALIZED = -34, /* goe_init has not succeeded on this estimator */
+    GOE_NOT_INITIALIZED = -34, /* goe_init has not succeeded */
     GOE_CORRUPTED = -35        /* the memory was changed from outside, and the track has ended. Not "safe": keep the last
                                 * warning. If goe_reset returns it, too, the settings have changed: call goe_init */
 } goe_status_t;

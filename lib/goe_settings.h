@@ -78,7 +78,7 @@ typedef struct {
 
 /* Settings of the window method, Section 4 of the paper. */
 typedef struct {
-    int points;               /* images in the fit and in the sliding means; 3 to GOE_WINDOW_MAX; default 8 */
+    int points;               /* images in the fit and in the sliding means; 3 to GOE_WINDOW_MAX; default 8 (at most GOE_WINDOW_MAX) */
     int line_points;          /* model auto: line points before the line replaces the disc; 1 to 1000; default 8 */
     float edge_min_px;        /* length of the shortest edge that counts; 0 to 1e4 px; default 10 */
     float orientation_min_px; /* least vertical distance of an edge's ends that gives an orientation; 0 to 1e4 px; default 2 */

@@ -13,7 +13,7 @@ typedef struct {
     bool moves;
 } goe_approach_t;
 
-/* The course of a intent, T axes. */
+/* The course of an intent, T axes. */
 void goe_approach_course(const goe_motion_t *motion, const goe_intent_t *intent, goe_course_t *course);
 
 /* The side on which the outline is passed, or crossed less deep. */

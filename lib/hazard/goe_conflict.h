@@ -15,7 +15,7 @@ float goe_conflict_ahead_s(const goe_estimator_t *estimator, const goe_intent_t 
 void goe_conflict_add_intent(const goe_estimator_t *estimator, const goe_intent_t *intent, float ahead_s,
                              goe_covariance_t covariance);
 
-/* Sets *hazard, all zero before, for an estimator that has a position and a intent within its ranges. covariance: with the
+/* Sets *hazard, all zero before, for an estimator that has a position and an intent within its ranges. covariance: with the
  * height counted from the altimeter's zero. */
 void goe_conflict_foresee(const goe_estimator_t *estimator, const goe_intent_t *intent, goe_covariance_t covariance,
                           goe_hazard_t *hazard);

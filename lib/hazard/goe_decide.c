@@ -11,7 +11,7 @@
 
 #define SURE_SIGMA 2.0f
 #define SUPERSEDED_S 2.0f     /* of detections without an answer, after which the answer before them clears nothing */
-#define DISTANCE_MAX_M 1.0e4f /* as that of a intent */
+#define DISTANCE_MAX_M 1.0e4f /* as that of an intent */
 #define TIME_MAX_S 1.0e4f
 #define DOUBT_MAX 100.0f
 #define DRIFT_MAX_M_S 100.0f
@@ -40,7 +40,7 @@ static bool is_rule(const goe_rule_t *rule) {
            is_between(rule->suspect_factor, 1.0f, DOUBT_MAX) && is_between(rule->stale_growth_m_s, 0.0f, DRIFT_MAX_M_S);
 }
 
-/* An estimate that is suspect, or that no image has renewed for a while, may be wrong towards the obstacle: both distances grow. A
+/* An estimate that is suspect, or that no image has renewed for a while, may be wrong towards the obstacle: both distances grow. An
  * intent that is not finite stays so, and is refused. */
 static void widen(const goe_estimator_t *estimator, const goe_rule_t *rule, goe_intent_t *intent) {
     const goe_estimate_t *estimate = &estimator->estimate;

@@ -68,7 +68,7 @@ static void a_velocitys_error_counts_until_it_is_met(void) {
     CHECK_CLOSE(1.0e-4, 5.0, goe_conflict_ahead_s(&estimator, &intent));
 }
 
-/* GIVEN a intent whose velocity is uncertain THEN distance and clearance are, by that over the time until then; a intent that does not
+/* GIVEN an intent whose velocity is uncertain THEN distance and clearance are, by that over the time until then; an intent that does not
  * say takes the setting. */
 static void the_plans_velocity_may_be_wrong(void) {
     goe_intent_t intent = intent_of(10.0f, 0.0f);

@@ -75,11 +75,12 @@ static void spoil_box(goe_image_t *image, double error[4]) {
     }
 }
 
-/* detected: whether the detector finds the obstacle in image k. */
-static outcome_t fly(bool (*detected)(int k)) {
+/* detected: whether the detector finds the obstacle in image k. From refused_m ahead on, the attitude of every image is none. */
+static outcome_t fly_refused(bool (*detected)(int k), double refused_m) {
     static const float velocity_ned_m_s[3] = {(float)SPEED_M_S, 0.0f, 0.0f};
     outcome_t outcome = {-1.0, 0, 0};
     bool go_around = false;
+    int taken = 0;
     double error[4];
     for (int i = 0; i < 4; i++) {
         error[i] = check_random_normal(&any);
@@ -103,14 +104,20 @@ static outcome_t fly(bool (*detected)(int k)) {
             image.box.sides = 0;
             image.left.visible = image.right.visible = image.top.visible = false;
         }
-        (void)goe_update(&estimator, &image, &estimate);
+        if (SPEED_M_S * left_s <= refused_m) {
+            memset(image.pose.attitude, 0, sizeof image.pose.attitude);
+        }
+        const goe_status_t status = goe_update(&estimator, &image, &estimate);
+        taken = GOE_IMAGE_TAKEN(status) ? k : taken;
         outcome.suspect += estimate.suspect ? 1 : 0;
         outcome.images++;
-        decide(&estimator, velocity_ned_m_s, &go_around);
+        decide(&estimator, velocity_ned_m_s, (float)((k - taken) / RATE_HZ), &go_around);
         outcome.ordered_s = go_around ? left_s : -1.0;
     }
     return outcome;
 }
+
+static outcome_t fly(bool (*detected)(int k)) { return fly_refused(detected, 0.0); }
 
 static bool always(int k) {
     (void)k;
@@ -163,7 +170,7 @@ static void the_order_comes_by_boxes(void) {
     }
 }
 
-/* [goe_decide] ... and the path that keeps twice the margin from the outline fault_counts no order, 19 times of 20. */
+/* [goe_decide] ... and the path that keeps twice the margin from the outline causes no order, 19 times of 20. */
 static void a_pass_at_twice_the_margin_by_boxes(void) {
     static const double roll_deg[] = {0.0, 25.0};
     for (int i = 0; i < 2; i++) {
@@ -191,11 +198,28 @@ static void the_order_comes_through_gaps_of_the_detector(void) {
     TEST_ASSERT_TRUE(least_s >= AHEAD_S);
 }
 
+/* [GOE_IMAGE_TAKEN, goe_intent_t.since_image_s] GIVEN ten seconds of good images WHEN every further image is refused THEN the order
+ * is in time: the time since the last image taken moves the aircraft on. */
+static void the_order_comes_although_images_are_refused(void) {
+    static const double roll_deg[] = {0.0, 10.0};
+    for (int i = 0; i < 2; i++) {
+        double least_s = 1.0e9;
+        for (int run = 0; run < RUNS; run++) {
+            make_course(check_random_between(&any, -2.0, 2.0), roll_deg[i]);
+            scene.boxes = true;
+            const double ordered_s = fly_refused(always, 300.0).ordered_s;
+            least_s = ordered_s < least_s ? ordered_s : least_s;
+        }
+        check_report("refused images, least time ahead, s", least_s);
+        TEST_ASSERT_TRUE(least_s >= AHEAD_S);
+    }
+}
+
 /* Whether the rule orders a first time. */
 static bool orders(const goe_estimator_t *of) {
     static const float velocity_ned_m_s[3] = {(float)SPEED_M_S, 0.0f, 0.0f};
     bool go_around = false;
-    decide(of, velocity_ned_m_s, &go_around);
+    decide(of, velocity_ned_m_s, 0.0f, &go_around);
     return go_around;
 }
 
@@ -241,22 +265,22 @@ static void no_failure_means_clear(void) {
     (void)fly(always);
     for (int ordered = 0; ordered < 2; ordered++) {
         bool go_around = ordered == 1;
-        decide(&estimator, no_number, &go_around);
-        decide(&estimator, too_fast, &go_around);
+        decide(&estimator, no_number, 0.0f, &go_around);
+        decide(&estimator, too_fast, 0.0f, &go_around);
         broken = estimator;
         ((unsigned char *)&broken.settings)[176] ^= 4u;
-        decide(&broken, ahead, &go_around);
+        decide(&broken, ahead, 0.0f, &go_around);
         memset(&broken, 0, sizeof broken);
-        decide(&broken, ahead, &go_around);
+        decide(&broken, ahead, 0.0f, &go_around);
         broken = estimator;
         CHECK_STATUS(GOE_OK, goe_reset(&broken));
-        decide(&broken, ahead, &go_around);
-        decide(NULL, ahead, &go_around);
+        decide(&broken, ahead, 0.0f, &go_around);
+        decide(NULL, ahead, 0.0f, &go_around);
         TEST_ASSERT_EQUAL_INT(ordered, go_around);
     }
 }
 
-/* [goe_decide] ... and an obstacle passed at a distance fault_counts no order. */
+/* [goe_decide] ... and an obstacle passed at a distance causes no order. */
 static void a_wide_pass_is_no_reason(void) {
     int ordered = 0;
     for (int run = 0; run < RUNS; run++) {
@@ -273,6 +297,7 @@ int main(void) {
     RUN_TEST(the_order_comes_by_boxes);
     RUN_TEST(a_pass_at_twice_the_margin_by_boxes);
     RUN_TEST(the_order_comes_through_gaps_of_the_detector);
+    RUN_TEST(the_order_comes_although_images_are_refused);
     RUN_TEST(doubt_warns_no_later);
     RUN_TEST(no_failure_means_clear);
     RUN_TEST(a_wide_pass_is_no_reason);

@@ -79,7 +79,7 @@ def test_numbers_that_are_stated_twice_agree() -> None:
     define, const = r"#define (\w+) ([\d.]+)f?\b", r"\b([A-Z_]+) = ([\d.]+)"
     rule = numbers((port / "live.c").read_text(encoding="utf-8"), define)
     assert set(rule) == {"MARGIN_M", "CLEARANCE_M"}
-    plan = f"{rule['MARGIN_M']}f, {rule['CLEARANCE_M']}f, 0.0f, 0.0f}}; /* margin, clearance, m */"
+    plan = f"{rule['MARGIN_M']}f, {rule['CLEARANCE_M']}f, since_s, 0.0f}}; /* margin, clearance, m */"
     assert plan in (ROOT / "README.md").read_text(encoding="utf-8")
     source = (ROOT / "lib" / "hazard" / "goe_decide.c").read_text(encoding="utf-8")
     (defaults,) = re.findall(r"by_default = \{(.*)f\};", source)

@@ -24,7 +24,7 @@ ENTRY = re.compile(r'^    X\(([\w.]+)(?:\[(\d)\])?, (\w+), "([^"]*)", (\S+), (\S
 NAMED = {  # defaults that are no numbers
     "GOE_METHOD_MAX": "filter (if compiled in)",
     "GOE_MODEL_AUTO": "auto",
-    "GOE_WINDOW_DEFAULT": "8",
+    "GOE_WINDOW_DEFAULT": "8 (at most GOE_WINDOW_MAX)",
 }
 CENTER = ("camera.cx_px", "camera.cy_px")  # 0 is in their range, and wrong
 MUST_BE_SET = "no default: must be set"

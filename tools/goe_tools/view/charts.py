@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .answers import MISFIT_MAX, Answers, Options
+from .answers import NIS_RATIO_MAX, Answers, Options
 from .outline import SIGMAS
 from .words import NOTHING, measured
 
@@ -49,13 +49,13 @@ CHARTS = (
     Chart("conflict_probability", "Conflict probability", "%", "that margin and clearance are both violated", "", 100.0,
           floor=0.0, ceiling=100.0),
     Chart("nis_ratio", "NIS ratio", "", "residuals over the settings' noise; 1: as expected; suspect above the line",
-          limit=MISFIT_MAX, floor=0.0),
+          limit=NIS_RATIO_MAX, floor=0.0),
 )  # fmt: skip
 
 
 def charts_of(options: Options) -> tuple[Chart, ...]:
     """The charts of a replay, with the NIS ratio's limit from its settings."""
-    limit = options.settings.get("filter.nis_ratio_max", MISFIT_MAX)
+    limit = options.settings.get("filter.nis_ratio_max", NIS_RATIO_MAX)
     return tuple(dataclasses.replace(c, limit=limit) if c.key == "nis_ratio" else c for c in CHARTS)
 
 
