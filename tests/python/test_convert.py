@@ -357,6 +357,18 @@ def test_detections_that_are_wrong(tmp_path: Path, capsys: pytest.CaptureFixture
     assert "no row has a pose" in refused(capsys, words("ulog", path, "--offset", "1000"))
 
 
+def test_a_misspelt_column_of_a_detector_is_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = autopilot_log(tmp_path, "ulog", FLOWN)
+    table, _ = write_detections(tmp_path, FLOWN, 0.0)
+    header, *rows = table.read_text().splitlines()
+    lines = [f"{header},left_uu,left_vv,score", *(f"{row},500,400,0.9" for row in rows)]
+    table.write_text("\n".join(lines) + "\n")
+    assert main(words("ulog", path, "--offset", "0")) == 0
+    reported = capsys.readouterr().err
+    assert f"{table}:1: left_uu: unknown column, ignored; did you mean left_u?" in reported
+    assert "score" not in reported
+
+
 @pytest.mark.parametrize("flag", [("--offset", "soon"), ("--gap", "0"), ("--within", "nan"), ("--height", "radar")])
 def test_flags_that_are_wrong(tmp_path: Path, capsys: pytest.CaptureFixture[str], flag: tuple[str, str]) -> None:
     with pytest.raises(SystemExit) as stop:

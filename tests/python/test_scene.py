@@ -275,6 +275,48 @@ def test_bad_usage(arguments: list[str], tmp_path, capsys) -> None:
     assert not (tmp_path / "log").exists()
 
 
+@pytest.mark.parametrize(
+    ("option", "value", "reason"),
+    [
+        ("--fps", "0", "must be 0.01 to 1000"),
+        ("--fps", "-8", "must be 0.01 to 1000"),
+        ("--fps", "nan", "is not finite"),
+        ("--run", "-1", "must be 0 to 3600"),
+        ("--run", "inf", "is not finite"),
+        ("--speed", "0", "must be above 0"),
+        ("--altitude", "-20", "must be above 0"),
+        ("--x0", "left", "is not a number"),
+        ("--glide", "90", "must be -80 to 80"),
+    ],
+)
+def test_numbers_outside_their_range(
+    option: str, value: str, reason: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as stop:
+        main(["scene", f"{option}={value}", "--out", str(tmp_path / "log")])
+    assert stop.value.code == 2
+    assert f"argument {option}: '{value}' {reason}" in capsys.readouterr().err
+    assert not (tmp_path / "log").exists()
+
+
+def test_only_its_own_log_is_replaced(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Of an edited or foreign log no byte changes."""
+    words = ["scene", "--run", "2", "--out", str(tmp_path)]
+    assert main(words) == 0 and main([*words, "--x0", "3"]) == 0
+    capsys.readouterr()
+    frames = tmp_path / "frames.csv"
+    for edited in (frames.read_text() + "\n", None):
+        if edited is None:
+            (tmp_path / "camera.ini").unlink()
+        else:
+            frames.write_text(edited)
+        before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+        assert main(words) == 2
+        reported = capsys.readouterr().err
+        assert f"{tmp_path}: contains " in reported and "which this command did not write" in reported
+        assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
 def test_bad_scene_writes_nothing(tmp_path, capsys) -> None:
     assert main(["scene", "--altitude", "1", "--glide", "6", "--out", str(tmp_path / "log")]) == 2
     assert "hits the ground" in capsys.readouterr().err

@@ -17,7 +17,9 @@ import numpy as np
 
 from ..flights.rotations import matrices
 from ..logs.fields import LogError
-from ..logs.obslog import Camera, Frame, ObservationLog, read_cameras, write_log
+from ..logs.numbers import finite, positive
+from ..logs.obslog import Camera, Frame, ObservationLog, read_cameras
+from ..logs.own_log import write_own_log
 from .clock import find_offset
 from .dataflash import read_dataflash
 from .detections import read_detections, sees
@@ -105,23 +107,6 @@ def add_poses(
 # ------------------------------------------------------------------------------------------------------- the command
 
 
-def _number(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"'{text}' is not a number") from None
-    if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f"'{text}' is not finite")
-    return value
-
-
-def _positive(text: str) -> float:
-    value = _number(text)
-    if value <= 0.0:
-        raise argparse.ArgumentTypeError(f"'{text}' must be above 0")
-    return value
-
-
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     source = parser.add_mutually_exclusive_group(required=True)
@@ -130,13 +115,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     source.add_argument("--tlog", type=Path, metavar="FILE", help="a ground station's log of MAVLink messages")
     add("--detections", type=Path, required=True, metavar="CSV", help="t_s, id and the columns of frames.csv for boxes")
     add("--camera", type=Path, required=True, metavar="INI", help="camera.ini of the new log")
-    add("--out", type=Path, required=True, metavar="LOG", help="folder to write")
-    add("--offset", type=_number, metavar="S", help="the autopilot's time minus t_s (default: estimated)")
-    add("--about", type=_number, default=0.0, metavar="S", help="center of the offset search (default 0)")
-    add("--within", type=_positive, default=REACH_S, metavar="S", help=f"half its length (default {REACH_S:g})")
+    add("--out", type=Path, required=True, metavar="LOG", help="folder to write; an earlier result there is replaced")
+    add("--offset", type=finite, metavar="S", help="the autopilot's time minus t_s (default: estimated)")
+    add("--about", type=finite, default=0.0, metavar="S", help="center of the offset search (default 0)")
+    add("--within", type=positive, default=REACH_S, metavar="S", help=f"half its length (default {REACH_S:g})")
     add("--height", choices=HEIGHTS, default=HEIGHTS[0], help="above ground: from --ground (default), or measured")
-    add("--ground", type=_number, default=0.0, metavar="D", help="down coordinate of the obstacle's ground (default 0)")
-    add("--gap", type=_positive, default=GAP_S, metavar="S", help=f"longest time between poses (default {GAP_S:g})")
+    add("--ground", type=finite, default=0.0, metavar="D", help="down coordinate of the obstacle's ground (default 0)")
+    add("--gap", type=positive, default=GAP_S, metavar="S", help=f"longest time between poses (default {GAP_S:g})")
     add("--system", type=int, metavar="N", help="system number of the autopilot in a tlog (default: the first)")
 
 
@@ -203,6 +188,6 @@ def run(arguments: argparse.Namespace) -> int:
         raise LogError(arguments.detections, 0, "t_s", "no row has a pose: do the clocks differ by the offset only?")
     log = ObservationLog(cameras[0], result.frames, camera2=cameras[1] if len(cameras) > 1 else None)
     comment = f"{recording.path.name} and {arguments.detections.name}, t_s {offset_s:+.6f} s"
-    write_log(arguments.out, log, comment, [arguments.camera, arguments.detections, recording.path])
+    write_own_log(arguments.out, log, comment, [arguments.camera, arguments.detections, recording.path])
     print(f"{arguments.out}: {len(result.frames)} rows")
     return 0

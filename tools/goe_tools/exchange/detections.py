@@ -9,7 +9,7 @@ import math
 from collections.abc import Sequence
 from pathlib import Path
 
-from ..logs.fields import LogError, read_integer, read_number, read_rows
+from ..logs.fields import LogError, read_integer, read_number, read_rows, warn_of_misspelt
 from ..logs.obslog import BOX_COLUMNS, CAMERA_COLUMN, FEATURES, POINT_COLUMNS, Frame, check_pairs, read_features
 
 REQUIRED = ("t_s", "id")
@@ -26,6 +26,7 @@ def read_detections(path: Path, cameras: int) -> list[Frame]:
 
     def check(header: list[str], path: Path, line: int) -> None:
         check_pairs(header, path, line)
+        warn_of_misspelt(header, path, line, (*REQUIRED, *known, CAMERA_COLUMN))
         if not any(name in header for name in known):
             raise LogError(path, line, BOX_COLUMNS[0], "column is missing, and so are all others of points and boxes")
 

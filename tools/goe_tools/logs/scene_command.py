@@ -6,7 +6,9 @@ import argparse
 import math
 from pathlib import Path
 
-from .obslog import Camera, write_log
+from .numbers import between, finite, positive
+from .obslog import Camera
+from .own_log import write_own_log
 from .scene import Scene, make_log
 
 # name: shape, W, L, H in meters (of the cylinder: diameter, diameter, height)
@@ -16,6 +18,10 @@ PRESETS = {
     "truck": ("box", 2.5, 7.0, 2.5),
     "long-truck": ("box", 2.5, 18.0, 4.0),
 }
+
+RUN_MAX_S = 3600.0
+FPS_MIN_HZ, FPS_MAX_HZ = 0.01, 1000.0
+GLIDE_MAX_DEG = 80.0
 
 
 def _numbers(text: str, count: int) -> tuple[float, ...]:
@@ -95,16 +101,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="WHAT",
         help=f"{', '.join(PRESETS)}, box:W,L,H or disc:D,H (m); default truck",
     )
-    add("--x0", type=float, default=-12.0, metavar="M", help="reference point right of the start (default -12)")
-    add("--z0", type=float, metavar="M", help="reference point ahead of the start (default: speed times reach)")
-    add("--reach", type=float, default=12.0, metavar="S", help="time to come abeam at the first speed (default 12)")
-    add("--run", type=float, default=10.0, metavar="S", help="duration of the log (default 10)")
-    add("--alpha", type=float, default=0.0, metavar="DEG", help="length axis from the flight direction (default 0)")
-    add("--altitude", type=float, default=20.0, metavar="M", help="above the ground at the start (default 20)")
-    add("--glide", type=float, default=0.0, metavar="DEG", help="descent angle (default 0)")
-    add("--speed", type=float, default=17.0, metavar="MPS", help="default 17")
-    add("--fps", type=float, default=8.0, metavar="HZ", help="images per second (default 8)")
-    add("--course", type=float, default=0.0, metavar="DEG", help="direction of flight at the start (default 0: north)")
+    add("--x0", type=finite, default=-12.0, metavar="M", help="reference point right of the start (default -12)")
+    add("--z0", type=finite, metavar="M", help="reference point ahead of the start (default: speed times reach)")
+    add("--reach", type=positive, default=12.0, metavar="S", help="time to come abeam at the first speed (default 12)")
+    run = between(0.0, RUN_MAX_S)
+    add("--run", type=run, default=10.0, metavar="S", help=f"duration of the log, at most {RUN_MAX_S:g} (default 10)")
+    add("--alpha", type=finite, default=0.0, metavar="DEG", help="length axis from the flight direction (default 0)")
+    add("--altitude", type=positive, default=20.0, metavar="M", help="above the ground at the start (default 20)")
+    glide = between(-GLIDE_MAX_DEG, GLIDE_MAX_DEG)
+    add("--glide", type=glide, default=0.0, metavar="DEG", help="descent angle (default 0)")
+    add("--speed", type=positive, default=17.0, metavar="MPS", help="default 17")
+    rate, span = between(FPS_MIN_HZ, FPS_MAX_HZ), f"{FPS_MIN_HZ:g} to {FPS_MAX_HZ:g}"
+    add("--fps", type=rate, default=8.0, metavar="HZ", help=f"images per second, {span} (default 8)")
+    add("--course", type=finite, default=0.0, metavar="DEG", help="direction of flight at the start (default 0: north)")
     add(
         "--path",
         type=_path,
@@ -113,8 +122,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="straight, arc:R (m, positive: right) or weave:A,T (m, s)",
     )
     add("--speed-profile", type=_speed_profile, default=0.0, metavar="P", help="constant or ramp:A (m/s^2)")
-    add("--pitch", type=float, default=0.0, metavar="DEG", help="constant pitch, added to the glide path's")
-    add("--wobble", type=float, default=0.0, metavar="DEG", help="amplitude of an attitude oscillation (default 0)")
+    add("--pitch", type=finite, default=0.0, metavar="DEG", help="constant pitch, added to the glide path's")
+    add("--wobble", type=finite, default=0.0, metavar="DEG", help="amplitude of an attitude oscillation (default 0)")
     add("--noise", type=_noise, default={}, metavar="N", help="none, rounding (whole pixels) or pixel:SIGMA (px)")
     add("--seed", type=int, default=1, metavar="N", help="of the pixel noise (default 1)")
     add("--clip", action="store_true", help="points outside the image are not measured")
@@ -125,13 +134,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="N,E,D",
         help="NED of the ground point below the start (m)",
     )
-    add("--t0", type=float, default=0.0, metavar="S", help="time stamp of the first image (default 0)")
+    add("--t0", type=finite, default=0.0, metavar="S", help="time stamp of the first image (default 0)")
     add("--id", type=int, default=1, metavar="N", help="track id (default 1)")
     add("--image", type=lambda text: _numbers(text, 2), default=(1280.0, 1280.0), metavar="W,H", help="px")
-    add("--focal", type=float, default=914.0, metavar="PX", help="focal length (default 914)")
-    add("--yaw-camera", type=float, default=0.0, metavar="DEG", help="mounting, negative points left (default 0)")
-    add("--pitch-camera", type=float, default=0.0, metavar="DEG", help="mounting, positive points up (default 0)")
-    add("--roll-camera", type=float, default=0.0, metavar="DEG", help="mounting (default 0)")
+    add("--focal", type=positive, default=914.0, metavar="PX", help="focal length (default 914)")
+    add("--yaw-camera", type=finite, default=0.0, metavar="DEG", help="mounting, negative points left (default 0)")
+    add("--pitch-camera", type=finite, default=0.0, metavar="DEG", help="mounting, positive points up (default 0)")
+    add("--roll-camera", type=finite, default=0.0, metavar="DEG", help="mounting (default 0)")
     add("--lens", type=lambda text: _numbers(text, 5), default=(0.0,) * 5, metavar="K1,K2,P1,P2,K3", help="distortion")
     add(
         "--offset",
@@ -141,7 +150,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="camera in body axes (m)",
     )
     add("--t-heading", type=_heading, default=None, metavar="DEG", help="T's Z axis; default auto: the first yaw")
-    add("--out", type=Path, required=True, metavar="DIR", help="folder to write")
+    add("--out", type=Path, required=True, metavar="DIR", help="folder to write; an earlier result there is replaced")
 
 
 def scene_of(arguments: argparse.Namespace) -> Scene:
@@ -194,6 +203,6 @@ def scene_of(arguments: argparse.Namespace) -> Scene:
 
 def run(arguments: argparse.Namespace) -> int:
     log = make_log(scene_of(arguments))
-    write_log(arguments.out, log, "made by goe_tools scene")
+    write_own_log(arguments.out, log, "made by goe_tools scene")
     print(f"{arguments.out}: {len(log.frames)} rows")
     return 0

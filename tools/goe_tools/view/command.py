@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
 from pathlib import Path
 
 from .. import renamed
+from ..logs.numbers import between
 from ..logs.obslog import LogError, ObservationLog, read_log, read_truth
 from ..logs.whole_file import log_files, write_whole
 from .answers import SETTING_GROUPS, Options
@@ -14,19 +14,6 @@ from .story import MOST_ROWS, Story, story_of
 
 DEFAULT_PAGE = Path("view.html")
 EXIT_NO_ANSWER = 1
-
-
-def _number(low: float, high: float) -> Callable[[str], float]:
-    def parse(text: str) -> float:
-        try:
-            value = float(text)
-        except ValueError:
-            raise argparse.ArgumentTypeError(f"'{text}' is not a number") from None
-        if not low <= value <= high:
-            raise argparse.ArgumentTypeError(f"{text} is not within {low:g} and {high:g}")
-        return value
-
-    return parse
 
 
 def _setting(text: str) -> tuple[str, float]:
@@ -63,8 +50,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         metavar="NAME=VALUE",
         help="as goe_replay's; may be repeated",
     )
-    add("--margin", type=_number(0.0, 1e4), default=15.0, metavar="M", help="too close: to the side (default 15 m)")
-    add("--clearance", type=_number(0.0, 1e4), default=10.0, metavar="M", help="... and above the top (default 10 m)")
+    add("--margin", type=between(0.0, 1e4), default=15.0, metavar="M", help="too close: to the side (default 15 m)")
+    add("--clearance", type=between(0.0, 1e4), default=10.0, metavar="M", help="... and above the top (default 10 m)")
 
 
 def options_of(arguments: argparse.Namespace) -> Options:
@@ -86,7 +73,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--png", type=Path, metavar="FILE", help="picture of one moment: map, distance and size over time")
     add("--svg", type=Path, metavar="FILE", help="the same; follows the reader's color scheme")
     add("--theme", choices=("light", "dark"), default="light", help="of the PNG (default light)")
-    add("--at", type=_number(-1e12, 1e12), metavar="S", help="time shown first, and in the picture (default: midway)")
+    add("--at", type=between(-1e12, 1e12), metavar="S", help="time shown first, and in the picture (default: midway)")
     add(
         "--id",
         type=int,
@@ -95,7 +82,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add_options(parser)
     add(
-        "--rows", type=_number(2, 1e5), default=MOST_ROWS, metavar="N",
+        "--rows", type=between(2, 1e5), default=MOST_ROWS, metavar="N",
         help=f"largest number of images on the page (default {MOST_ROWS}); of more, some are left out",
     )  # fmt: skip
 
