@@ -132,11 +132,9 @@ typedef enum {
  * unknown size ended. Counters saturate. */
 #define GOE_FAULT_COUNTS 16
 
-/* Whether goe_update() took the image: pass a variable, as the macro evaluates it several times. goe stores nothing of a
- * refused image: supply the delta of its reset again. */
-#define GOE_IMAGE_TAKEN(status)                                                                                        \
-    (((int)(status) > (int)GOE_NOT_FINITE) |                                                                           \
-     (((int)(status) < (int)GOE_BAD_ATTITUDE) & ((int)(status) > (int)GOE_BAD_SETTINGS)))
+/* Whether goe_update() took the image: bit 35 + status, set for -15, -14 and -9 to 4. Of a refused image goe stores the time
+ * alone: supply the delta of its reset again. */
+#define GOE_IMAGE_TAKEN(status) ((((uint64_t)0xFFFC300000 >> (((unsigned)(status) + 35u) & 63u)) & 1u) != 0u)
 
 /* ----------------------------------------------------------------------------------------------------------- image -- */
 

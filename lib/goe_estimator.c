@@ -21,7 +21,8 @@
 
 #define RESETS GOE_OK /* fault_counts[0] counts tracks that an unknown filter reset ended */
 #define SURE_SIGMA 2.0f
-#define ASIDE_MIN 1.7320508f /* tangent of 60 degrees */
+#define REFUSED_MAX_US 1000000000u /* 1000 s, the range of goe_intent_t.since_image_s */
+#define ASIDE_MIN 1.7320508f       /* tangent of 60 degrees */
 
 /* ------------------------------------------------------------------------------------------------------- the estimate -- */
 
@@ -294,6 +295,7 @@ static void open_view(goe_estimator_t *estimator, const goe_image_t *image, cons
 static goe_status_t take_image(goe_estimator_t *estimator, const goe_image_t *image, const goe_camera_t *camera) {
     goe_view_t view;
     goe_faults_t faults = {estimator->fault_counts, GOE_OK};
+    estimator->estimate.age_s = 0.0f;
     if (goe_motion_reset(&estimator->motion, &image->pose)) {
         follow_reset(estimator, &image->pose);
     }
@@ -343,9 +345,14 @@ goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator_size, const g
     return GOE_OK;
 }
 
-/* Nothing changes but a counter; the answer is the older one. */
-static GOE_NOINLINE void refuse(goe_estimator_t *estimator, goe_status_t status, goe_estimate_t *estimate) {
+/* Nothing changes but a counter and the time by which goe_decide() moves the aircraft on; the answer is the older one. */
+static GOE_NOINLINE void refuse(goe_estimator_t *estimator, goe_status_t status, int64_t time_us,
+                                goe_estimate_t *estimate) {
     goe_count_cause(estimator->fault_counts, status);
+    if (time_us > estimator->motion.time_us) {
+        const float since_s = goe_time_between_s(estimator->motion.time_us, time_us, REFUSED_MAX_US);
+        estimator->estimate.age_s = goe_larger(estimator->estimate.age_s, since_s);
+    }
     *estimate = estimator->estimate;
     estimate->fresh = false;
 }
@@ -385,7 +392,7 @@ goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, go
         status = take_image(estimator, image, camera);
         copy_estimate(estimate, &estimator->estimate);
     } else {
-        refuse(estimator, status, estimate);
+        refuse(estimator, status, image->pose.time_us, estimate);
     }
     complete(estimator, image->pose.time_us, estimate);
     return is_sound(estimator, estimate) ? status : give_up(estimator, estimate);

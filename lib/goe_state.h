@@ -271,7 +271,7 @@ typedef struct {
     goe_seal_t seal;
     float camera_to_body[GOE_CAMERAS_MAX][9];
     goe_settings_t settings;
-    goe_estimate_t estimate;  /* after the latest image, by whatever method */
+    goe_estimate_t estimate; /* after the latest image taken; its age_s: from that to the newest refused one, 0: none */
     int64_t estimate_time_us; /* image behind the estimate */
 #if GOE_WITH_FILTER
     goe_filter_t filter;

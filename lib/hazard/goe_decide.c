@@ -108,11 +108,34 @@ static goe_decision_t judge(const goe_estimator_t *estimator, const goe_intent_t
     return decision == GOE_DECISION_CLEAR && is_superseded(estimator) ? GOE_DECISION_UNKNOWN : decision;
 }
 
+/* The caller may not know that images are refused, and since when. So the rule is asked again for the time of the newest of them. That
+ * time may be wrong: it orders, or ends a "clear", but takes nothing back. */
+static goe_decision_t judge_refused(const goe_estimator_t *estimator, const goe_intent_t *intent,
+                                    const goe_rule_t *rule, goe_decision_t now, goe_hazard_t *met) {
+    goe_intent_t later = *intent;
+    later.since_image_s = estimator->estimate.age_s;
+    if (!(later.since_image_s > intent->since_image_s)) {
+        return now;
+    }
+    goe_hazard_t then;
+    memset(&then, 0, sizeof then);
+    const goe_decision_t decision = judge(estimator, &later, rule, &then);
+    if (decision != GOE_DECISION_ACT && now != GOE_DECISION_CLEAR) {
+        return now;
+    }
+    *met = decision == GOE_DECISION_CLEAR ? *met : then;
+    return decision;
+}
+
 goe_decision_t goe_decide(const goe_estimator_t *estimator, const goe_intent_t *intent, const goe_rule_t *rule,
                           goe_hazard_t *hazard) {
     goe_hazard_t met;
     memset(&met, 0, sizeof met);
-    const goe_decision_t decision = judge(estimator, intent, rule ? rule : &by_default, &met);
+    const goe_rule_t *const used = rule ? rule : &by_default;
+    goe_decision_t decision = judge(estimator, intent, used, &met);
+    if (decision == GOE_DECISION_CLEAR || decision == GOE_DECISION_UNKNOWN) {
+        decision = judge_refused(estimator, intent, used, decision, &met);
+    }
     if (hazard) {
         *hazard = met;
     }

@@ -130,6 +130,33 @@ static void doubt_and_age_widen(void) {
     }
 }
 
+/* [goe_decide] GIVEN an obstacle 10 s ahead and an image that was refused after the latest one taken WHEN the intent does not report
+ * the time THEN the decision is that of the refused image's time; a false time takes no order back. */
+static void a_refused_image_moves_the_aircraft_on(void) {
+    goe_hazard_t expected;
+    rule.act_within_s = 3.0f;
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_CLEAR, decide());
+    intent.since_image_s = 7.5f;
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_ACT, decide());
+    expected = hazard;
+    intent.since_image_s = 0.0f;
+    estimator.estimate.age_s = 7.5f;
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_ACT, decide());
+    CHECK_SAME(expected.tcpa_s, hazard.tcpa_s);
+    intent.since_image_s = 8.0f; /* reported, and later */
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_ACT, decide());
+    TEST_ASSERT_TRUE(hazard.tcpa_s < expected.tcpa_s);
+    intent.since_image_s = 0.0f;
+    rule.act_within_s = 12.0f;
+    estimator.estimate.age_s = 1.0e3f; /* long past the obstacle */
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_ACT, decide());
+    estimator.estimate.sigma.z0_m = 80.0f; /* 10 s +- 8 s: too little is known */
+    rule.act_within_s = 3.0f;
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_UNKNOWN, decide());
+    estimator.estimate.age_s = 9.0f;
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_ACT, decide());
+}
+
 /* [goe_decide] GIVEN an estimator without a position THEN the decision is that nothing is known. */
 static void without_a_position_nothing_is_known(void) {
     estimator.estimate.valid = 0u;
@@ -226,6 +253,7 @@ int main(void) {
     RUN_TEST(a_poorly_known_obstacle_is_not_clear);
     RUN_TEST(an_old_answer_clears_nothing_after_new_detections);
     RUN_TEST(doubt_and_age_widen);
+    RUN_TEST(a_refused_image_moves_the_aircraft_on);
     RUN_TEST(without_a_position_nothing_is_known);
     RUN_TEST(every_failure_keeps_the_decision);
     RUN_TEST(no_rule_is_the_default);

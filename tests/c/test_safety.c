@@ -312,6 +312,13 @@ static void check_state(void) {
     TEST_ASSERT_TRUE(e->window.height.next >= 0 && e->window.height.next < e->settings.window.points);
 }
 
+/* From the latest image taken to the newest refused one: at most 1000 s. */
+static float refused_s(const goe_estimator_t *before, int64_t image_us) {
+    const uint64_t span_us = (uint64_t)image_us - (uint64_t)before->motion.time_us;
+    const float since_s = (float)(span_us < 1000000000u ? (uint32_t)span_us : 1000000000u) * 1.0e-6f;
+    return image_us > before->motion.time_us && since_s > before->estimate.age_s ? since_s : before->estimate.age_s;
+}
+
 static void update_and_check(const goe_image_t *image) {
     static goe_estimator_t before;
     memcpy(&before, &memory.estimator, sizeof before);
@@ -321,6 +328,7 @@ static void update_and_check(const goe_image_t *image) {
     statuses[status + 16]++;
     if (!GOE_IMAGE_TAKEN(status)) {
         before.fault_counts[-status]++;
+        before.estimate.age_s = refused_s(&before, image->pose.time_us);
         TEST_ASSERT_EQUAL_MEMORY(&before, &memory.estimator, sizeof before);
     }
     TEST_ASSERT_EQUAL_INT(status == GOE_OK || status == GOE_PARTIAL, memory.estimate.fresh);

@@ -94,6 +94,9 @@ static void what_took_the_image(void) {
                              status == GOE_BAD_ATTITUDE || status <= GOE_BAD_SETTINGS;
         TEST_ASSERT_EQUAL_INT(!refused, GOE_IMAGE_TAKEN(status));
     }
+    int k = 0;
+    (void)GOE_IMAGE_TAKEN(all[k++]); /* evaluated once */
+    TEST_ASSERT_EQUAL_INT(1, k);
 }
 
 /* GIVEN any number THEN a reason has a name of its own, and any other number is unknown. */

@@ -7,7 +7,7 @@
 #include "goe.h"
 
 /* True for a status that goe_update() may return for an initialized estimator. Of these, check_is_refusal() covers the ones that change
- * nothing but counters. */
+ * nothing but counters and the time since the latest image taken. */
 bool check_is_image_status(goe_status_t status);
 bool check_is_refusal(goe_status_t status);
 

@@ -188,6 +188,13 @@ static float age_s(int64_t from_us, int64_t to_us) {
     return (float)(span_us < 4000000000u ? (uint32_t)span_us : 4000000000u) * 1.0e-6f;
 }
 
+/* ... from the latest image taken to the newest refused one, at most 1000. */
+static float refused_s(const goe_estimator_t *before, int64_t image_us) {
+    const int64_t taken_us = before->motion.time_us;
+    const float since_s = image_us > taken_us ? age_s(taken_us, image_us) : 0.0f;
+    return fmaxf(before->estimate.age_s, fminf(since_s, 1000.0f));
+}
+
 static void follow_age(run_t *run, int64_t image_us, bool refused, const goe_estimate_t *e) {
     run->taken_us = refused ? run->taken_us : image_us;
     if (e->fresh) {
@@ -212,6 +219,7 @@ static goe_status_t update(run_t *run, const goe_image_t *image) {
     FUZZ_CHECK(check_is_image_status(status));
     if (check_is_refusal(status)) {
         kept.fault_counts[-(int)status]++;
+        kept.estimate.age_s = refused_s(&kept, image->pose.time_us);
         check_kept();
     }
     check_estimate(&run->settings, status, e);
