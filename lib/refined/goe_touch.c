@@ -8,9 +8,11 @@
 
 #if GOE_WITH_FILTER
 
-#define AHEAD_MIN 0.02f     /* of a touching point, and of the reference point, units of Z0 */
-#define LEVEL_MIN 1.0e-6f   /* horizontal part of a side's normal: without one the nearest point touches */
-#define REACH_MIN 1.0e-9f   /* of the footprint, units of Z0 */
+#define AHEAD_MIN 0.02f   /* of a touching point, and of the reference point, units of Z0 */
+#define LEVEL_MIN 1.0e-6f /* horizontal part of a side's normal: without one the nearest point touches */
+#define REACH_MIN 1.0e-9f /* of the footprint, units of Z0 */
+#define HIDDEN_VARIANCE                                                                                                \
+    5.3333333f /* of half the edge squared: 1/3 as of a uniform distribution, for 16 images that share it */
 #define SCATTER_SHARE 0.01f /* white part of a side's error, of the box's size */
 
 GOE_STATIC_ASSERT(GOE_BOX_RIGHT == GOE_BOX_LEFT + 2 && GOE_BOX_BOTTOM == GOE_BOX_TOP + 2 && GOE_BOX_TOP == 1,
@@ -208,6 +210,23 @@ static void find_gradient(const goe_observation_t *obs, const goe_solid_t *solid
     to->z = g[2];
 }
 
+/* Whether the end of the solid that the side touches may be hidden, or outside the image: no level side of the box, and no base
+ * corner, shows it. */
+/*@ requires goe_observation_is_open(obs) && \valid_read(t); */
+static bool is_hidden(const goe_observation_t *obs, const goe_touch_t *t) {
+    return !goe_sides_see(obs->sides, t->foot ? GOE_SIDE_BOTTOM : GOE_SIDE_TOP) && !(t->foot && obs->edge);
+}
+
+/* (R29a): then the side touches the visible part's end, anywhere between foot and head. The middle has the variance of a uniform
+ * distribution, and says nothing about either height. */
+/*@ requires \valid_read(solid) && \valid_read(t) && \valid(gradient); */
+static float forget_height(const goe_solid_t *solid, const goe_touch_t *t, goe_gradient_t *gradient) {
+    const float moved = gradient->y * (0.5f * (solid->ground + solid->roof) - t->point[1]);
+    gradient->at += moved;
+    gradient->y = 0.0f;
+    return moved * moved * HIDDEN_VARIANCE;
+}
+
 GOE_NOINLINE float *goe_touch_add(goe_rows_t *rows, const goe_observation_t *obs, const goe_solid_t *solid, size_t side,
                                   float variance, goe_touch_t *touch, goe_gradient_t *gradient) {
     const float measured = goe_touch_coordinate(obs->camera, obs->sides, side);
@@ -216,7 +235,9 @@ GOE_NOINLINE float *goe_touch_add(goe_rows_t *rows, const goe_observation_t *obs
     }
     const line_t line = line_at(obs->camera, side, touch->x, touch->y);
     find_gradient(obs, solid, touch, &line, gradient);
-    float *by = goe_rows_add(rows, (goe_feature_t)feature_of[side], measured, variance, gradient);
+    const float hidden =
+        !goe_touch_is_level(side) && is_hidden(obs, touch) ? forget_height(solid, touch, gradient) : 0.0f;
+    float *by = goe_rows_add(rows, (goe_feature_t)feature_of[side], measured, variance + hidden, gradient);
     by[GOE_GROUND] = touch->foot ? gradient->y : 0.0f;
     return by;
 }

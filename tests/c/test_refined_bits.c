@@ -352,7 +352,7 @@ static const flight_t flights[] = {
     {"a mast by upright boxes", &mast, BOXES | WINDY | LENS, 60, 150.0, 10.0, 15.0, 12.0, 0.08, 0.5, GOE_MODEL_AUTO,
      GOE_MODEL_PRISM, 0x05u, GOE_REASON_NONE, 0x74540E6F3CD6734Bu},
     {"a house by upright boxes, with gaps", &turned_house, BOXES | GAPS | WINDY, 70, 150.0, -20.0, 30.0, 11.0, 0.05,
-     0.8, GOE_MODEL_AUTO, GOE_MODEL_PRISM, 0x01u, GOE_REASON_NONE, 0xF146C04A90B31FE0u},
+     0.8, GOE_MODEL_AUTO, GOE_MODEL_PRISM, 0x01u, GOE_REASON_NONE, 0xD00B9BC77F273927u},
     {"boxes and corners", &house, POINTS | BASE | BOXES, 50, 120.0, 18.0, 18.0, 11.0, 0.04, 0.5, GOE_MODEL_AUTO,
      GOE_MODEL_BOX, 0x3Fu, GOE_REASON_NONE, 0x858E50FFD753E4AAu},
     {"a truck that moves", &turned_house, POINTS | BASE | MOVING, 60, 160.0, -30.0, 20.0, 10.0, 0.03, 0.4,
