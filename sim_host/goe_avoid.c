@@ -285,6 +285,9 @@ static bool run_options(poptContext context, int argc, const char *const *argv) 
         return false;
     }
     if (several > 0 || trace >= 0) {
+        if (csv != NULL) {
+            return give_up("--csv", "not with --several or --trace, which print their flights by --list");
+        }
         return fly_several();
     }
     return csv != NULL ? print_and_write() : print_tables(NULL);

@@ -508,10 +508,34 @@ static const char *replaced_input(void) {
     return NULL;
 }
 
+/* An option that a recorded flight decides itself, or that needs one; null: none. */
+static const char *contradicted(const char **reason) {
+    const struct {
+        bool said;
+        const char *option;
+    } own[] = {
+        {was_said(given.speed), "--speed"},           {was_said(given.glide), "--glide"},
+        {given.word[WORD_PATH] != NULL, "--path"},    {given.word[WORD_SPEED_PROFILE] != NULL, "--speed-profile"},
+        {given.word[WORD_WIND] != NULL, "--wind"},    {was_said(given.wind_speed), "--wind-speed"},
+        {was_said(given.wind_from), "--wind-from"},   {was_said(given.roll_amplitude), "--roll-amplitude-deg"},
+        {was_said(given.roll_rate), "--roll-rate-hz"}};
+    const bool recorded = given.word[WORD_FLIGHT] != NULL;
+    *reason = recorded ? "the recorded flight of --flight has its own" : "needs --flight";
+    for (size_t i = 0; recorded && i < sizeof own / sizeof own[0]; i++) {
+        if (own[i].said) {
+            return own[i].option;
+        }
+    }
+    return !recorded && was_said(given.flight_start) ? "--flight-start" : NULL;
+}
+
 static int fly(void) {
     flight_case_t setup;
     const char *reason;
     const char *option = set_case(&setup, &reason);
+    if (option == NULL) {
+        option = contradicted(&reason);
+    }
     if (option != NULL) {
         return complain_of_value(option, reason);
     }

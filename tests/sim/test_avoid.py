@@ -214,6 +214,10 @@ def test_a_flight_among_several_can_be_traced(goe_avoid: Path) -> None:
     [
         (["--several", "-1"], "--several: must be 1 to 100000, not -1"),
         (["--several", "3", "--step", "0"], "--step: must be 1 to 100000, not 0"),
+        (
+            ["--several", "3", "--csv", "runs.csv"],
+            "--csv: not with --several or --trace, which print their flights by --list",
+        ),
     ],
 )
 def test_bad_numbers_of_flights_name_their_option(goe_avoid: Path, words: list[str], error: str) -> None:
