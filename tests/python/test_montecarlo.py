@@ -118,6 +118,27 @@ def test_on_a_cluster(scenario: Path, tmp_path: Path, monkeypatch: pytest.Monkey
     assert Path("far/runs.csv").read_bytes() == Path("near/runs.csv").read_bytes()
 
 
+def test_a_cluster_that_does_not_answer_leaves_no_file(
+    scenario: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("distributed")
+    out = tmp_path / "far"
+    words = ["montecarlo", str(scenario), "--runs", "3", "--out", str(out), "--scheduler", "nonsense://1"]
+    assert main(words) == 2
+    assert "--scheduler nonsense://1: " in capsys.readouterr().err
+    assert not out.exists()
+
+
+def test_pictures_of_an_earlier_run_do_not_stay(scenario: Path, tmp_path: Path) -> None:
+    words = ["montecarlo", str(scenario), "--runs", "1", "--jobs", "1", "--out", str(tmp_path / "out")]
+    assert main(words) == 0
+    for name in ("obstacle_77.png", "obstacle_x.png", "mine.png"):
+        (tmp_path / "out" / name).touch()
+    assert main(words) == 0
+    left = {path.name for path in (tmp_path / "out").glob("*.png")}
+    assert {"obstacle_x.png", "mine.png"} < left and "obstacle_77.png" not in left
+
+
 def test_options_of_the_replay_count(scenario: Path, tmp_path: Path) -> None:
     found = []
     for words in ([], ["--set", "detector.box_noise_px=30"], ["--margin", "90"]):

@@ -194,6 +194,14 @@ def test_settings_from_one_half_fit_the_other(feed: str, capsys: pytest.CaptureF
 # -------------------------------------------------------------------------------------------------------------- errors
 
 
+def test_a_coverage_that_no_factor_gives_is_reported(boxes: list[Path], capsys: pytest.CaptureFixture[str]) -> None:
+    """The report and the warning agree."""
+    assert main(["noise", *(str(box) for box in boxes[:2]), "--cover", "50"]) == 0
+    printed = capsys.readouterr()
+    (reached,) = re.findall(r"scaled: (\S+) % of X0 and Z0 lie within 2 sigma", printed.out)
+    assert ("--cover 50: no factor of the settings" in printed.err) == (abs(float(reached) - 50.0) > 1.0)
+
+
 @pytest.fixture
 def refused(capsys: pytest.CaptureFixture[str]) -> Callable[..., str]:
     def run(*words: str) -> str:

@@ -258,6 +258,17 @@ def test_a_log_without_truth_is_refused(tmp_path: Path, capsys: pytest.CaptureFi
     assert "correlation" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("command", ["bound", "offline"])
+def test_a_log_of_boxes_alone_is_refused(command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("scipy")
+    log = read_log(CORNER)
+    points = dict.fromkeys(("left", "right", "top", "base_left", "base_near", "base_right"))
+    frames = [replace(frame, **points, box_px=(500.0, 600.0, 540.0, 640.0)) for frame in log.frames]
+    write_log(tmp_path, replace(log, frames=frames))
+    assert main([command, str(tmp_path)]) == 2
+    assert f"no points in the images of {tmp_path.name}/1; boxes are not used" in capsys.readouterr().err
+
+
 def test_the_campaign_of_the_paper() -> None:
     scenes = paper_scenes()
     assert len(scenes) == 156

@@ -65,6 +65,12 @@ def _client(address: str) -> Any:
         raise ValueError(f"--scheduler {address}: {error}") from None
 
 
+def connect(workers: Workers) -> None:
+    """Raises ValueError if the scheduler does not answer. Without one there is nothing to do."""
+    if workers.scheduler:
+        _client(workers.scheduler)
+
+
 @contextmanager
 def _cluster(address: str) -> Iterator[None]:
     with parallel_config("dask", client=_client(address)):
@@ -72,8 +78,8 @@ def _cluster(address: str) -> Iterator[None]:
 
 
 @contextmanager
-def _deaf_children() -> Iterator[None]:
-    """Processes started meanwhile ignore Ctrl-C; this process handles it and then ends them."""
+def deaf() -> Iterator[None]:
+    """Ctrl-C is ignored meanwhile, also by processes that start then and until they end."""
     if threading.current_thread() is not threading.main_thread():  # only the main thread may set signal handlers
         yield
         return
@@ -87,7 +93,7 @@ def _deaf_children() -> Iterator[None]:
 def _begun(work: Callable[[Job], Result], tasks: Sequence[Job], workers: Workers) -> Iterator[Result]:
     """The back end applies to the tasks started here, not to the caller's work between the results."""
     backend = _cluster(workers.scheduler) if workers.scheduler else parallel_config("loky", n_jobs=workers.jobs)
-    with backend, _deaf_children():
+    with backend, deaf():  # this process handles Ctrl-C and then ends those that it started
         return Parallel(return_as="generator")(delayed(work)(task) for task in tasks)
 
 

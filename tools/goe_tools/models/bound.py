@@ -21,6 +21,7 @@ import numpy as np
 
 from ..flights.flight import QUANTITIES, Flight
 from ..flights.noise import FIELD, Noise
+from ..logs.fields import LogError
 from .model import (
     correspond,
     covariances,
@@ -123,8 +124,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def print_flights(arguments: argparse.Namespace) -> Iterator[Flight]:
-    """Yields the flights of the log, after printing name, headings and truth of each."""
-    for flight in logged_flights(arguments.log, "disc" if arguments.disc else None):
+    """Yields the flights of the log, after printing name, headings and truth of each. LogError: a track without
+    points."""
+    flights = logged_flights(arguments.log, "disc" if arguments.disc else None)
+    blind = [flight.name for flight in flights if not flight.seen.any()]
+    if blind or not flights:
+        reason = f"no points in the images of {', '.join(blind)}; boxes are not used" if blind else "no truth"
+        raise LogError(arguments.log / "frames.csv", 0, "", reason)
+    for flight in flights:
         print(f"{flight.name}: {flight.truth.kind}, {len(flight.time_s)} images")
         print(" " * 22 + "".join(f"{heading:>17s}" for heading in HEADINGS))
         print_row("truth", printable(flight.truth.values), shown(flight))

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import sys
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from functools import partial
@@ -22,7 +23,7 @@ from tqdm import tqdm
 
 from ..library import package
 from ..logs.fields import LogError, read_text
-from ..spread import Workers, spread, workers_of
+from ..spread import Workers, connect, deaf, spread, workers_of
 from ..spread import add_arguments as add_workers
 from ..view.command import add_options, options_of
 from . import words
@@ -113,6 +114,7 @@ def report(scenario: Scenario, flown: Sequence[Sequence[Pass]], arguments: argpa
 def run(arguments: argparse.Namespace) -> int:
     workers, scenario = workers_of(arguments), read_scenario(arguments)
     seeds = range(arguments.seed, arguments.seed + arguments.runs)
+    connect(workers)
     flown: list[list[Pass]] = []
     try:
         with tqdm(total=len(seeds), desc="flights", unit="", disable=None, leave=False) as bar:
@@ -121,9 +123,9 @@ def run(arguments: argparse.Namespace) -> int:
                 bar.update()
     except BaseException:  # Ctrl-C, a lost process or cluster: keeps the finished runs
         if flown:
-            with suppress(ValueError):
+            print(f"stopped early: {len(flown)} of {arguments.runs} runs are complete", file=sys.stderr)
+            with suppress(ValueError), deaf():
                 report(scenario, flown, arguments)
-                print(f"{len(flown)} of {arguments.runs} runs: stopped early")
         raise
     report(scenario, flown, arguments)
     return 0

@@ -94,12 +94,17 @@ def write(
     folder: Path, scenario: Scenario, passes: Sequence[Pass], found: Sequence[Summary], seeds: Sequence[int],
     asked: int, version: str,
 ) -> list[Path]:  # fmt: skip
-    """Writes each file completely or not at all; replaces the files of an earlier run, but never the scenario."""
+    """Writes each file completely or not at all; replaces the files of an earlier run, but never the scenario. Pictures
+    of obstacles that only the earlier run had are removed."""
     content: dict[str, str | bytes] = {
         RUNS: runs_table(passes), SUMMARY: summary_text(scenario, found, seeds, asked, version)
     }  # fmt: skip
     content |= {f"obstacle_{one.obstacle}.png": png(one, "light", narrow=False) for one in found}
     content[PAGE] = render(scenario, found, seeds, asked, version)
+    if (folder / SUMMARY).is_file():
+        for picture in folder.glob("obstacle_*.png"):
+            if picture.name not in content and picture.stem.partition("_")[2].isdecimal():
+                picture.unlink()
     paths = []
     for name, what in content.items():
         if what:

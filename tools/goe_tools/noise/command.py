@@ -16,6 +16,7 @@ from tqdm import tqdm
 
 from .. import renamed
 from ..flights.flight import Flight
+from ..logs.fields import warn
 from ..models.prism import ErrorModel
 from .boxes import box_rows
 from .judged import covered
@@ -47,6 +48,7 @@ FIRST = {
 WITH_TRUTH = ("navigation.attitude_bias_sd_deg", "navigation.height_bias_sd_m", "navigation.velocity_bias_sd_m_s")
 LEAST_JUDGED = 4  # tracks in each half
 COVER_LOW, COVER_HIGH, COVER_ROUNDS = -4.0, 1.0, 8  # logarithms of the factor, and halvings
+COVER_TOLERANCE = 1.0  # percent
 HEIGHT, GROUND = "navigation.height_bias_sd_m", "navigation.terrain_height_sd_m"
 
 
@@ -130,21 +132,27 @@ def settings_of(result: Fitted, given: dict[str, float], kind: str) -> dict[str,
     return chosen
 
 
-def scaled_to(material: Material, chosen: dict[str, float], names: Sequence[str], percent: float) -> dict[str, float]:
+def scaled_to(
+    material: Material, chosen: dict[str, float], names: Sequence[str], percent: float
+) -> tuple[dict[str, float], float]:
     """Multiplies the fitted settings, except the height, by one factor, until this percentage of X0 and Z0 of the
-    fitted tracks lies within two sigmas."""
+    fitted tracks lies within two sigmas. Returns the settings and the percentage that they reach."""
     turned = [name for name in names if name != HEIGHT]
 
     def with_factor(logarithm: float) -> dict[str, float]:
         factor = math.exp(logarithm)
         return {**chosen, **{n: min(max(chosen[n] * factor, RANGES[n][0]), RANGES[n][1]) for n in turned}}
 
+    def share(logarithm: float) -> float:
+        shares = covered(material.settling, with_factor(logarithm))
+        return 0.5 * (shares["X0"] + shares["Z0"])
+
     low, high = COVER_LOW, COVER_HIGH
     for _ in range(COVER_ROUNDS):
         middle = 0.5 * (low + high)
-        shares = covered(material.settling, with_factor(middle))
-        low, high = (low, middle) if 0.5 * (shares["X0"] + shares["Z0"]) > percent else (middle, high)
-    return with_factor(0.5 * (low + high))
+        low, high = (low, middle) if share(middle) > percent else (middle, high)
+    middle = 0.5 * (low + high)
+    return with_factor(middle), share(middle)
 
 
 # ------------------------------------------------------------------------------------------------------------- printing
@@ -222,8 +230,10 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.cover is not None:
         if not material.truth or material.kind != "boxes":
             raise ValueError("--cover needs boxes and their truth")
-        chosen = scaled_to(material, chosen, result.names, arguments.cover)
-        console.print(f"scaled until {arguments.cover:g} % of X0 and Z0 lie within 2 sigma on the fitted tracks")
+        chosen, reached = scaled_to(material, chosen, result.names, arguments.cover)
+        console.print(f"scaled: {reached:.1f} % of X0 and Z0 lie within 2 sigma on the fitted tracks")
+        if not abs(reached - arguments.cover) <= COVER_TOLERANCE:
+            warn(arguments.logs[0], f"--cover {arguments.cover:g}: no factor of the settings gives this share")
     if material.truth and material.kind == "boxes":
         fitted_on = "fitted on the 1st, 3rd, ...:" if material.judging else "the"
         _print_coverage(console, material.settling, fitted_on, chosen)
