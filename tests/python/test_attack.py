@@ -391,7 +391,7 @@ def test_probabilities_warnings_and_coverage_of_known_figures() -> None:
 
 def test_the_margins_are_the_readmes() -> None:
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    assert f"{approach.MARGIN_M}f, {approach.CLEARANCE_M}f, 0.0f, 0.0f}}; /* margin, clearance, m */" in readme
+    assert f"{approach.MARGIN_M}f, {approach.CLEARANCE_M}f, since_s, 0.0f}}; /* margin, clearance, m */" in readme
 
 
 def test_warnings_follow_the_library_s_decision_rule(built: None) -> None:

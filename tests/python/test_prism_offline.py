@@ -151,10 +151,9 @@ def test_the_optimum_is_one_whatever_the_start(solid: Solid, configured: ErrorMo
         assert again.cost == pytest.approx(once.cost, rel=1e-6)
 
 
-@pytest.mark.parametrize("roll", [0.0, 10.0])
-def test_errors_are_near_the_bound_and_the_cost_is_the_least(roll: float) -> None:
+def test_errors_are_near_the_bound_and_the_cost_is_the_least() -> None:
     """Without path errors, which the bound does not model. 40 flights determine an RMSE to 11 %."""
-    options = replace(WHITE, roll_deg=roll, position_walk_sd_m=0.0, image_rate_hz=4.0)
+    options = replace(WHITE, roll_deg=10.0, position_walk_sd_m=0.0, image_rate_hz=4.0)
     configured = replace(GAUSS, position_walk_sd_m=0.0)
     ratio, cost_share, sigma_share = [], [], []
     for seed in range(1, 41):
