@@ -121,7 +121,7 @@ typedef enum {
     GOE_BOX_INCOMPLETE = -14, /* fewer than two sides are in box.sides, uncut by the border and in order (left < right) */
     GOE_NO_HEIGHT = -15,      /* filter: height_m is exactly 0 with a box; goe treats it as unknown, sigma 1000 m */
     /* faults of a call */
-    GOE_BAD_SETTINGS = -32,    /* goe_init: a setting is outside its range; bad_field names it */
+    GOE_BAD_SETTINGS = -32,    /* goe_init: a setting is outside its range: bad_field */
     GOE_BAD_ARGUMENT = -33,    /* a null pointer, or an estimator size that differs from the library's */
     GOE_NOT_INITIALIZED = -34, /* goe_init has not succeeded */
     GOE_CORRUPTED = -35        /* the memory was changed from outside, and the track has ended. Not "safe": keep the last
@@ -132,8 +132,8 @@ typedef enum {
  * unknown size ended. Counters saturate. */
 #define GOE_FAULT_COUNTS 16
 
-/* Whether goe_update() took the image: bit 35 + status, set for -15, -14 and -9 to 4. Of a refused image goe stores the time
- * alone: supply the delta of its reset again. */
+/* Whether goe_update() took the image: bit 35 + status, set for -15, -14 and -9 to 4. Of a refused image goe stores only
+ * the time: supply its reset's delta again. */
 #define GOE_IMAGE_TAKEN(status) ((((uint64_t)0xFFFC300000 >> (((unsigned)(status) + 35u) & 63u)) & 1u) != 0u)
 
 /* ----------------------------------------------------------------------------------------------------------- image -- */

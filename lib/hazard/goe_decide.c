@@ -91,12 +91,13 @@ static goe_decision_t decision_of(const goe_hazard_t *met, const goe_intent_t *i
 /*@ requires estimator == \null || \valid_read(estimator);
     requires intent == \null || \valid_read(intent);
     requires \valid_read(rule) && \valid(met); */
-static goe_decision_t judge(const goe_estimator_t *estimator, const goe_intent_t *intent, const goe_rule_t *rule,
-                            goe_hazard_t *met) {
+static GOE_NOINLINE goe_decision_t judge(const goe_estimator_t *estimator, const goe_intent_t *intent, float since_s,
+                                         const goe_rule_t *rule, goe_hazard_t *met) {
     if (!intent || !is_rule(rule) || goe_guard_check(estimator) != GOE_OK) {
         return GOE_DECISION_KEEP;
     }
     goe_intent_t wide = *intent;
+    wide.since_image_s = since_s;
     if (goe_within(wide.since_image_s, TIME_MAX_S)) {
         widen(estimator, rule, &wide);
     }
@@ -108,22 +109,21 @@ static goe_decision_t judge(const goe_estimator_t *estimator, const goe_intent_t
     return decision == GOE_DECISION_CLEAR && is_superseded(estimator) ? GOE_DECISION_UNKNOWN : decision;
 }
 
-/* The caller may not know that images are refused, and since when. So the rule is asked again for the time of the newest of them. That
+/* The caller may not know that images are refused, and since when. So the rule also judges the time of the newest of them. That
  * time may be wrong: it orders, or ends a "clear", but takes nothing back. */
 static goe_decision_t judge_refused(const goe_estimator_t *estimator, const goe_intent_t *intent,
                                     const goe_rule_t *rule, goe_decision_t now, goe_hazard_t *met) {
-    goe_intent_t later = *intent;
-    later.since_image_s = estimator->estimate.age_s;
-    if (!(later.since_image_s > intent->since_image_s)) {
+    const float since_s = estimator->estimate.age_s;
+    if (!(since_s > intent->since_image_s)) {
         return now;
     }
     goe_hazard_t then;
     memset(&then, 0, sizeof then);
-    const goe_decision_t decision = judge(estimator, &later, rule, &then);
-    if (decision != GOE_DECISION_ACT && now != GOE_DECISION_CLEAR) {
+    const goe_decision_t decision = judge(estimator, intent, since_s, rule, &then);
+    if (decision == GOE_DECISION_CLEAR || (decision != GOE_DECISION_ACT && now != GOE_DECISION_CLEAR)) {
         return now;
     }
-    *met = decision == GOE_DECISION_CLEAR ? *met : then;
+    *met = then;
     return decision;
 }
 
@@ -132,7 +132,7 @@ goe_decision_t goe_decide(const goe_estimator_t *estimator, const goe_intent_t *
     goe_hazard_t met;
     memset(&met, 0, sizeof met);
     const goe_rule_t *const used = rule ? rule : &by_default;
-    goe_decision_t decision = judge(estimator, intent, used, &met);
+    goe_decision_t decision = judge(estimator, intent, intent ? intent->since_image_s : 0.0f, used, &met);
     if (decision == GOE_DECISION_CLEAR || decision == GOE_DECISION_UNKNOWN) {
         decision = judge_refused(estimator, intent, used, decision, &met);
     }
