@@ -117,8 +117,7 @@ static goe_decision_t judge_refused(const goe_estimator_t *estimator, const goe_
     if (!(since_s > intent->since_image_s)) {
         return now;
     }
-    goe_hazard_t then;
-    memset(&then, 0, sizeof then);
+    goe_hazard_t then = *met;
     const goe_decision_t decision = judge(estimator, intent, since_s, rule, &then);
     if (decision == GOE_DECISION_CLEAR || (decision != GOE_DECISION_ACT && now != GOE_DECISION_CLEAR)) {
         return now;
