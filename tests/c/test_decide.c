@@ -153,8 +153,16 @@ static void a_refused_image_moves_the_aircraft_on(void) {
     estimator.estimate.sigma.z0_m = 80.0f; /* 10 s +- 8 s: too little is known */
     rule.act_within_s = 3.0f;
     TEST_ASSERT_EQUAL_INT(GOE_DECISION_UNKNOWN, decide());
+    estimator.estimate.age_s = 0.5f;
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_UNKNOWN, decide());
     estimator.estimate.age_s = 9.0f;
     TEST_ASSERT_EQUAL_INT(GOE_DECISION_ACT, decide());
+    estimator.estimate.sigma.z0_m = 8.0f; /* clear now, and uncertain then */
+    rule.act_within_s = 1.0f;
+    estimator.estimate.age_s = 0.0f;
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_CLEAR, decide());
+    estimator.estimate.age_s = 7.5f;
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_UNKNOWN, decide());
 }
 
 /* [goe_decide] GIVEN an estimator without a position THEN the decision is that nothing is known. */
