@@ -121,7 +121,7 @@ typedef enum {
     GOE_BOX_INCOMPLETE = -14, /* fewer than two sides are in box.sides, uncut by the border and in order (left < right) */
     GOE_NO_HEIGHT = -15,      /* filter: height_m is exactly 0 with a box; goe treats it as unknown, sigma 1000 m */
     /* faults of a call */
-    GOE_BAD_SETTINGS = -32,    /* goe_init: a setting is outside its range: bad_field */
+    GOE_BAD_SETTINGS = -32,    /* goe_init: the setting bad_field is outside its range */
     GOE_BAD_ARGUMENT = -33,    /* a null pointer, or an estimator size that differs from the library's */
     GOE_NOT_INITIALIZED = -34, /* goe_init has not succeeded */
     GOE_CORRUPTED = -35        /* the memory was changed from outside, and the track has ended. Not "safe": keep the last

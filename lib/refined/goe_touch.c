@@ -8,12 +8,11 @@
 
 #if GOE_WITH_FILTER
 
-#define AHEAD_MIN 0.02f   /* of a touching point, and of the reference point, units of Z0 */
-#define LEVEL_MIN 1.0e-6f /* horizontal part of a side's normal: without one the nearest point touches */
-#define REACH_MIN 1.0e-9f /* of the footprint, units of Z0 */
-#define HIDDEN_VARIANCE                                                                                                \
-    5.3333333f /* of half the edge squared: 1/3 as of a uniform distribution, for 16 images that share it */
-#define SCATTER_SHARE 0.01f /* white part of a side's error, of the box's size */
+#define AHEAD_MIN 0.02f            /* of a touching point, and of the reference point, units of Z0 */
+#define LEVEL_MIN 1.0e-6f          /* horizontal part of a side's normal: without one the nearest point touches */
+#define REACH_MIN 1.0e-9f          /* of the footprint, units of Z0 */
+#define HIDDEN_VARIANCE 5.3333333f /* of half the edge squared: uniform, 1/3, times 16 images that share it */
+#define SCATTER_SHARE 0.01f        /* white part of a side's error, of the box's size */
 
 GOE_STATIC_ASSERT(GOE_BOX_RIGHT == GOE_BOX_LEFT + 2 && GOE_BOX_BOTTOM == GOE_BOX_TOP + 2 && GOE_BOX_TOP == 1,
                   level_sides_are_odd_and_opposite_ones_two_apart);
@@ -217,8 +216,8 @@ static bool is_hidden(const goe_observation_t *obs, const goe_touch_t *t) {
     return !goe_sides_see(obs->sides, t->foot ? GOE_SIDE_BOTTOM : GOE_SIDE_TOP) && !(t->foot && obs->edge);
 }
 
-/* (R29a): then the side touches the visible part's end, anywhere between foot and head. The middle has the variance of a uniform
- * distribution, and says nothing about either height. */
+/* (R29a): then the side touches the visible part's end, anywhere between foot and head. The row takes the middle and says
+ * nothing about either height. Returns the variance to add. */
 /*@ requires \valid_read(solid) && \valid_read(t) && \valid(gradient); */
 static float forget_height(const goe_solid_t *solid, const goe_touch_t *t, goe_gradient_t *gradient) {
     const float moved = gradient->y * (0.5f * (solid->ground + solid->roof) - t->point[1]);

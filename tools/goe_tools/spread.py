@@ -79,7 +79,7 @@ def _cluster(address: str) -> Iterator[None]:
 
 @contextmanager
 def deaf() -> Iterator[None]:
-    """Ctrl-C is ignored meanwhile, also by processes that start then and until they end."""
+    """Ignores Ctrl-C meanwhile. A process that starts meanwhile ignores it until it ends."""
     if threading.current_thread() is not threading.main_thread():  # only the main thread may set signal handlers
         yield
         return
