@@ -3,7 +3,7 @@
 It follows the library's definitions, but shares no code with it; the library uses a triangular square root of the
 information instead of a covariance. One linearized update per image, at the predicted state x:
 
-    r = measured - predicted(x)          J = d predicted / d state              (``prism.row_of``)
+    r = measured - predicted(x)          J = d predicted / d state              (``prism.visible_row_of``)
 
 A side's error has a white part and a correlated part: a first-order Gauss-Markov process with the sigma
 s = box_noise_rel *
@@ -49,8 +49,8 @@ from .prism import (
     focal_px,
     quantities,
     quantity_slopes,
-    row_of,
     sights,
+    visible_row_of,
 )
 
 COUNT = len(STATES)
@@ -271,7 +271,7 @@ class PrismFilter:
     def _rows(self, sight: Sight, q_variance: float) -> Rows | None:
         """Residuals and derivatives as measured, and white variances that include the linearization error."""
         errors = self.errors
-        found = [row_of(sight, self.state, i, sight.side[i]) for i in range(4) if np.isfinite(sight.side[i])]
+        found = [visible_row_of(sight, self.state, i, sight.side[i]) for i in range(4) if np.isfinite(sight.side[i])]
         rows = [row for row in found if row is not None]
         if not rows:
             return None
@@ -280,6 +280,7 @@ class PrismFilter:
         size = np.array([box_size(sight, self.state, row.side % 2) for row in rows])
         own = (errors.box_noise_px / focal_px(sight.camera)[side]) ** 2 + (SCATTER_SHARE * size) ** 2
         own += (errors.truncation_noise_rel * size) ** 2 if sight.cut else 0.0
+        own += np.array([row.hidden for row in rows])
         ahead = max(1 - sight.moved_m[2] * self.state[Q], AHEAD_MIN)
         own += (slope[:, Q] * sight.moved_m[2] * q_variance / ahead) ** 2
         position_sd = errors.position_white_sd_m * np.sqrt(1 + q_variance / self.state[Q] ** 2)
