@@ -211,7 +211,6 @@ static void find_gradient(const goe_observation_t *obs, const goe_solid_t *solid
 
 /* Whether the end of the solid that the side touches may be hidden, or outside the image: no level side of the box, and no base
  * corner, shows it. */
-/*@ requires goe_observation_is_open(obs) && \valid_read(t); */
 static bool is_hidden(const goe_observation_t *obs, const goe_touch_t *t) {
     return !goe_sides_see(obs->sides, t->foot ? GOE_SIDE_BOTTOM : GOE_SIDE_TOP) && !(t->foot && obs->edge);
 }
