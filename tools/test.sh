@@ -9,7 +9,8 @@
 # Two steps run at a time. A line for each appears when it has ended, with its own time and that of the processors. Every step's full
 # output is kept in .cache/test/. Ctrl-C ends all that runs. GOE_KITTI_DIR names a folder of recorded flights to compare goe_replay
 # with the references on; UNITY_DIR the sources of the Unity test framework, where they are not to be fetched. CI=true: a missing
-# tool is a failure.
+# tool is a failure. GOE_LONG=1: also what a release needs, in some two hours: every target, compiler, level and part, the proof, the
+# analyzer of clang-tidy, and the Python tests marked release.
 set -uo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 cd "$root" || exit 1
@@ -261,23 +262,26 @@ check_subjects() {
 
 sources() { find lib port sim_host tests -name target -prune -o \( -name '*.[ch]' -o -name '*.[ch]pp' \) -print; }
 check_format() { sources | xargs clang-format-19 --dry-run -Werror; }
+# Its analyzer takes nine tenths of the time, and gcc's analyzer reads the same sources above.
 tidy() {
+    local checks='-clang-analyzer-*'
+    [ -z "${GOE_LONG:-}" ] || checks=
     "$python" -m ci tidy_commands .cache/evidence/coverage .cache/tidy || return 1
     find "$root"/{lib,port/{flight,mavlink,companion,sqrtf,examples,nuttx,zephyr},sim_host} -name '*.c' -print0 |
-        xargs -0 -n 1 -P "$jobs" clang-tidy-19 --quiet -p .cache/tidy 2>&1 | sed '/warnings\{0,1\} generated\.$/d'
+        xargs -0 -n 1 -P "$jobs" clang-tidy-19 --quiet --checks="$checks" -p .cache/tidy 2>&1 | sed '/warnings\{0,1\} generated\.$/d'
 }
 
-# The sanitizers' goe_replay over every log of the tests.
+# Programs with the sanitizers, of the build that was made last: over every log of the tests, and by the tests that try to break them.
 replay_sanitized() {
     local folder
     for folder in tests/data/*/; do
-        build-asan/sim_host/goe_replay --out "$logs/sanitized.csv" "$folder" || return 1
+        "$sanitized/sim_host/goe_replay" --out "$logs/sanitized.csv" "$folder" || return 1
     done
 }
 
-test_replay_sanitized() { GOE_REPLAY=$root/build-asan/sim_host/goe_replay run_pytest tests/host; }
+test_replay_sanitized() { GOE_REPLAY=$root/$sanitized/sim_host/goe_replay run_pytest tests/host; }
 test_companion_sanitized() {
-    GOE_COMPANION=$root/build-asan/port/companion/goe_companion run_pytest tests/companion/test_companion_disturbed.py
+    GOE_COMPANION=$root/$sanitized/port/companion/goe_companion run_pytest tests/companion/test_companion_disturbed.py
 }
 pytest_affected() {
     local files
@@ -336,18 +340,23 @@ else
     skip "comparison on recorded flights: no folder $flights (GOE_KITTI_DIR)"
 fi
 
+# The longest first, in one process. tests/host and the hostile senders run below, with the sanitizers.
+shows='(passed|failed|skipped).* in [0-9.]+' add "pytest" run_pytest tests \
+    --ignore=tests/host --ignore=tests/companion/test_companion_disturbed.py
 if has cppcheck && has gcc; then
     shows='MISSED' add "MISRA C:2012, gcc -fanalyzer" "$python" -m ci evidence --quick --only misra --only analyzers --jobs 1
 else
     lacks "MISRA C:2012 and gcc -fanalyzer (no cppcheck or gcc)"
 fi
-if has frama-c; then
+if [ -n "${GOE_LONG:-}" ] && has frama-c; then
     add "proof: quick part" "$python" -m ci evidence --quick --only proof --jobs 1
-else
+elif [ -n "${GOE_LONG:-}" ]; then
     lacks "proof (no frama-c)"
 fi
+left_out=release
+[ -z "${GOE_LONG:-}" ] || left_out=nothing
 shows='tests passed|Total Test time' add "ctest: targets" \
-    ctest --test-dir build/tests/targets -LE release --output-on-failure -j "$jobs" # under QEMU
+    ctest --test-dir build/tests/targets -LE "$left_out" --output-on-failure -j "$jobs" # under QEMU
 if has arm-none-eabi-gcc && has qemu-system-arm && has riscv64-unknown-elf-gcc && has qemu-system-riscv32; then
     # Of the builds that ctest has made, three targets; a release measures all.
     after="ctest: targets" add "cost ledger" "$python" -m ci ledger --check m4f-gcc-os m4f-gcc-o2 m0plus-gcc-os
@@ -355,21 +364,22 @@ if has arm-none-eabi-gcc && has qemu-system-arm && has riscv64-unknown-elf-gcc &
 else
     lacks "cost ledger (needs the ARM and RISC-V compilers and QEMU)"
 fi
-shows='(passed|failed|skipped).* in [0-9.]+' add "pytest" run_pytest tests
 shows='tests passed|Total Test time' add "ctest: all but targets" ctest --preset default -LE targets -j "$jobs"
-shows='tests passed' add "sanitizers" build_and_ctest asan
-after="sanitizers" add "sanitizers: goe_replay on logs" replay_sanitized
-shows=passed after="sanitizers" add "sanitizers: goe_replay on bad input" test_replay_sanitized
-shows=passed after="sanitizers" add "sanitizers: goe_companion and hostile senders" test_companion_sanitized
-# clang's build counts what the unit tests reach. It runs those of the library and of the flight layer for their coverage, and the rest.
+# One build of clang counts what the unit tests reach, and has the sanitizers. Without clang gcc's has them.
+sanitized=build-asan
+sanitizers=sanitizers
 if has clang-19 && has llvm-cov-19 && has llvm-profdata-19 &&
     find "$(clang-19 --print-resource-dir)/" -name 'libclang_rt.profile*' | grep -q .; then
     add "clang: build" build coverage
-    after="clang: build" shows='^\| coverage' add "clang: unit tests and their coverage" \
+    sanitized=.cache/evidence/coverage
+    sanitizers="clang: build"
+    export LLVM_PROFILE_FILE=/dev/null # what counts names its own
+    after="clang: build" shows='^\| coverage' add "sanitizers: unit tests and their coverage" \
         "$python" -m ci evidence --quick --only coverage --jobs "$jobs"
-    after="clang: unit tests and their coverage" shows='tests passed' add "clang: other unit tests" \
-        env LLVM_PROFILE_FILE=/dev/null ctest --preset coverage -E '^(c|flight)_' -j "$jobs"
+    after="sanitizers: unit tests and their coverage" shows='tests passed' add "sanitizers: other unit tests" \
+        ctest --preset coverage -E '^(c|flight)_' -j "$jobs"
 else
+    shows='tests passed' add "sanitizers" build_and_ctest asan
     lacks "clang: unit tests and their coverage (needs clang-19, llvm-19 and libclang-rt-19-dev)"
 fi
 if has clang-19 && has clang-tidy-19; then
@@ -377,6 +387,9 @@ if has clang-19 && has clang-tidy-19; then
 else
     lacks "clang-tidy (needs clang-19 and clang-tidy-19)"
 fi
+after=$sanitizers add "sanitizers: goe_replay on logs" replay_sanitized
+shows=passed after=$sanitizers add "sanitizers: goe_replay on bad input" test_replay_sanitized
+shows=passed after=$sanitizers add "sanitizers: goe_companion and hostile senders" test_companion_sanitized
 run_steps
 
 while read -r name; do

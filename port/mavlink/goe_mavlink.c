@@ -194,6 +194,6 @@ size_t goe_mavlink_frame(goe_mavlink_sender_t *sender, goe_mavlink_message_t mes
     const uint16_t sum = checksum(of_frame, &info->crc_extra, 1);
     frame[HEADER_BYTES + length] = (uint8_t)(sum & 0xFFu);
     frame[HEADER_BYTES + length + 1u] = (uint8_t)(sum >> 8);
-    sender->sequence++;
+    sender->sequence = (uint8_t)(sender->sequence + 1u); /* 0 follows 255 */
     return HEADER_BYTES + length + CHECKSUM_BYTES;
 }

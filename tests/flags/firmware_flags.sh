@@ -4,8 +4,8 @@
 #
 #   firmware_flags.sh px4|ardupilot|betaflight|inav
 #
-# C99: code, which is tested, and warnings that only come with code. gcc compiles at the firmware's usual level, clang at the other;
-# with GOE_LONG=1 each compiles at both. The other dialects are read by dialects.sh.
+# C99: code, which is tested, and warnings that only come with code. gcc compiles at the firmware's usual level; with GOE_LONG=1 gcc and
+# clang compile at both. dialects.sh reads the sources in the other dialects, with both compilers.
 #
 # The safety tests are those of safety_objects.sh, linked with the firmware's flags, which may change the floating-point unit's mode.
 # UNITY_INCLUDE and UNITY_LIBRARY locate the test framework, SAFETY_OBJECTS the objects of safety_objects.sh.
@@ -53,15 +53,13 @@ run_safety() {
 compiled=0
 ran=0
 mkdir "$scratch/objects"
-mapfile -t present < <(compilers gcc clang-19)
+mapfile -t present < <(compilers gcc ${GOE_LONG:+clang-19})
 for compiler in "${present[@]}"; do
     mapfile -t common < <(known "$compiler" "${flags[@]}")
     cd "$scratch/objects"
     second=$(known "$compiler" "${levels[1]}")
     chosen=("${levels[0]}" "${second:--O3}")
-    if [ -z "${GOE_LONG:-}" ] && [ ${#present[@]} -gt 1 ]; then
-        if [ "$compiler" = gcc ]; then chosen=("${chosen[0]}"); else chosen=("${chosen[1]}"); fi
-    fi
+    [ -n "${GOE_LONG:-}" ] || chosen=("${levels[0]}")
     for level in "${chosen[@]}"; do
         compile "$compiler" -std=c99 "$level" "${common[@]}"
         run_safety "$compiler" "$level" "${common[@]}"

@@ -29,5 +29,5 @@ done
 # Every floating-point constant has the suffix f: one of these would find a double constant.
 cd "$scratch"
 mapfile -t flags < <(known gcc -Wdouble-promotion -Wunsuffixed-float-constants -Wfloat-conversion -Wvla)
-gcc -std=c99 "${flags[@]}" -Werror "${all_includes[@]}" -c "${all_sources[@]}" || fail "double precision or variable-length arrays"
+gcc -std=c99 "${flags[@]}" -Werror "${all_includes[@]}" -fsyntax-only "${all_sources[@]}" || fail "double precision or variable-length arrays"
 echo "no forbidden word in ${#files[@]} files"

@@ -50,6 +50,7 @@ def test_every_function_has_its_words(tmp_path: Path, doxygen: None) -> None:
             assert re.search(rf">{function}<", page), f"{header.name}: no page has {function}"
 
 
+@pytest.mark.release
 def test_a_warning_is_an_error(tmp_path: Path, doxygen: None) -> None:
     """In a copy whose header documents a parameter that does not exist."""
     for name in (*(path.relative_to(ROOT) for path in HEADERS), "tools/api_pages.sh"):

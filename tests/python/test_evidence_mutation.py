@@ -259,6 +259,7 @@ def test_every_listed_survivor_is_a_mutant_of_the_present_sources() -> None:
     assert survivors.strangers(survivors.read()) == []
 
 
+@pytest.mark.release
 @needs_clang
 def test_every_listed_survivor_of_the_flight_layer_is_a_mutant() -> None:
     """Mutants of the companion need its build: the evidence checks them."""

@@ -25,6 +25,7 @@ def test_every_promise_has_tests_and_every_test_its_promise() -> None:
     assert sum(bool(promise.text) for promise in found.promises) > 40
 
 
+@pytest.mark.release
 def test_the_part_reports_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(part, "TABLE", tmp_path / "new" / "requirements.csv")
     result = part.run(Amount())

@@ -97,6 +97,7 @@ def test_scenes_lie_within_the_ranges_of_the_header() -> None:
     assert named["aside"].at(0.25) == pytest.approx(-0.25)
 
 
+@pytest.mark.release
 def test_the_search_climbs() -> None:
     """The search ends with worse scenes than as many random ones. The worse a domain is, the farther the search
     moves."""
@@ -112,6 +113,7 @@ def test_the_search_climbs() -> None:
     assert 0.0 < np.count_nonzero(moved(point, rng) != point) < len(point)
 
 
+@pytest.mark.release
 def test_near_the_origin_rounding_is_far_below_a_sigma() -> None:
     """[A15]"""
     found = [search(case, NEAR, TRIES) for case in CASES if case.method == "filter"]

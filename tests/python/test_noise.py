@@ -176,6 +176,7 @@ def test_the_noise_of_points_is_found(tmp_path: Path, capsys: pytest.CaptureFixt
 # ------------------------------------------------------------------------------------------------------- recorded boxes
 
 
+@pytest.mark.release
 @pytest.mark.parametrize("feed", ["RRC", "YOLO-STRONG-SORT"])
 def test_settings_from_one_half_fit_the_other(feed: str, capsys: pytest.CaptureFixture[str]) -> None:
     folders = [folder for folder in kitti_feeds() if folder.name == feed]

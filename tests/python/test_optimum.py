@@ -164,6 +164,7 @@ def test_the_fit_finds_the_truth_without_noise(scene: Scene) -> None:
     assert np.abs(result.state[model.NUISANCES]).max() < 1e-6
 
 
+@pytest.mark.release
 def test_the_fit_reaches_the_bound() -> None:
     pytest.importorskip("scipy")
     from goe_tools.models.offline import fit
@@ -404,6 +405,7 @@ def test_caught_at_a_share_of_false_flags() -> None:
     assert caught(static, moving, 0.1) == 75.0
 
 
+@pytest.mark.release
 def test_goals_of_table3(built: None, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "goals.json"
     assert bench_main(["goals", "--quick", "--only", "table3", "--json", str(out)]) == 0

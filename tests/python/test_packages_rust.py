@@ -84,6 +84,7 @@ def test_only_the_network_is_an_excuse(target: Path, tmp_path: Path) -> None:
     assert done.returncode != 0 and not names_the_network(done.stderr), done.stderr
 
 
+@pytest.mark.release
 @pytest.mark.parametrize("features", ["window", "filter", "window,filter", "target_motion", "window,flight"])
 def test_each_combination_of_parts_compiles(target: Path, features: str) -> None:
     words = ("--offline", "--no-default-features", "--features", features)
@@ -129,6 +130,7 @@ def test_another_layout_does_not_compile(target: Path, tmp_path: Path) -> None:
         changed.write_text(text, encoding="utf-8")
 
 
+@pytest.mark.release
 def test_style(target: Path) -> None:
     if run("cargo", "clippy", "--version").returncode or run("cargo", "fmt", "--version").returncode:
         pytest.skip("cargo has no clippy or no rustfmt")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import os
 import subprocess
 import sys
 from pathlib import Path
@@ -25,8 +24,8 @@ WINDOW_ERROR_MOST = 1.0e-3
 CHANGE_SIGMAS_MOST = 1.0e-2
 VARIANCE_ERROR_MOST = 1.0e-2  # relative: half of it in sigma
 NIS_ERROR_MOST = 1.0e-2  # relative
-# Eigen's solvers take two minutes to compile: GOE_LONG=1 compares them, too.
-CHOSEN = [] if os.environ.get("GOE_LONG") else ["--eigen", "left out"]
+pytestmark = pytest.mark.release  # Eigen's solvers take two minutes to compile
+
 NOBODY = Others(eigen=None, lapack=False, cmsis_dsp=None, tinyekf=None)
 COUNT, STACK, CODE = "M4F, instructions: mean (max)", "M4F stack, bytes", "M4F code, bytes"
 BOUNDS = ["flop count", "flop count, with inverse"]
@@ -63,12 +62,12 @@ def instructions(row: Row) -> tuple[float, int]:
 def others() -> Others:
     parser = argparse.ArgumentParser()
     command.add_arguments(parser)
-    return find_others(parser.parse_args(CHOSEN))
+    return find_others(parser.parse_args([]))
 
 
 @pytest.fixture(scope="module")
 def printed() -> str:
-    done = subprocess.run([sys.executable, "-m", "bench", "peers", "--quick", *CHOSEN], capture_output=True, text=True)
+    done = subprocess.run([sys.executable, "-m", "bench", "peers", "--quick"], capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 

@@ -151,6 +151,7 @@ def test_the_optimum_is_one_whatever_the_start(solid: Solid, configured: ErrorMo
         assert again.cost == pytest.approx(once.cost, rel=1e-6)
 
 
+@pytest.mark.release
 def test_errors_are_near_the_bound_and_the_cost_is_the_least() -> None:
     """Without path errors, which the bound does not model. 40 flights determine an RMSE to 11 %."""
     options = replace(WHITE, roll_deg=10.0, position_walk_sd_m=0.0, image_rate_hz=4.0)

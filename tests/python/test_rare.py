@@ -49,6 +49,7 @@ def test_the_interval_has_its_probability(times: int, runs: int) -> None:
         assert binom.cdf(times, runs, high) == pytest.approx(0.025, rel=1e-6)
 
 
+@pytest.mark.release
 @goe_avoid
 def test_a_record_is_continued(tmp_path: Path, capsys) -> None:
     file = tmp_path / "record.json"

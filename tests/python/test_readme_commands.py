@@ -276,6 +276,7 @@ def test_sizes() -> None:
     assert re.fullmatch(r"\| x86-64 gcc -Os \(\d+\) \| [1-9]\d{4} \| 0 \|", code)
 
 
+@pytest.mark.release
 def test_bench(built: Path, set_up: None) -> None:
     text = output_of("tools/bench.sh", "1000")
     rates = re.findall(r"^goe_replay --method (\w+): +(\d+) rows/s", text, re.MULTILINE)
@@ -293,6 +294,7 @@ def test_bench_campaign(built: Path) -> None:
     assert re.match(r"paper's study, 1 seed +[\d.]+ s +[1-9]\d* cases/s .*\(156 cases, ", text)
 
 
+@pytest.mark.release
 def test_set_up_with_rivals(tmp_path: Path, set_up: None) -> None:
     """In a copy whose list of rivals is empty: nothing is fetched, and the missing GTSAM is reported."""
     shutil.copytree(ROOT / "tools", tmp_path / "tools", ignore=shutil.ignore_patterns("__pycache__", "*.egg-info"))
@@ -319,6 +321,7 @@ def test_targets_are_listed(built: Path) -> None:
     assert len(re.findall(r"Test +#\d+: target_[\w-]+-(gcc|clang)-(os|o2)$", text, re.MULTILINE)) == 28
 
 
+@pytest.mark.release
 def test_quick_goals_and_their_report(tmp_path: Path, few_flights: None, built: Path) -> None:
     file, page = tmp_path / "goals.json", tmp_path / "page.html"
     assert bench_main(["goals", "--quick", "--json", str(file)]) == 0
@@ -331,6 +334,7 @@ def test_quick_goals_and_their_report(tmp_path: Path, few_flights: None, built: 
     assert "too few flights for a verdict" in page.read_text(encoding="utf-8")
 
 
+@pytest.mark.release
 def test_orders_and_their_report(tmp_path: Path, built: Path) -> None:
     file, page = tmp_path / "avoid.csv", tmp_path / "page.html"
     text = output_of(built / "sim_host" / "goe_avoid", "--runs", "2", "--csv", file)
@@ -362,6 +366,7 @@ def test_goals_of_some_groups(
     assert f"{len(measured)} of {len(measured)} goals met" in capsys.readouterr().out
 
 
+@pytest.mark.release
 def test_goals_of_the_settling_half(few_flights: None, built: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """These tracks differ, and so do the figures."""
     texts = []

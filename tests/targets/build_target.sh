@@ -27,13 +27,13 @@ case $preset in
     *-clang-*) need clang-19 ;;
 esac
 
-# Most compiler faults show early, and the host runs all: the safety tests run a fifth of the preset's length, the other tests draw a
-# tenth of their cases. GOE_LONG=1: the preset's length and all cases, as tools/evidence.sh --long does.
+# Most compiler faults show early, and the host runs all: the safety tests run a tenth of the preset's length, the other tests draw a
+# fortieth of their cases. GOE_LONG=1: the preset's length and all cases, as tools/evidence.sh --long does.
 length=()
 if [ -n "${GOE_LONG:-}" ]; then
     length=(-DGOE_TARGET_SHARE=1)
 else
-    length=(-DPORT_ENVIRONMENT=GOE_TEST_UPDATES=2000)
+    length=(-DPORT_ENVIRONMENT=GOE_TEST_UPDATES=1000)
 fi
 
 cd "$root"

@@ -6,11 +6,11 @@
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 . "$here/../flags/common.sh"
-levels=(-O0 -O2 "-O3 -march=native -funroll-loops")
-others=("gcc -O3 -march=native -flto" "gcc -O2 -m32 -msse2 -mfpmath=sse" "clang-19 -O3 -march=native -flto -fuse-ld=lld")
+levels=(-O0 "-O3 -march=native -funroll-loops")
+others=("gcc -O2 -m32 -msse2 -mfpmath=sse" "clang-19 -O3 -march=native -flto -fuse-ld=lld")
 if [ -n "${GOE_LONG:-}" ]; then
-    levels+=(-O1 -Os -O3 "-O3 -march=native")
-    others+=("gcc -O2 -flto" "clang-19 -O2 -flto" "clang-19 -O3 -march=native -flto")
+    levels+=(-O1 -O2 -Os -O3 "-O3 -march=native")
+    others+=("gcc -O2 -flto" "gcc -O3 -march=native -flto" "clang-19 -O2 -flto" "clang-19 -O3 -march=native -flto")
 fi
 golden=$1
 flight_golden=$2

@@ -3,7 +3,7 @@
 set(GOE_TARGET_TESTS all CACHE STRING "Tests of tests/c to build as images, too: all, safety, none")
 set_property(CACHE GOE_TARGET_TESTS PROPERTY STRINGS all safety none)
 
-set(GOE_TARGET_SHARE 10 CACHE STRING "One of so many draws of the tests of tests/c is drawn")
+set(GOE_TARGET_SHARE 40 CACHE STRING "One of so many draws of the tests of tests/c is drawn")
 
 add_subdirectory(${PROJECT_SOURCE_DIR}/port/baremetal baremetal)
 
