@@ -8,8 +8,8 @@
  *            the aircraft flies through, to the target and to the beginning of a line parallel to the course
  *   end      the disc about the target, or the line flown on behind it
  *
- * On the way past an obstacle its sigma across the line of sight counts: the uncertainty of its range shrinks as it comes
- * nearer, and the target moves with it. Before an obstacle, where an aircraft turns away, its sigma along the nearest distance counts.
+ * Before an obstacle, where an aircraft turns away, its sigma along the nearest distance counts. On the way past it the sigma across the
+ * line of sight counts if that is less: the uncertainty of the range shrinks as it comes nearer, and the target moves with it.
  */
 #include "goe_clear.h"
 
@@ -167,8 +167,9 @@ static bool is_in_fan(const region_t *region, const float at_m[2]) {
 static float sure_m(const goe_flight_clear_slot_t *slot, const goe_flight_clear_way_t *way, const float off_m[2],
                     float square, float within_m) {
     const float length_m = sqrtf(goe_flight_larger(square, LENGTH_MIN_M2));
-    const float sd_m = way->turns_away ? sd_along_m(slot->variance_m2, off_m, length_m) : slot->across_sd_m;
-    return length_m - within_m - slot->radius_m - way->sigmas * sd_m;
+    const float sd_m = sd_along_m(slot->variance_m2, off_m, length_m);
+    const float passed_m = way->turns_away ? sd_m : goe_flight_smaller(sd_m, slot->across_sd_m);
+    return length_m - within_m - slot->radius_m - way->sigmas * passed_m;
 }
 
 /* The least distance of one obstacle's circle. */

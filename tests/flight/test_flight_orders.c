@@ -387,6 +387,25 @@ static void a_way_that_is_hardly_clear_is_left_after_a_while(void) {
     TEST_ASSERT_TRUE(flight.reaction.clear_m > 6.0f);
 }
 
+/* GIVEN an obstacle whose range is known to 8 m and whose bearing well WHEN the aircraft flies past it on the line of the order THEN the
+ * order keeps its kind and side until it ends: what is uncertain lies along the line. */
+static void an_uncertain_range_does_not_turn_an_order_into_another(void) {
+    put(0, 120.0f, 0.5f, 50.0f);
+    flight.slot[0].width_m = 20.0f;
+    flight.slot[0].covariance_ne_m2[0] = 64.0f;
+    flight.slot[0].covariance_ne_m2[2] = 1.0f;
+    const goe_flight_action_t first = decide(0.5);
+    TEST_ASSERT_TRUE(first == GOE_FLIGHT_LEFT || first == GOE_FLIGHT_RIGHT);
+    own.ned_m[1] = flight.reaction.target_ned_m[1];
+    goe_flight_action_t now = first;
+    for (; own.ned_m[0] < 250.0f && now != GOE_FLIGHT_NONE; own.ned_m[0] += 2.0f) {
+        now = decide(0.0);
+        TEST_ASSERT_TRUE(now == first || now == GOE_FLIGHT_NONE);
+        TEST_ASSERT_TRUE(now == GOE_FLIGHT_NONE || flight.reaction.clear_m > 12.0f);
+    }
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, now);
+}
+
 /* GIVEN an order that has just ended, and a clear way back to its line WHEN something is on the course of this moment THEN that is no
  * hazard for 1.2 roll_in_s, by when the aircraft turns back. */
 static void flying_back_is_given_time(void) {
@@ -491,6 +510,7 @@ static void every_reason_has_a_name(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_way_that_is_hardly_clear_is_left_after_a_while);
+    RUN_TEST(an_uncertain_range_does_not_turn_an_order_into_another);
     RUN_TEST(flying_back_is_given_time);
     RUN_TEST(a_climb_is_left_when_it_comes_too_late);
     RUN_TEST(a_slow_aircraft_has_a_course);
