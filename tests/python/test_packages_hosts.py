@@ -14,6 +14,8 @@ import pytest
 from ci.__main__ import main
 from ci.packages.facts import Facts
 
+pytestmark = pytest.mark.release  # packaging
+
 ROOT = Path(__file__).resolve().parents[2]
 FACTS = Facts()
 CONSUMER = ROOT / "tests" / "consumer_package" / "main.c"

@@ -19,6 +19,8 @@ from ci.packages.staging import Words
 from ci.packages.targets import TARGETS
 from goe_tools import library
 
+pytestmark = pytest.mark.release  # packaging
+
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "port" / "python"
 FACTS = Facts()

@@ -545,13 +545,13 @@ def facts(folder: Path) -> dict[str, object]:
 
 def test_same_whatever_the_jobs(goe_campaign: Path, tmp_path: Path) -> None:
     arguments = ("--studies", "paper,wind", "--seeds", 2)
-    for jobs in (1, 2, 7):
+    for jobs in (1, 3):
         campaign(goe_campaign, tmp_path / str(jobs), *arguments, "--jobs", jobs)
-    one, two, seven = (contents(tmp_path / str(jobs)) for jobs in (1, 2, 7))
-    assert facts(tmp_path / "1") == facts(tmp_path / "2") == facts(tmp_path / "7")
-    for files in (one, two, seven):
+    one, three = (contents(tmp_path / str(jobs)) for jobs in (1, 3))
+    assert facts(tmp_path / "1") == facts(tmp_path / "3")
+    for files in (one, three):
         del files["campaign.json"]
-    assert one == two == seven
+    assert one == three
     assert len(one) == 1 + 3 * 6  # cases.csv; three runs over the six flights past the building turned by -20 degrees
 
 
@@ -739,7 +739,7 @@ def test_interrupted_while_writing(goe_campaign: Path, tmp_path: Path) -> None:
     """Interrupts at all stages, by the number of files that exist: each leaves a complete campaign or none."""
     campaign(goe_campaign, tmp_path / "whole", "--studies", "paper", "--series")
     whole = set(contents(tmp_path / "whole"))
-    for written in (0, 1, 2, 10, 100, 200, 300, len(whole) - 1):
+    for written in (0, 2, 100, len(whole) - 1):
         folder = tmp_path / str(written)
         process = subprocess.Popen(
             [str(goe_campaign), "--studies", "paper", "--series", "--quiet", "--out", str(folder)]
