@@ -388,7 +388,7 @@ static void a_way_that_is_hardly_clear_is_left_after_a_while(void) {
 }
 
 /* GIVEN an obstacle whose range is known to 8 m and whose bearing well WHEN the aircraft flies past it on the line of the order THEN the
- * order keeps its kind and side until it ends: what is uncertain lies along the line. */
+ * order keeps its kind and side until it ends: the uncertainty lies along the line. */
 static void an_uncertain_range_does_not_turn_an_order_into_another(void) {
     put(0, 120.0f, 0.5f, 50.0f);
     flight.slot[0].width_m = 20.0f;

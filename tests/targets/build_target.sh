@@ -28,7 +28,7 @@ case $preset in
 esac
 
 # Most compiler faults show early, and the host runs all: the safety tests run a tenth of the preset's length, the other tests draw a
-# fortieth of their cases. GOE_LONG=1: the preset's length and all cases, as tools/evidence.sh --long does.
+# tenth of their cases. GOE_LONG=1: the preset's length and all cases, as tools/evidence.sh --long does.
 length=()
 if [ -n "${GOE_LONG:-}" ]; then
     length=(-DGOE_TARGET_SHARE=1)
