@@ -66,9 +66,9 @@
  * Threads     A function accesses only its arguments' memory. Threads may share an estimator under the caller's lock. [A11]
  * Arithmetic  The library uses float, sqrtf, memcpy and memset only. [A12] With -ffp-contract=off all IEEE 754 targets
  *             compute the same bits. [A13]
- * Failure     A call with a negative status changes only counters. The exceptions are each status that says "image taken",
- *             and GOE_CORRUPTED, which ends the track. [A21] Every output is finite. [A16] A quantity without its bit in
- *             goe_estimate_t.valid means nothing. Non-finite input is refused, also under -ffast-math. [A17]
+ * Failure     A call with a negative status changes only counters and the age that goe_decide() uses. The exceptions are each
+ *             status that says "image taken", and GOE_CORRUPTED of goe_update(). [A21] Every output is finite. [A16] A quantity
+ *             without its bit in goe_estimate_t.valid means nothing. Non-finite input is refused, also under -ffast-math. [A17]
  * Cost        Each function states the most that it costs on a Cortex-M4F with gcc -O2, a window of 8 and one camera. Both
  *             figures are proved: instructions (not cycles) and bytes of stack. [A23]
  */
@@ -124,12 +124,12 @@ typedef enum {
     GOE_BAD_SETTINGS = -32,    /* goe_init: the setting bad_field is outside its range */
     GOE_BAD_ARGUMENT = -33,    /* a null pointer, or an estimator size that differs from the library's */
     GOE_NOT_INITIALIZED = -34, /* goe_init has not succeeded */
-    GOE_CORRUPTED = -35        /* the memory was changed from outside, and the track has ended. Not "safe": keep the last
-                                * warning. If goe_reset returns it, too, the settings have changed: call goe_init */
+    GOE_CORRUPTED = -35        /* the memory was changed from outside. Not "safe": keep the last warning. If goe_reset
+                                * returns it, too, the settings have changed: call goe_init */
 } goe_status_t;
 
-/* goe_estimator_t.fault_counts[-status] counts the faults of a status. fault_counts[0] counts the tracks that a reset of
- * unknown size ended. Counters saturate. */
+/* goe_estimator_t.fault_counts[-status] counts the faults GOE_BEHIND_CAMERA to GOE_NO_HEIGHT. fault_counts[0] counts the
+ * tracks that a reset of unknown size ended. Counters saturate. */
 #define GOE_FAULT_COUNTS 16
 
 /* Whether goe_update() took the image: bit 35 + status, set for -15, -14 and -9 to 4. Of a refused image goe stores only
@@ -278,7 +278,7 @@ GOE_NODISCARD goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator
  *   estimate  always written; a null pointer returns GOE_BAD_ARGUMENT. It is all zero with GOE_BAD_ARGUMENT,
  *             GOE_NOT_INITIALIZED and GOE_CORRUPTED. With any other negative status it is the last estimate, marked stale
  * Returns GOE_OK, a positive status, GOE_BEHIND_CAMERA to GOE_NO_HEIGHT (except GOE_BAD_HEIGHT), GOE_BAD_ARGUMENT,
- * GOE_NOT_INITIALIZED, GOE_CORRUPTED. All faults are counted. If a feature and the solution fail, the solution's is returned.
+ * GOE_NOT_INITIALIZED, GOE_CORRUPTED. Faults of images are counted. If a feature and the solution fail, the solution's is returned.
  * Cost: at most 48000 instructions, 1408 bytes of stack; 70000 with lens distortion; window: 5500.
  * The figure of the window method is valid without lens distortion only. */
 goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, goe_estimate_t *estimate);

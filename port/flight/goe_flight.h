@@ -21,11 +21,12 @@
  * Threads     Every function accesses only the memory that its arguments point at. The caller must lock a shared goe_flight_t.
  * Arithmetic  float only. From the C library the layer uses sqrtf, memcpy and memset. Compiled with -ffp-contract=off, the results
  *             have the same bits on every IEEE 754 target.
- * Safety      Every output is finite. The layer refuses non-finite values, which it detects by their exponent bits, also under -ffast-math.
- * Bit flips   A flipped bit in goe_flight_t causes no write out of bounds. Settings and cameras are sealed: with a broken seal a
- *             frame and an assessment return GOE_FLIGHT_CORRUPTED. An estimator that returns GOE_CORRUPTED starts again; if its
+ * Safety      Every output is finite. [F1] The layer refuses non-finite values, which it detects by their exponent bits, also under
+ *             -ffast-math.
+ * Bit flips   A flipped bit in goe_flight_t causes no write out of bounds. [F2] Settings and cameras are sealed: with a broken seal a
+ *             frame and an assessment return GOE_FLIGHT_CORRUPTED. [F3] An estimator that returns GOE_CORRUPTED starts again; if its
  *             settings are lost, it takes those of another slot. Until it has a position again, the slot keeps its position, hazard
- *             and warning, marked suspect. The rest (poses, clocks, positions, the active order) is not sealed.
+ *             and warning, marked suspect. [F4] The rest (poses, clocks, positions, the active order) is not sealed.
  * Cost        On a Cortex-M4F (gcc), in instructions: a sample at most 1,250; a frame 44,700 for each obstacle in it; an assessment
  *             28,700 with one obstacle and 23,200 for each further one with a position. While there is a hazard or an order, an
  *             assessment also examines paths: at most 3 times (4 + 4 GOE_FLIGHT_SLOTS), each against every obstacle.
@@ -33,7 +34,7 @@
  *             than GOE_FLIGHT_SECTORS.
  * Failure     A call that returns a negative status, or GOE_FLIGHT_TOO_NEW, changes nothing except counters, with two exceptions:
  *             after a failed goe_flight_init() *flight cannot be used, and the 16th GOE_FLIGHT_BAD_TIME in a row calls
- *             goe_flight_restart().
+ *             goe_flight_restart(). [F5]
  */
 #ifndef GOE_FLIGHT_H
 #define GOE_FLIGHT_H

@@ -280,7 +280,7 @@ static void start(void) {
 
 /* ------------------------------------------------------------------------------------------------------------- tests -- */
 
-/* [GOE_FLIGHT_DETECTIONS] */
+/* [GOE_FLIGHT_DETECTIONS, F1, F5] */
 static void anything_does_no_harm(void) {
     any = check_random_start("flight layer");
     const int calls = calls_each();

@@ -21,7 +21,7 @@ static goe_flight_status_t assess(goe_flight_assessment_t *now) {
     return goe_flight_assess(&flown.flight, flown_now_us(&flown), false, now);
 }
 
-/* GIVEN any one flipped bit of the sealed memory THEN frames and assessments report it, and nothing is "clear". */
+/* [F3] GIVEN any one flipped bit of the sealed memory THEN frames and assessments report it, and nothing is "clear". */
 static void every_flip_of_the_settings_is_reported(void) {
     const size_t first = 8u * offsetof(goe_flight_t, seal);
     const size_t end = 8u * (offsetof(goe_flight_t, attitude_white_sd_deg) + sizeof(float));
@@ -107,8 +107,8 @@ static bool is_finite(const void *at, size_t bytes) {
     return true;
 }
 
-/* GIVEN one flipped bit anywhere behind the sealed memory WHEN pose, assessment and obstacles are requested THEN no number is infinite and
- * no enumerator is outside of its list. */
+/* [F1] GIVEN one flipped bit anywhere behind the sealed memory WHEN pose, assessment and obstacles are requested THEN no number is infinite
+ * and no enumerator is outside of its list. */
 static void no_flipped_bit_makes_an_output_infinite(void) {
     static goe_flight_t whole;
     goe_flight_assessment_t now;
@@ -218,6 +218,7 @@ static void warning_outlasts(size_t offset) {
     TEST_ASSERT_TRUE((obstacle.valid & GOE_HAS_POSITION) != 0u);
 }
 
+/* [F4] GIVEN a warning WHEN the settings of its estimator, or its track, are lost THEN position, hazard and warning stay, suspect. */
 static void a_warning_outlasts_its_estimators_settings(void) {
     warning_outlasts(offsetof(goe_estimator_t, settings.camera.fx_px));
 }
@@ -240,7 +241,7 @@ static void without_any_settings_the_layer_says_so(void) {
     TEST_ASSERT_FALSE(goe_flight_is_sealed(&flown.flight));
 }
 
-/* GIVEN indices and counts that are out of their arrays THEN no call reads or writes there; the order that there is not is none. */
+/* [F2] GIVEN indices and counts that are out of their arrays THEN no call reads or writes there; the order that there is not is none. */
 static void indices_stay_in_their_arrays(void) {
     goe_flight_assessment_t now;
     (void)flown_fly(&flown, 7.0);
