@@ -59,7 +59,7 @@ typedef struct {
  * disc, or the valid part of the box. If orientation or length is not valid, the outline is a circle about the reference point
  * with the box's width as diameter. In the window method without width, it is the reference point alone. An image without a
  * detection changes only the time. A restart of the filter keeps position and size until a new estimate replaces them,
- * or until a feature is ahead of the camera and they are behind it. So without a new estimate uncertainty only grows. [A34]
+ * or until a feature contradicts them: the obstacle lies behind the camera, the feature ahead. So without a new estimate uncertainty only grows. [A34]
  *   hazard  always written, unless null; all zero after a failure: conflict_probability = 0 then does not mean "safe"
  * Returns GOE_OK, GOE_CONVERGING if there is no position, GOE_NOT_FINITE or GOE_OUT_OF_RANGE for the intent,
  * GOE_BAD_ARGUMENT, GOE_NOT_INITIALIZED, GOE_CORRUPTED.

@@ -9,7 +9,7 @@
 # Two steps run at a time. A line for each appears when it has ended, with its own time and that of the processors. Every step's full
 # output is kept in .cache/test/. Ctrl-C ends all that runs. GOE_KITTI_DIR names a folder of recorded flights to compare goe_replay
 # with the references on; UNITY_DIR the sources of the Unity test framework, where they are not to be fetched. CI=true: a missing
-# tool is a failure. GOE_LONG=1: also what a release needs, in some two hours: every target, compiler, level and part, the proof, the
+# tool is a failure. GOE_LONG=1: also what a release needs: every target, compiler, level and part, the proof, the
 # analyzer of clang-tidy, and the Python tests marked release.
 set -uo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -262,7 +262,7 @@ check_subjects() {
 
 sources() { find lib port sim_host tests -name target -prune -o \( -name '*.[ch]' -o -name '*.[ch]pp' \) -print; }
 check_format() { sources | xargs clang-format-19 --dry-run -Werror; }
-# Its analyzer takes nine tenths of the time, and gcc's analyzer reads the same sources above.
+# Its analyzer takes three quarters of the time: without it, gcc's analyzer alone reads lib/ and port/flight, and none the rest.
 tidy() {
     local checks='-clang-analyzer-*'
     [ -z "${GOE_LONG:-}" ] || checks=
@@ -271,7 +271,7 @@ tidy() {
         xargs -0 -n 1 -P "$jobs" clang-tidy-19 --quiet --checks="$checks" -p .cache/tidy 2>&1 | sed '/warnings\{0,1\} generated\.$/d'
 }
 
-# Programs with the sanitizers, of the build that was made last: over every log of the tests, and by the tests that try to break them.
+# Programs of the build with the sanitizers: over every log of the tests, and by the tests that try to break them.
 replay_sanitized() {
     local folder
     for folder in tests/data/*/; do
@@ -380,7 +380,7 @@ if has clang-19 && has llvm-cov-19 && has llvm-profdata-19 &&
         ctest --preset coverage -E '^(c|flight)_' -j "$jobs"
 else
     shows='tests passed' add "sanitizers" build_and_ctest asan
-    lacks "clang: unit tests and their coverage (needs clang-19, llvm-19 and libclang-rt-19-dev)"
+    lacks "coverage of the unit tests (needs clang-19, llvm-19 and libclang-rt-19-dev)"
 fi
 if has clang-19 && has clang-tidy-19; then
     after="clang: build" add "clang-tidy" tidy

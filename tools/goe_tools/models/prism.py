@@ -251,7 +251,6 @@ class Row:
     side: int
     predicted: float  # focal lengths
     slope: np.ndarray  # (13,) derivative by the unknowns
-    foot: bool = True  # it touches there
     hidden: float = 0.0  # variance of an end that no level side shows, focal lengths squared
 
 
@@ -263,25 +262,28 @@ def row_of(sight: Sight, state: np.ndarray, side: int, at: float) -> Row | None:
         return None
     steps = unknowns + 1j * COMPLEX_STEP * np.eye(UNKNOWNS)
     slope = coordinate(sight, steps, side, touch).imag / COMPLEX_STEP
-    return Row(side, float(coordinate(sight, unknowns, side, touch)), slope, touch.foot)
+    return Row(side, float(coordinate(sight, unknowns, side, touch)), slope)
 
 
 def visible_row_of(sight: Sight, state: np.ndarray, side: int, at: float) -> Row | None:
     """Like ``row_of``, unless no level side shows the end that a left or right side touches. Then the visible part may
     end anywhere between foot and roof: the row takes the middle and has no derivative by the heights, (R29a)."""
     row = row_of(sight, state, side, at)
-    if row is None or AXIS[side] == 1 or np.isfinite(sight.side[BOX_BOTTOM if row.foot else BOX_TOP]):
+    if row is None or AXIS[side] == 1:
         return row
     unknowns = np.concatenate([state, np.zeros(UNKNOWNS - len(state))])
+    foot = touching(sight, unknowns, side, at).foot
+    if np.isfinite(sight.side[BOX_BOTTOM if foot else BOX_TOP]):
+        return row
     slope = row.slope.copy()
-    end = G if row.foot else E
-    by_y = slope[end] * (1.0 if row.foot else -1.0)  # Y = height q + g, or height q - e
+    end = G if foot else E
+    by_y = slope[end] * (1.0 if foot else -1.0)  # Y = height q + g, or height q - e
     slope[end] = 0.0
     slope[Q] -= by_y * sight.height_m
     slope[PY] += by_y * unknowns[Q]
-    half_edge = 0.5 * (unknowns[G] + unknowns[E]) * (-1.0 if row.foot else 1.0)  # from the end down to the middle
+    half_edge = 0.5 * (unknowns[G] + unknowns[E]) * (-1.0 if foot else 1.0)  # from the end down to the middle
     moved = by_y * half_edge
-    return Row(side, row.predicted + moved, slope, row.foot, HIDDEN_VARIANCE * moved**2)
+    return Row(side, row.predicted + moved, slope, HIDDEN_VARIANCE * moved**2)
 
 
 def exact_side(sight: Sight, unknowns: np.ndarray, side: int, guess: float) -> float:
