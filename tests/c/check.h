@@ -31,12 +31,6 @@ typedef struct {
     uint64_t state;
 } check_random_t;
 
-/* How many are drawn. An emulator draws a share of them: the compiler's mistakes, which it looks for, show in every draw. */
-#ifndef CHECK_SHARE
-#define CHECK_SHARE 1
-#endif
-#define CHECK_DRAWS(number) ((number) / CHECK_SHARE)
-
 check_random_t check_random_start(const char *what);
 uint32_t check_random_bits(check_random_t *random);
 double check_random_between(check_random_t *random, double low, double high);

@@ -10,8 +10,8 @@
 #include "scene.h"
 #include "sighting.h"
 
-#define CASES CHECK_DRAWS(1000)
-#define HOUSES CHECK_DRAWS(300)
+#define CASES 1000
+#define HOUSES 300
 #define IMAGES 188 /* half a meter each, to some meters before the obstacle */
 #define RAD_PER_DEG 0.017453292519943295
 #define BOX_BITS 0x3Fu

@@ -13,7 +13,7 @@
 #include "sighting.h"
 
 #define UNKNOWNS GOE_UNKNOWNS
-#define CASES CHECK_DRAWS(200)
+#define CASES 200
 #define FLIGHTS 10
 #define IMAGES 48
 #define NOISE_PX 0.5

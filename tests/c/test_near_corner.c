@@ -7,7 +7,7 @@
 #include "refined/goe_filter.h"
 #include "scene.h"
 
-#define FLIGHTS CHECK_DRAWS(40)
+#define FLIGHTS 40
 #define IMAGES 64
 #define NOISE_PX 0.5
 #define SIGMAS_MAX 5.0

@@ -9,7 +9,7 @@
 
 #include "check.h"
 
-#define CASES CHECK_DRAWS(600)
+#define CASES 600
 #define DIRECTIONS 720
 #define RAD_PER_DEG 0.017453292519943295
 #define STEP_M 0.02

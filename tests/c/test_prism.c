@@ -10,8 +10,8 @@
 #include "scene.h"
 #include "upright.h"
 
-#define CASES CHECK_DRAWS(100)
-#define SLENDER CHECK_DRAWS(400)
+#define CASES 100
+#define SLENDER 400
 #define FEW 5 /* brute force is slow where double precision is emulated */
 #define RIM_POINTS 60
 #define TWO_PI 6.283185307179586

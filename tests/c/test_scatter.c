@@ -7,7 +7,7 @@
 #include "refined/goe_scatter.h"
 
 #define IMAGES 400
-#define TRACKS CHECK_DRAWS(50)
+#define TRACKS 50
 
 static goe_filter_t filter;
 static goe_matrix_t matrix;

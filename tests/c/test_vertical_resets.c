@@ -8,7 +8,7 @@
 
 #define IMAGES 64
 #define MOVED_MAX 0.05 /* sigmas: 16,000 flights came to 0.02 */
-#define FLIGHTS CHECK_DRAWS(400)
+#define FLIGHTS 400
 #define JUMPS_MAX 3
 
 typedef enum { OUTLINE, CORNERS, BOXES, BOXES_AND_CORNERS, KINDS } kind_t;
