@@ -27,17 +27,17 @@ case $preset in
     *-clang-*) need clang-19 ;;
 esac
 
-# Most compiler faults show early, and the host runs all: the safety tests run a tenth of the preset's length, the other tests draw a
-# tenth of their cases. GOE_LONG=1: the preset's length and all cases, as tools/evidence.sh --long does.
+# Most compiler faults show early, and the host runs all: the safety tests run a tenth of the preset's length, the other tests of tests/c
+# do not run. GOE_LONG=1: the preset's length and all tests, as tools/evidence.sh --long does.
 length=()
-if [ -n "${GOE_LONG:-}" ]; then
-    length=(-DGOE_TARGET_SHARE=1)
-else
+tests=$3
+if [ -z "${GOE_LONG:-}" ]; then
     length=(-DPORT_ENVIRONMENT=GOE_TEST_UPDATES=1000)
+    [ "$tests" != all ] || tests=safety
 fi
 
 cd "$root"
-cmake --preset "$preset" -B "$tree" -DGOE_TARGET_TESTS="$3" -DUNITY_DIR="$4" "${length[@]}" >"$tree.log" 2>&1 || {
+cmake --preset "$preset" -B "$tree" -DGOE_TARGET_TESTS="$tests" -DUNITY_DIR="$4" "${length[@]}" >"$tree.log" 2>&1 || {
     cat "$tree.log" >&2
     exit 1
 }

@@ -30,12 +30,12 @@ goe_target_test(self_check_host host_self_check.sh ${golden})
 
 # ------------------------------------------------------------------------------------------------- one test each target
 
-# Every target runs the replay, its stack, the self-check's proofs and the safety tests of tests/c. One runs all of tests/c:
-# README.md says why this one. COST: the longest start first.
+# Every target runs the replay, its stack, the self-check's proofs and the safety tests of tests/c. One runs all of tests/c with
+# GOE_LONG=1: README.md says why this one. COST: the longest start first.
 set(target_with_all_tests m4f-gcc-o2)
 # Between releases these run: the ledger's three targets, and one of each kind of floating-point arithmetic; gcc and clang, -Os and -O2.
 # The others have the label release: tools/test.sh leaves them out, and the evidence of a release runs them.
-set(targets_of_every_run m0plus-gcc-os m4f-gcc-os m4f-gcc-o2 m7-dp-clang-os m33-clang-o2 m55-gcc-o2 rv32imafc-gcc-o2)
+set(targets_of_every_run m0plus-gcc-os m4f-gcc-os m4f-gcc-o2 m7-dp-clang-os m55-clang-o2 rv32imafc-gcc-o2)
 set(unity_dir "")
 if(TARGET goe_unity)
     get_target_property(unity_dir goe_unity INTERFACE_INCLUDE_DIRECTORIES)

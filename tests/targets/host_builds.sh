@@ -1,16 +1,16 @@
 #!/usr/bin/env bash
-# The hashes of the replay, and of the replay through the flight layer, are the golden ones for each compiler of this machine, without
-# optimization, for speed and for size, vectorized, and optimized at link time. GOE_LONG=1: every level.
+# The hashes of the replay, and of the replay through the flight layer, are the golden ones for each compiler of this machine,
+# vectorized, optimized at link time, and with 32 bits. GOE_LONG=1: every level.
 #
 #   host_builds.sh <golden hash> <golden hash of the flight layer>
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 . "$here/../flags/common.sh"
-levels=(-O0 "-O3 -march=native -funroll-loops")
-others=("gcc -O2 -m32 -msse2 -mfpmath=sse" "clang-19 -O3 -march=native -flto -fuse-ld=lld")
+levels=()
+others=("gcc -O3 -march=native -funroll-loops" "gcc -O2 -m32 -msse2 -mfpmath=sse" "clang-19 -O3 -march=native -flto -fuse-ld=lld")
 if [ -n "${GOE_LONG:-}" ]; then
-    levels+=(-O1 -O2 -Os -O3 "-O3 -march=native")
-    others+=("gcc -O2 -flto" "gcc -O3 -march=native -flto" "clang-19 -O2 -flto" "clang-19 -O3 -march=native -flto")
+    levels+=(-O0 -O1 -O2 -Os -O3 "-O3 -march=native")
+    others+=("clang-19 -O3 -march=native -funroll-loops" "gcc -O2 -flto" "gcc -O3 -march=native -flto" "clang-19 -O2 -flto" "clang-19 -O3 -march=native -flto")
 fi
 golden=$1
 flight_golden=$2

@@ -3,8 +3,6 @@
 set(GOE_TARGET_TESTS all CACHE STRING "Tests of tests/c to build as images, too: all, safety, none")
 set_property(CACHE GOE_TARGET_TESTS PROPERTY STRINGS all safety none)
 
-set(GOE_TARGET_SHARE 10 CACHE STRING "One of so many draws of the tests of tests/c is drawn")
-
 add_subdirectory(${PROJECT_SOURCE_DIR}/port/baremetal baremetal)
 
 target_link_libraries(goe PUBLIC m)
@@ -149,9 +147,6 @@ if(NOT GOE_TARGET_TESTS STREQUAL none)
     file(GLOB support CONFIGURE_DEPENDS ${unit_tests}/*.c)
     list(REMOVE_ITEM support ${programs})
     list(FILTER programs EXCLUDE REGEX "/test_(host|double)_")
-    if(GOE_TARGET_SHARE GREATER 1) # hundreds of flights, a fifth of the time; test_resets flies some of the kind
-        list(FILTER programs EXCLUDE REGEX "/test_vertical_resets")
-    endif()
     if(GOE_TARGET_TESTS STREQUAL safety)
         list(FILTER programs INCLUDE REGEX "/test_safety")
     endif()
@@ -160,7 +155,6 @@ if(NOT GOE_TARGET_TESTS STREQUAL none)
     goe_compile(unit_test_support)
     target_compile_options(unit_test_support PRIVATE -Wno-double-promotion -Wno-float-equal)
     target_include_directories(unit_test_support PUBLIC ${unit_tests})
-    target_compile_definitions(unit_test_support PUBLIC CHECK_SHARE=${GOE_TARGET_SHARE})
     target_link_libraries(unit_test_support PUBLIC goe goe_unity goe_port)
     foreach(source IN LISTS programs)
         get_filename_component(name ${source} NAME_WE)
