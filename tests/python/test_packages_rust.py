@@ -91,6 +91,7 @@ def test_each_combination_of_parts_compiles(target: Path, features: str) -> None
     assert "warning" not in passed("cargo", "check", "--all-targets", *words, target=target)
 
 
+@pytest.mark.release
 def test_parts(target: Path) -> None:
     words = ("--no-default-features", "--features", "filter,hazard", "--test", "estimator")
     assert "test result: ok" in passed("cargo", "test", "--offline", *words, target=target)

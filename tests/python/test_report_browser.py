@@ -64,7 +64,7 @@ def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
     driver.quit()
 
 
-@pytest.mark.parametrize("size", [WIDE, PHONE], ids=["wide", "phone"])
+@pytest.mark.parametrize("size", [pytest.param(WIDE, marks=pytest.mark.release), PHONE], ids=["wide", "phone"])
 def test_pages_in_browser(browser: Any, report: Path, shots: Path, size: tuple[int, int], request: Any) -> None:
     keys = []
     for name in PAGES:
@@ -129,6 +129,7 @@ CONTRAST = (  # texts with little contrast, or on a bright ground
 )
 
 
+@pytest.mark.release
 def test_dark(browser: Any, report: Path, shots: Path) -> None:
     """Follows the reader's color scheme: no white remains, and text contrasts with its background."""
     browser.execute_cdp_cmd(
@@ -144,6 +145,7 @@ def test_dark(browser: Any, report: Path, shots: Path) -> None:
         browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
 
 
+@pytest.mark.release
 def test_print(browser: Any, report: Path, shots: Path) -> None:
     open_page(browser, report.with_name("report_paper.html"), WIDE)
     printed = browser.execute_cdp_cmd("Page.printToPDF", {"preferCSSPageSize": True, "printBackground": False})

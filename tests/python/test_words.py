@@ -47,6 +47,7 @@ BRITISH = (
     (r"(analys|catalogu)(e[ds]?|ing)", "analyze, catalog"),
     (r"learnt", "learned"),
 )
+ANY = re.compile(rf"\b(?:{'|'.join(pattern for pattern, _ in (*BANNED, *BRITISH))})\b", re.IGNORECASE)
 RULES = tuple((re.compile(rf"\b(?:{pattern})\b", re.IGNORECASE), instead) for pattern, instead in (*BANNED, *BRITISH))
 
 # File (a pattern), phrase and reason of each justified use.
@@ -119,6 +120,8 @@ def findings(path: str, text: str) -> list[str]:
     found = []
     for number, line in texts(path, text):
         plain = CODE.sub(" ", line)
+        if not ANY.search(plain):
+            continue
         for rule, instead in RULES:
             for match in rule.finditer(plain):
                 phrase = match.group(0)

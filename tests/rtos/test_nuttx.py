@@ -138,6 +138,7 @@ def test_cmake_agrees_with_make(helium: str, tmp_path: Path) -> None:
         assert {"-ffp-contract=off", "-DGOE_FLIGHT_SLOTS=4", "-Dsqrtf=goe_sqrtf"} <= meaning_of(words)
 
 
+@pytest.mark.release
 def test_cmake_passes_the_needs_of_programs_on(tmp_path: Path) -> None:
     config(tmp_path, "CONFIG_GOE=y", "CONFIG_GOE_SENSOR_LOOP=y")
     tree = configured(tmp_path, tmp_path / "build")

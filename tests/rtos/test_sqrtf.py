@@ -19,7 +19,9 @@ def compile_root(folder: Path, *flags: str) -> Path:
     return made
 
 
-@pytest.mark.parametrize("flags", [["-O2"], ["-O2", "-ffast-math"]], ids=["O2", "fast-math"])
+@pytest.mark.parametrize(
+    "flags", [pytest.param(["-O2"], marks=pytest.mark.release), ["-O2", "-ffast-math"]], ids=["O2", "fast-math"]
+)
 def test_every_root_is_right(flags: list[str], tmp_path: Path) -> None:
     """The reference, the host's own sqrtf, is compiled and linked without the flags."""
     integers = "-DGOE_SQRTF_IN_INTEGERS"

@@ -163,6 +163,7 @@ def test_golden_bits(tmp_path: Path) -> None:
         assert any(golden in pattern for pattern in said_by(page))
 
 
+@pytest.mark.release
 def test_wrong_arithmetic_is_reported_at_start(tmp_path: Path) -> None:
     text = run(build(SAMPLE, tmp_path, flags="-O1 -ffast-math"))
     assert re.match(r"goe: goe_self_check\(\) says 0x(?!00)..: ", text)
@@ -178,10 +179,12 @@ def test_sample_prints_the_lines_of_its_pages(sample: Path) -> None:
     assert "\nimages 135, dropped 0; messages lost 0\n" in text
 
 
+@pytest.mark.release
 def test_sample_with_a_shared_floating_point_unit(tmp_path: Path) -> None:
     assert_flown(run(build(SAMPLE, tmp_path, "CONFIG_FPU=y", "CONFIG_FPU_SHARING=y", "CONFIG_MINIMAL_LIBC=y")))
 
 
+@pytest.mark.release
 def test_sample_ends_if_the_layer_does_not_start(tmp_path: Path) -> None:
     lines = run(build(SAMPLE, tmp_path, link="-Wl,--wrap=goe_flight_init")).splitlines()
     assert lines[1:] == ["goe: no start: status -32, setting (none)", "done"]
