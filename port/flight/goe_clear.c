@@ -69,9 +69,12 @@ static float sd_along_m(const float variance_m2[3], const float off_m[2], float 
     return sqrtf(goe_flight_larger(variance, 0.0f));
 }
 
-static bool is_below(const goe_flight_slot_t *slot, float doubt, const goe_flight_t *flight, float own_down_m) {
-    const float top_down_m = slot->ground_down_m - slot->top_m - SURE_SIGMA * slot->top_sd_m;
-    return (slot->valid & GOE_HAS_HEIGHT) != 0u && own_down_m < top_down_m - doubt * flight->settings.clearance_m;
+bool goe_flight_clear_counts(const goe_flight_t *flight, int slot, float down_m) {
+    const goe_flight_slot_t *one = &flight->slot[slot];
+    const float clearance_m = goe_flight_lookout_doubt(flight, one) * flight->settings.clearance_m;
+    const float top_down_m = one->ground_down_m - one->top_m - SURE_SIGMA * one->top_sd_m;
+    const bool is_below = (one->valid & GOE_HAS_HEIGHT) != 0u && down_m < top_down_m - clearance_m;
+    return one->used && (one->valid & GOE_HAS_POSITION) != 0u && !is_below;
 }
 
 void goe_flight_clear_slots(const goe_flight_t *flight, const goe_flight_clear_own_t *own,
@@ -91,7 +94,7 @@ void goe_flight_clear_slots(const goe_flight_t *flight, const goe_flight_clear_o
         one->across_sd_m = sd_along_m(one->variance_m2, across, sqrtf(goe_flight_larger(sight_m2, LENGTH_MIN_M2)));
         one->radius_m = goe_flight_slot_radius_m(slot) + goe_flight_lookout_drift_m(flight, slot, own->time_us);
         one->margin_m = goe_flight_larger(doubt * flight->settings.margin_m, MARGIN_MIN_M);
-        one->counts = !is_below(slot, doubt, flight, own->ned_m[2]);
+        one->counts = goe_flight_clear_counts(flight, i, own->ned_m[2]);
     }
 }
 

@@ -37,6 +37,9 @@ typedef struct {
 void goe_flight_clear_relate(const goe_flight_clear_own_t *own, const float place_ne_m[2], float at_m[2]);
 void goe_flight_clear_direct(const goe_flight_clear_own_t *own, const float direction_ne[2], float turned[2]);
 
+/* Whether an obstacle has a place, and its top is not surely below this height. */
+bool goe_flight_clear_counts(const goe_flight_t *flight, int slot, float down_m);
+
 /* Every slot in that frame. */
 void goe_flight_clear_slots(const goe_flight_t *flight, const goe_flight_clear_own_t *own,
                             goe_flight_clear_slot_t slots[GOE_FLIGHT_SLOTS]);

@@ -353,7 +353,7 @@ typedef struct { /* goe_slot.c */
 } goe_flight_slot_t;
 
 typedef struct { /* goe_reaction.c: the active order */
-    float from_ne_m[2], course_ne[2]; /* position and course when it was given: the line to return to */
+    float from_ned_m[3], course_ne[2]; /* position and course when it was given: the line to return to */
     uint32_t rising_us, falling_us;   /* when the hazard began, and when it was over */
     float target_ned_m[3];
     float along_ne[2];  /* the course when the target was chosen */

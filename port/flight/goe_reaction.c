@@ -81,9 +81,7 @@ void goe_flight_reaction_clear(goe_flight_reaction_t *reaction) {
 void goe_flight_reaction_shift(goe_flight_reaction_t *reaction, const float jump_ned_m[3]) {
     for (int i = 0; i < 3; i++) {
         reaction->target_ned_m[i] += jump_ned_m[i];
-    }
-    for (int i = 0; i < 2; i++) {
-        reaction->from_ne_m[i] += jump_ned_m[i];
+        reaction->from_ned_m[i] += jump_ned_m[i];
     }
 }
 
@@ -357,7 +355,7 @@ static void order(goe_flight_t *flight, int slot, const look_t *look, const enco
     const float *course = look->at.course_ne;
     const bool aside = option->side != 0;
     if (r->action == GOE_FLIGHT_NONE) { /* another order keeps the line of the first */
-        memcpy(r->from_ne_m, look->own->ned_m, sizeof r->from_ne_m);
+        memcpy(r->from_ned_m, look->own->ned_m, sizeof r->from_ned_m);
         memcpy(r->course_ne, course, sizeof r->course_ne);
     }
     if (r->side != 0 && aside && r->side != option->side) {
@@ -402,7 +400,7 @@ static float edge_of(const look_t *look, const goe_flight_reaction_t *r, int i, 
     const goe_flight_clear_slot_t *one = &look->slot[i];
     float ahead_m;
     float aside_m;
-    relate(r->from_ne_m, r->along_ne, look->flight->slot[i].center_ne_m, &ahead_m, &aside_m);
+    relate(r->from_ned_m, r->along_ne, look->flight->slot[i].center_ne_m, &ahead_m, &aside_m);
     const float beyond_m = r->gap ? one->radius_m
                                   : one->radius_m + one->margin_m + look->circle_m +
                                         SURE_SIGMA * aside_sd_m(&look->flight->slot[i], r->along_ne);
@@ -421,9 +419,9 @@ static void follow(const look_t *look, goe_flight_reaction_t *r) {
     const float other_m = edge_of(look, r, r->edge, r->gap ? -r->side : r->side);
     const float outer_m = times(r->side, other_m - about_m) > 0.0f ? other_m : about_m;
     const float target_m = r->gap ? 0.5f * (about_m + other_m) + times(r->side, look->circle_m) : outer_m;
-    relate(r->from_ne_m, r->along_ne, look->flight->slot[r->slot].center_ne_m, &ahead_m, &aside_m);
-    r->target_ned_m[0] = r->from_ne_m[0] + r->along_ne[0] * ahead_m - r->along_ne[1] * target_m;
-    r->target_ned_m[1] = r->from_ne_m[1] + r->along_ne[1] * ahead_m + r->along_ne[0] * target_m;
+    relate(r->from_ned_m, r->along_ne, look->flight->slot[r->slot].center_ne_m, &ahead_m, &aside_m);
+    r->target_ned_m[0] = r->from_ned_m[0] + r->along_ne[0] * ahead_m - r->along_ne[1] * target_m;
+    r->target_ned_m[1] = r->from_ned_m[1] + r->along_ne[1] * ahead_m + r->along_ne[0] * target_m;
 }
 
 /* How clear the way is on which the order is flown from here. */
@@ -528,7 +526,7 @@ static bool is_in_the_way(const look_t *look, int i, float own_aside_m) {
     if (ahead_m < -reach_m || (i != r->slot && ahead_m > horizon_m)) {
         return false;
     }
-    relate(r->from_ne_m, r->course_ne, slot->center_ne_m, &from_ahead_m, &aside_m);
+    relate(r->from_ned_m, r->course_ne, slot->center_ne_m, &from_ahead_m, &aside_m);
     return aside_m > goe_flight_smaller(own_aside_m, 0.0f) - sure_m &&
            aside_m < goe_flight_larger(own_aside_m, 0.0f) + sure_m;
 }
@@ -537,7 +535,7 @@ static bool is_in_the_way(const look_t *look, int i, float own_aside_m) {
 static bool is_way_back_clear(const look_t *look, float own_ahead_m, float own_aside_m) {
     const goe_flight_reaction_t *r = &look->flight->reaction;
     const float on_m = own_ahead_m + goe_flight_absolute(own_aside_m) + 2.0f * look->at.turn_m;
-    const float back_ne_m[2] = {r->from_ne_m[0] + on_m * r->course_ne[0], r->from_ne_m[1] + on_m * r->course_ne[1]};
+    const float back_ne_m[2] = {r->from_ned_m[0] + on_m * r->course_ne[0], r->from_ned_m[1] + on_m * r->course_ne[1]};
     goe_flight_clear_way_t way;
     int nearest;
     memset(&way, 0, sizeof way);
@@ -577,6 +575,13 @@ static bool is_farther_out(const look_t *look, const goe_flight_reaction_t *r, i
            times(r->side, edge_of(look, r, r->slot, r->side) - edge_of(look, r, next, r->side)) > 0.0f;
 }
 
+/* Whether an obstacle counts for the end of the order. After a climb the aircraft sinks back to its line: the height of that decides. */
+static bool is_known(const look_t *look, int i) {
+    const goe_flight_reaction_t *r = &look->flight->reaction;
+    const bool up = is_up(r->action);
+    return up ? goe_flight_clear_counts(look->flight, i, r->from_ned_m[2]) : look->slot[i].counts;
+}
+
 /* Whether the line of the order may be flown again: every obstacle lies behind on it, or surely aside of it, or is unknown; and the way
  * back to it is clear. The order turns to the nearest obstacle that is left. */
 static bool is_over(const look_t *look, goe_flight_reaction_t *r, bool *behind) {
@@ -586,11 +591,11 @@ static bool is_over(const look_t *look, goe_flight_reaction_t *r, bool *behind) 
     int next = NOBODY;
     bool left = false;
     bool waits = false;
-    relate(r->from_ne_m, r->course_ne, look->own->ned_m, &own_ahead_m, &own_aside_m);
+    relate(r->from_ned_m, r->course_ne, look->own->ned_m, &own_ahead_m, &own_aside_m);
     own_aside_m = is_up(r->action) ? 0.0f : farthest_aside_m(look, own_aside_m);
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         const float ahead_m = look->slot[i].at_m[0];
-        if (look->slot[i].counts && is_in_the_way(look, i, own_aside_m)) {
+        if (is_known(look, i) && is_in_the_way(look, i, own_aside_m)) {
             left = left || i == r->slot;
             waits = true;
             if (ahead_m < least_m && !is_outside(look, r, i)) {
@@ -631,7 +636,7 @@ static void end_if_over(goe_flight_t *flight, const look_t *look) {
     if (behind || goe_flight_between_s(look->own->time_us, r->falling_us) >= flight->settings.hold_s) {
         const goe_flight_reaction_t ended = *r;
         goe_flight_reaction_clear(r);
-        memcpy(r->from_ne_m, ended.from_ne_m, sizeof r->from_ne_m);
+        memcpy(r->from_ned_m, ended.from_ned_m, sizeof r->from_ned_m);
         memcpy(r->course_ne, ended.course_ne, sizeof r->course_ne);
         r->side = ended.side;
         r->changes = ended.changes;
@@ -684,7 +689,7 @@ static void break_off(goe_flight_t *flight, const look_t *look) {
 
 /* An order of unknown kind, or about a slot that does not exist, is none: the active hazard fault_counts another. */
 static void mend(goe_flight_reaction_t *r) {
-    const bool finite = goe_flight_all_finite(r->target_ned_m, 3) && goe_flight_all_finite(r->from_ne_m, 2) &&
+    const bool finite = goe_flight_all_finite(r->target_ned_m, 3) && goe_flight_all_finite(r->from_ned_m, 3) &&
                         goe_flight_all_finite(r->course_ne, 2) && goe_flight_all_finite(r->along_ne, 2) &&
                         goe_flight_finite(r->clear_m);
     if (!finite || r->reason > GOE_FLIGHT_REASON_LANDING || r->action > GOE_FLIGHT_HOLD || r->slot < NOBODY ||
@@ -763,7 +768,7 @@ static bool is_flying_back(look_t *look) {
     if (r->action != GOE_FLIGHT_NONE || r->side == 0 || since_s > LATEST * look->flight->settings.roll_in_s) {
         return false;
     }
-    relate(r->from_ne_m, r->course_ne, look->own->ned_m, &own_ahead_m, &own_aside_m);
+    relate(r->from_ned_m, r->course_ne, look->own->ned_m, &own_ahead_m, &own_aside_m);
     set_delay(look, since_s);
     const bool clear = is_way_back_clear(look, own_ahead_m, own_aside_m);
     set_delay(look, 0.0f);

@@ -224,7 +224,7 @@ static void an_order_begins_where_the_aircraft_is(void) {
     const float *velocity = flown.flight.velocity_ned_m_s;
     TEST_ASSERT_TRUE(hypot((double)velocity[0], (double)velocity[1]) > 5.0);
     for (int i = 0; i < 2; i++) {
-        CHECK_CLOSE(0.01, (double)newest[i] + 0.2 * (double)velocity[i], flown.flight.reaction.from_ne_m[i]);
+        CHECK_CLOSE(0.01, (double)newest[i] + 0.2 * (double)velocity[i], flown.flight.reaction.from_ned_m[i]);
     }
 }
 

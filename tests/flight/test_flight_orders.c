@@ -448,6 +448,28 @@ static void a_climb_is_left_when_it_comes_too_late(void) {
     }
 }
 
+/* [F1] GIVEN a climb WHEN the aircraft is high above the top, which is still ahead THEN the order stays active until the top lies behind:
+ * the aircraft would sink towards it. Of an obstacle that the line clears the order knows nothing. */
+static void a_climb_stays_active_until_the_top_is_passed(void) {
+    for (int low = 0; low < 2; low++) {
+        start(0.0f);
+        put(0, 110.0f, 0.5f, 12.0f);
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_CLIMB, decide(0.5));
+        flight.slot[0].hazard.conflict_probability = 0.0f;
+        put(1, 160.0f, 0.5f, low ? 4.0f : 12.0f);
+        flight.slot[1].hazard.conflict_probability = 0.0f;
+        const float behind_m = low ? 110.0f : 160.0f;
+        for (; own.ned_m[0] < behind_m + 30.0f; own.ned_m[0] += 2.0f) {
+            own.ned_m[2] = fmaxf(own.ned_m[2] - 0.3f, -60.0f);
+            const goe_flight_action_t now = decide(0.0);
+            if (own.ned_m[0] < behind_m) {
+                TEST_ASSERT_EQUAL(GOE_FLIGHT_CLIMB, now);
+            }
+        }
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, flight.reaction.action);
+    }
+}
+
 /* [goe_flight_position_t.velocity_ned_m_s] Above 1 m/s there is a course, and so an order. */
 static void a_slow_aircraft_has_a_course(void) {
     for (int slow = 0; slow < 2; slow++) {
@@ -513,6 +535,7 @@ int main(void) {
     RUN_TEST(an_uncertain_range_does_not_turn_an_order_into_another);
     RUN_TEST(flying_back_is_given_time);
     RUN_TEST(a_climb_is_left_when_it_comes_too_late);
+    RUN_TEST(a_climb_stays_active_until_the_top_is_passed);
     RUN_TEST(a_slow_aircraft_has_a_course);
     RUN_TEST(the_side_of_before_is_preferred);
     RUN_TEST(a_missing_obstacle_raises_no_climb);

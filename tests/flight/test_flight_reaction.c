@@ -368,11 +368,11 @@ static void an_order_about_no_slot_is_none(void) {
 
 /* ... as is one whose numbers are none. */
 static void an_order_of_no_numbers_is_none(void) {
-    for (int k = 0; k < 10; k++) {
+    for (int k = 0; k < 11; k++) {
         goe_flight_reaction_t *r = &flight.reaction;
-        float *const number[] = {&r->target_ned_m[0], &r->target_ned_m[1], &r->target_ned_m[2], &r->from_ne_m[0],
-                                 &r->from_ne_m[1],    &r->course_ne[0],    &r->course_ne[1],    &r->along_ne[0],
-                                 &r->along_ne[1],     &r->clear_m};
+        float *const number[] = {&r->target_ned_m[0], &r->target_ned_m[1], &r->target_ned_m[2], &r->from_ned_m[0],
+                                 &r->from_ned_m[1],   &r->from_ned_m[2],   &r->course_ne[0],    &r->course_ne[1],
+                                 &r->along_ne[0],     &r->along_ne[1],     &r->clear_m};
         for (int bad = 0; bad < 2; bad++) {
             goe_flight_reaction_clear(r);
             put(0, 300.0f, 0.0f);
@@ -406,7 +406,7 @@ static void another_obstacle_replaces_the_order_but_not_the_line(void) {
         own.time_us += 100000u;
     }
     TEST_ASSERT_EQUAL(1, flight.reaction.slot);
-    CHECK_SAME(0.0f, flight.reaction.from_ne_m[1]);
+    CHECK_SAME(0.0f, flight.reaction.from_ned_m[1]);
 }
 
 static void every_action_has_a_name(void) {

@@ -91,6 +91,7 @@ static void any_standing_order(void) {
     r->target_ned_m[0] = (float)(to_m[0] * line[0] - to_m[1] * line[1]);
     r->target_ned_m[1] = (float)(to_m[0] * line[1] + to_m[1] * line[0]);
     r->target_ned_m[2] = -20.0f;
+    r->from_ned_m[2] = one_in(2) ? -20.0f : (float)between(-130.0, 0.0);
     r->ordered_us = own.time_us - (uint32_t)between(0.0, 2.5e6);
     r->reason = GOE_FLIGHT_REASON_CLEAR;
 }
@@ -122,6 +123,15 @@ static bool near_tie; /* of the encounter: what rounding decides */
 static bool is_more(double a, double b, double tie) {
     near_tie = near_tie || fabs(a - b) < tie;
     return a > b;
+}
+
+/* It has a place; and its top, at two sigma and with the clearance, is not below the height at which a climb began. */
+static bool is_above_the_line(int i) {
+    const goe_flight_slot_t *slot = &flight.slot[i];
+    const double top_m = (double)slot->top_m + 2.0 * (double)slot->top_sd_m + (double)flight.settings.clearance_m;
+    const bool low = (slot->valid & GOE_HAS_HEIGHT) != 0u &&
+                     is_more(-(double)flight.reaction.from_ned_m[2], top_m - (double)slot->ground_down_m, NEAR_TIE_M);
+    return slot->used && (slot->valid & GOE_HAS_POSITION) != 0u && !low;
 }
 
 /* Not behind by its radius and the margin, nor beyond the distance needed to avoid it again, nor aside of both the line and the aircraft.
@@ -265,7 +275,7 @@ static void an_order_stays_active_as_long_as_something_is_in_the_way(void) {
         begin_frame(0.0);
         const double aside_m = up ? 0.0 : farthest_aside_m();
         for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
-            const bool in_the_way = slots[i].counts && is_in_the_way(i, aside_m);
+            const bool in_the_way = (up ? is_above_the_line(i) : slots[i].counts) && is_in_the_way(i, aside_m);
             any_in_the_way = any_in_the_way || in_the_way;
             own_in_the_way = own_in_the_way || (in_the_way && i == before.slot);
         }
@@ -300,7 +310,7 @@ static void an_order_stays_active_as_long_as_something_is_in_the_way(void) {
             TEST_ASSERT_EQUAL(before.side, r->side);
             TEST_ASSERT_EQUAL(before.changes, r->changes);
             TEST_ASSERT_EQUAL_UINT32(own.time_us, r->falling_us);
-            TEST_ASSERT_EQUAL_MEMORY(before.from_ne_m, r->from_ne_m, sizeof r->from_ne_m);
+            TEST_ASSERT_EQUAL_MEMORY(before.from_ned_m, r->from_ned_m, sizeof r->from_ned_m);
             TEST_ASSERT_EQUAL_MEMORY(before.course_ne, r->course_ne, sizeof r->course_ne);
             continue;
         }
@@ -558,7 +568,7 @@ static void the_way_that_is_taken_is_that_of_the_rule(void) {
         TEST_ASSERT_EQUAL(choice.share > free ? GOE_FLIGHT_REASON_CLEAR : GOE_FLIGHT_REASON_LEAST_BAD, r->reason);
         CHECK_CLOSE(0.03, up ? 0.0 : choice.share * (double)flight.settings.margin_m, r->clear_m);
         TEST_ASSERT_EQUAL_UINT32(own.time_us, r->ordered_us);
-        TEST_ASSERT_EQUAL_MEMORY(own.ned_m, r->from_ne_m, sizeof r->from_ne_m);
+        TEST_ASSERT_EQUAL_MEMORY(own.ned_m, r->from_ned_m, sizeof r->from_ned_m);
         CHECK_CLOSE(1.0e-5, course[0], r->course_ne[0]);
         CHECK_CLOSE(1.0e-5, course[1], r->course_ne[1]);
     }

@@ -96,7 +96,7 @@ static void check_state(void) {
     }
     check_floats(f->marks.jumps_ned_m, 3, "jumps");
     check_floats(f->velocity_ned_m_s, 3, "velocity");
-    check_floats(f->reaction.from_ne_m, 4, "order");
+    check_floats(f->reaction.from_ned_m, 5, "order");
     check_floats(f->reaction.target_ned_m, 3, "target");
     check_floats(&f->clock.excess_us, 2, "clock");
     check_slots();
