@@ -297,7 +297,7 @@ run_pytest() { "$python" -m pytest -q -rfEs --rootdir "$root" -p no:cacheprovide
 # ---------------------------------------------------------------------------------------------------------------- run
 
 jobs=$(nproc)
-export CMAKE_BUILD_PARALLEL_LEVEL=$jobs
+export CMAKE_BUILD_PARALLEL_LEVEL=$jobs # of the first build, which runs alone
 processor_s=0
 check_subjects || exit 1
 tools/setup.sh || exit 1
@@ -318,7 +318,10 @@ if $quick; then
     finish
 fi
 
-# What takes a moment comes first, then what takes longest.
+# What takes a moment comes first, then what takes longest. The steps that run at a time share the processors: pytest, the longest,
+# keeps one of two until it ends.
+jobs=$(((jobs + side_by_side - 1) / side_by_side))
+export CMAKE_BUILD_PARALLEL_LEVEL=$jobs
 add "ruff" "$python" -m ruff check --config tools/pyproject.toml tools tests port/python
 if has clang-format-19; then
     add "clang-format" check_format

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Compiles the library, the flight layer and its MAVLink messages among other people's macros, and with the poorest C library that
 # it may meet: sqrtf, memcpy, memset and the compiler's own headers, everything undeclared an error. Public headers in C++ too. Macros and
-# declarations concern the front end alone, so no code is generated. gcc reads C99, clang GNU C17; with GOE_LONG=1 each reads both.
+# declarations concern the front end alone, so no code is generated. gcc reads C99 with this
+# machine's C library, clang GNU C17 with the poor one; with GOE_LONG=1 each reads all four.
 set -euo pipefail
 . "$(dirname "$0")/common.sh"
 here=$root/tests/flags
@@ -30,12 +31,16 @@ poor() {
 }
 
 for compiler in $(compilers gcc clang-19); do
-    if [ "$compiler" = gcc ]; then standards=(c99); else standards=(gnu17); fi
-    [ -z "${GOE_LONG:-}" ] || standards=(c99 gnu17)
-    for standard in "${standards[@]}"; do
-        compile "$compiler" -std="$standard" -include "$here/hostile.h"
-        poor "$compiler" -std="$standard" -include "$here/hostile.h"
-    done
+    if [ -n "${GOE_LONG:-}" ]; then
+        for standard in c99 gnu17; do
+            compile "$compiler" -std=$standard -include "$here/hostile.h"
+            poor "$compiler" -std=$standard -include "$here/hostile.h"
+        done
+    elif [ "$compiler" = gcc ]; then
+        compile gcc -std=c99 -include "$here/hostile.h"
+    else
+        poor "$compiler" -std=gnu17 -include "$here/hostile.h"
+    fi
 done
 for compiler in $(compilers g++ clang++-19); do
     for standard in c++11 c++17; do

@@ -18,10 +18,10 @@ mkdir -p "$builds"
 
 mapfile -t all_flags < <(reading_flags)
 
-# syntax <definition>...: warnings of both compilers with the warnings of all firmwares, without code
+# syntax <definition>...: warnings of gcc, with GOE_LONG=1 of clang too, with the warnings of all firmwares, without code
 syntax() {
     local compiler accepted
-    for compiler in $(compilers gcc clang-19); do
+    for compiler in $(compilers gcc ${GOE_LONG:+clang-19}); do
         mapfile -t accepted < <(known "$compiler" "${all_flags[@]}")
         "$compiler" -std=c99 "${accepted[@]}" -Werror -Wundef -fsyntax-only "$@" -I"$root/lib" "${library_sources[@]}" ||
             fail "$compiler, warnings of the firmwares, $*"
