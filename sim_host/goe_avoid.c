@@ -27,6 +27,8 @@
 #define DELAY_MAX_S 2.0
 #define TWICE_THE_MARGIN 2.0
 
+enum { RUNS_GIVEN = 1, DELAY_GIVEN }; /* what popt reports of options that not all flights have */
+
 static int runs = 334;
 static int seed = 1;
 static double delay_s = 0.1;
@@ -37,9 +39,9 @@ static int trace = -1;
 static char *csv;
 
 static struct poptOption options[] = {
-    {"runs", 'n', POPT_ARG_INT | POPT_ARGFLAG_SHOW_DEFAULT, &runs, 0, "of each kind of obstacle and question", "N"},
+    {"runs", 'n', POPT_ARG_INT | POPT_ARGFLAG_SHOW_DEFAULT, &runs, RUNS_GIVEN, "of each kind of obstacle and question", "N"},
     {"seed", 's', POPT_ARG_INT | POPT_ARGFLAG_SHOW_DEFAULT, &seed, 0, "of the first run", "N"},
-    {"delay", 'd', POPT_ARG_DOUBLE | POPT_ARGFLAG_SHOW_DEFAULT, &delay_s, 0, "of a frame, s", "S"},
+    {"delay", 'd', POPT_ARG_DOUBLE | POPT_ARGFLAG_SHOW_DEFAULT, &delay_s, DELAY_GIVEN, "of a frame, s", "S"},
     {"list", 'l', POPT_ARG_NONE, &list, 0, "a line for every run that collided although it reacted, or reacted falsely",
      NULL},
     {"several", 'm', POPT_ARG_INT, &several, 0, "flies so many flights among one to nine obstacles instead", "N"},
@@ -263,7 +265,11 @@ static bool fly_several(void) {
 }
 
 static bool run_options(poptContext context, int argc, const char *const *argv) {
-    const int said = poptGetNextOpt(context);
+    const char *single = NULL;
+    int said = poptGetNextOpt(context);
+    for (; said == RUNS_GIVEN || said == DELAY_GIVEN; said = poptGetNextOpt(context)) {
+        single = said == RUNS_GIVEN ? "--runs" : "--delay";
+    }
     if (said == 'V') {
         puts(PROGRAM " " GOE_VERSION);
         return true;
@@ -287,6 +293,9 @@ static bool run_options(poptContext context, int argc, const char *const *argv) 
     if (several > 0 || trace >= 0) {
         if (csv != NULL) {
             return give_up("--csv", "not with --several or --trace, which print their flights by --list");
+        }
+        if (single != NULL) {
+            return give_up(single, "not with --several or --trace, whose flights have their own");
         }
         return fly_several();
     }

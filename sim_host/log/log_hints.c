@@ -14,6 +14,8 @@
 #define MOVE_M 1.0
 #define TILT_MAX 0.5   /* cosine: an attitude that is tilted by more than 60 degrees is odd */
 #define AGAINST (-0.5) /* cosine: a nose that points so against the motion, too */
+#define APART 0.87     /* cosine: a motion at more than 30 degrees to the nose */
+#define ALONG 0.97     /* cosine: a motion within 14 degrees of it */
 #define MOST 0.8       /* of the images */
 #define FOOT_M 0.3048
 #define FOOT_TOLERANCE 0.03
@@ -43,11 +45,15 @@ static bool is_broken(const frame_t *frame) {
     return broken;
 }
 
-/* Whether an attitude lies on its side, or looks against the motion, which has length 1. */
+/* Cosine between the nose and the motion, which has length 1, of a level attitude. */
+static double nose_along(double w, double x, double y, double z, double north, double east) {
+    return (w * w + x * x - y * y - z * z) * north + 2.0 * (x * y + w * z) * east;
+}
+
+/* Whether an attitude lies on its side, or looks against the motion. */
 static bool is_odd(double w, double x, double y, double z, const double motion[2]) {
     const double down = w * w - x * x - y * y + z * z;
-    const double nose = (w * w + x * x - y * y - z * z) * motion[0] + 2.0 * (x * y + w * z) * motion[1];
-    return down < TILT_MAX || nose < AGAINST;
+    return down < TILT_MAX || nose_along(w, x, y, z, motion[0], motion[1]) < AGAINST;
 }
 
 static void add_motion(log_hints_t *hints, const frame_t *frame) {
@@ -67,6 +73,9 @@ static void add_motion(log_hints_t *hints, const frame_t *frame) {
     hints->moves++;
     hints->odd += is_odd(q[0], q[1], q[2], q[3], motion) ? 1u : 0u;
     hints->odd_as_xyzw += is_odd(q[3], q[0], q[1], q[2], motion) ? 1u : 0u;
+    hints->apart += nose_along(q[0], q[1], q[2], q[3], motion[0], motion[1]) < APART ? 1u : 0u;
+    hints->along_exchanged += nose_along(q[0], q[1], q[2], q[3], motion[1], motion[0]) > ALONG ? 1u : 0u;
+    hints->along_inverse += nose_along(q[0], -q[1], -q[2], -q[3], motion[0], motion[1]) > ALONG ? 1u : 0u;
 }
 
 static void add_height(log_hints_t *hints, const frame_t *frame) {
@@ -141,13 +150,25 @@ static void print_times(const log_hints_t *hints, const place_t *place) {
 
 static void print_attitude(const log_hints_t *hints, const place_t *place) {
     const double moves = (double)hints->moves;
-    if (hints->moves >= IMAGES_MIN && (double)hints->odd > MOST * moves &&
-        (double)hints->odd_as_xyzw < (1.0 - MOST) * moves) {
+    const char *hint = NULL;
+    if (hints->moves < IMAGES_MIN) {
+        return;
+    }
+    if ((double)hints->odd > MOST * moves && (double)hints->odd_as_xyzw < (1.0 - MOST) * moves) {
+        hint = "qw: the attitude does not fit the motion, and does if the quaternion is in the order x, y, z, w: qw is "
+               "its real part";
+    } else if ((double)hints->apart > MOST * moves && (double)hints->along_exchanged > MOST * moves) {
+        hint =
+            "n_m, e_m: the motion does not fit the heading, and does if the two are exchanged: is east the first? n_m "
+            "is north";
+    } else if ((double)hints->apart > MOST * moves && (double)hints->along_inverse > MOST * moves) {
+        hint =
+            "qw: the attitude does not fit the motion, and its inverse does: the quaternion turns the body's axes into "
+            "north, east, down";
+    }
+    if (hint) {
         begin(place);
-        (void)fprintf(
-            place->stream,
-            "qw: the attitude does not fit the motion, and does if the quaternion is in the order x, y, z, w: "
-            "qw is its real part\n");
+        (void)fprintf(place->stream, "%s\n", hint);
     }
 }
 

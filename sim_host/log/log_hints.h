@@ -17,6 +17,8 @@ typedef struct {
     double anchor[2];
     unsigned long moves, odd,
         odd_as_xyzw; /* of a meter; against the nose or tilted; the same with the quaternion's parts moved */
+    unsigned long apart, along_exchanged,
+        along_inverse; /* away from the nose; along it with north and east exchanged; ... with the inverse attitude */
     unsigned long heights, below; /* images with agl_m; images without it that are below the ground */
     double up[2], agl[2], up_agl; /* sums of -d_m and agl_m from the first, of their squares and of their products */
     double first_up, first_agl;

@@ -7,6 +7,7 @@ GOE_REPLAY names the program; by default it is looked for in build/.
 from __future__ import annotations
 
 import csv
+import math
 import os
 import pty
 import subprocess
@@ -73,6 +74,27 @@ def moved(row: Row) -> dict[str, object]:
     return dict(zip(NAMES, [row[name] for name in (*NAMES[1:], "qw")]))
 
 
+def turned(degrees: float) -> Callable[[list[Row]], list[Row]]:
+    """The same flight on a course that is so far to the right."""
+    angle = math.radians(degrees)
+    c, s, w, z = math.cos(angle), math.sin(angle), math.cos(angle / 2.0), math.sin(angle / 2.0)
+
+    def row_of(row: Row) -> dict[str, object]:
+        n, e, *q = (float(row[name]) for name in ("n_m", "e_m", *NAMES))
+        product = (w * q[0] - z * q[3], w * q[1] - z * q[2], w * q[2] + z * q[1], w * q[3] + z * q[0])
+        return {"n_m": c * n - s * e, "e_m": s * n + c * e} | dict(zip(NAMES, product))
+
+    return change(row_of)
+
+
+def exchanged(row: Row) -> dict[str, object]:
+    return {"n_m": row["e_m"], "e_m": row["n_m"]}
+
+
+def inverse(row: Row) -> dict[str, object]:
+    return {name: -float(row[name]) for name in NAMES[1:]}
+
+
 def descending(table: list[Row]) -> list[Row]:
     """The same log above a ground at 0, from 90 m down to 30 m."""
     return [row | {"d_m": str(-90.0 + 0.5 * k), "agl_m": str(90.0 - 0.5 * k)} for k, row in enumerate(table)]
@@ -88,10 +110,21 @@ REAL_PART = "qw is its real part"
 ORDER = f"qw: the attitude does not fit the motion, and does if the quaternion is in the order x, y, z, w: {REAL_PART}"
 UPWARD = "d_m: it grows as agl_m does: is it up? d_m is down, negative above the origin"
 BELOW = "d_m: the camera is below the ground, and agl_m is empty: is it up? d_m is down, negative above the origin"
+EXCHANGED = (
+    "n_m, e_m: the motion does not fit the heading, and does if the two are exchanged: is east the first? n_m is north"
+)
+INVERSE = (
+    "qw: the attitude does not fit the motion, and its inverse does: "
+    "the quaternion turns the body's axes into north, east, down"
+)
 WARNINGS = [
     (times(1e3, "t_s"), MILLISECONDS),
     (times(1e-2, "t_s"), TOO_FAST),
     (change(moved), ORDER),
+    (lambda table: change(exchanged)(turned(-25.0)(table)), EXCHANGED),
+    (lambda table: change(exchanged)(turned(-80.0)(table)), EXCHANGED),
+    (lambda table: change(inverse)(turned(70.0)(table)), INVERSE),
+    (lambda table: change(inverse)(turned(15.0)(table)), INVERSE),
     (lambda table: times(-1.0, "d_m")(descending(table)), UPWARD),
     (change(lambda row: {"d_m": 40, "agl_m": ""}), BELOW),
     (lambda table: times(FOOT, "agl_m")(descending(table)), "agl_m: 3.28 times -d_m: feet? both are in meters"),
@@ -112,7 +145,9 @@ def test_other_units_signs_and_orders_are_hinted_at(
     assert python_said(folder, capsys) == warnings[0] + "\n"
 
 
-@pytest.mark.parametrize("spoil", [lambda t: t, descending, lambda t: t[:9], change(lambda row: {"agl_m": ""})])
+@pytest.mark.parametrize(
+    "spoil", [lambda t: t, descending, lambda t: t[:9], change(lambda row: {"agl_m": ""}), turned(70.0), turned(-120.0)]
+)
 def test_good_logs_are_not_remarked_on(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], spoil: Callable[[list[Row]], list[Row]]
 ) -> None:

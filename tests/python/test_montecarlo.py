@@ -191,14 +191,15 @@ def wait_for(what: Callable[[], bool]) -> None:
         time.sleep(0.05)
 
 
-def test_ctrl_c_keeps_the_finished_flights(scenario: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM], ids=["Ctrl-C", "SIGTERM"])
+def test_an_interrupt_keeps_the_finished_flights(scenario: Path, tmp_path: Path, how: signal.Signals) -> None:
     out, many = tmp_path / "out", 100000
     command = [sys.executable, "-m", "goe_tools", "montecarlo", str(scenario), "--runs", str(many), "--jobs", "1"]
     with subprocess.Popen(
         [*command, "--out", str(out)], start_new_session=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     ) as program:
         wait_for(out.exists)  # made when the first run is flown
-        os.killpg(program.pid, signal.SIGINT)
+        os.kill(program.pid, how)
         _, error = program.communicate(timeout=HANG_S)
     assert program.returncode == 130 and "Traceback" not in error
     assert error.strip().splitlines()[-1] == "goe_tools montecarlo: interrupted"

@@ -9,6 +9,8 @@ import re
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
@@ -16,7 +18,7 @@ import view_logs
 from goe_tools import library
 from goe_tools.logs.obslog import Camera, ObservationLog, read_log
 from goe_tools.view import outline, words
-from goe_tools.view.answers import Options
+from goe_tools.view.answers import Answers, Options
 from goe_tools.view.motion import motion_of
 from goe_tools.view.story import MOST_ROWS, Story, kept_moments, map_bounds, story_of
 
@@ -263,6 +265,11 @@ def test_words() -> None:
     assert re.fullmatch(f"{number} ahead, {number} left, {number} wide, {number} long, {number} high", said)
     assert words.place(track.answers, 0) == "No estimate yet: collecting images"
     assert "to the side" in words.approach(track.answers, len(track.answers) - 1)
+    for clear_m, wanted in ((5.0, "over the obstacle in 3.0 "), (-69.0, "into the obstacle in 3.0 ")):
+        column = {name: [value] for name, value in (("tcpa_s", 3.0), ("dcpa_m", 0.0), ("clearance_m", clear_m))}
+        column |= {name: [0.5] for name in ("tcpa_sd_s", "dcpa_sd_m", "clearance_sd_m")}
+        said = words.approach(cast(Answers, SimpleNamespace(column=column)), 0).replace("\u00a0", " ")
+        assert wanted in said and said.endswith("above the top" if clear_m > 0.0 else "below the top")
     moving = story(view_logs.moving()).tracks[0].answers
     told = {words.doubt(moving, k) for k in range(len(moving))}
     assert any(

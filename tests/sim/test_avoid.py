@@ -218,6 +218,8 @@ def test_a_flight_among_several_can_be_traced(goe_avoid: Path) -> None:
             ["--several", "3", "--csv", "runs.csv"],
             "--csv: not with --several or --trace, which print their flights by --list",
         ),
+        (["--several", "3", "--runs", "5"], "--runs: not with --several or --trace, whose flights have their own"),
+        (["--trace", "3", "-d", "0.2"], "--delay: not with --several or --trace, whose flights have their own"),
     ],
 )
 def test_bad_numbers_of_flights_name_their_option(goe_avoid: Path, words: list[str], error: str) -> None:

@@ -1,4 +1,4 @@
-"""Hints at probable mistakes in a readable log: other units, other signs, another order of the quaternion.
+"""Hints at probable mistakes in a readable log: other units, signs or axes, another order of the quaternion.
 
 A hint refuses nothing: it describes the observation and a remedy. goe_replay has the same rules
 (sim_host/log/log_hints.c).
@@ -15,6 +15,7 @@ STEP_MAX_S, SPEED_MIN_M_S, WAY_MIN_M = 5.0, 0.5, 5.0  # fewer images of a hardly
 SPEED_MAX_M_S = 150.0
 MOVE_M = 1.0
 TILT_MAX, AGAINST, MOST = 0.5, -0.5, 0.8  # cosines of a tilt, of the nose to the motion; share of the moves
+APART, ALONG = 0.87, 0.97  # cosines of the nose to a motion at more than 30 degrees to it, and within 14
 FOOT_M, FOOT_TOLERANCE = 0.3048, 0.03
 HEIGHT_VARIANCE_M2, CORRELATED = 4.0 * FOOT_M, 0.99
 
@@ -33,12 +34,17 @@ def _moves(place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.array(rows, int), np.array(ways, float).reshape(-1, 2)
 
 
+def _nose_along(attitude: np.ndarray, motion: np.ndarray) -> np.ndarray:
+    """Cosines between the nose and the motion, of level attitudes."""
+    w, x, y, z = attitude.T
+    return (w * w + x * x - y * y - z * z) * motion[:, 0] + 2.0 * (x * y + w * z) * motion[:, 1]
+
+
 def _odd(attitude: np.ndarray, motion: np.ndarray) -> float:
     """Share of the attitudes that are tilted by more than 60 degrees or point against the motion."""
     w, x, y, z = attitude.T
     down = w * w - x * x - y * y + z * z
-    nose = (w * w + x * x - y * y - z * z) * motion[:, 0] + 2.0 * (x * y + w * z) * motion[:, 1]
-    return float(np.mean((down < TILT_MAX) | (nose < AGAINST)))
+    return float(np.mean((down < TILT_MAX) | (_nose_along(attitude, motion) < AGAINST)))
 
 
 def _of_times(time_s: np.ndarray, place: np.ndarray) -> str:
@@ -55,14 +61,27 @@ def _of_times(time_s: np.ndarray, place: np.ndarray) -> str:
 
 def _of_attitude(attitude: np.ndarray, place: np.ndarray) -> str:
     rows, motion = _moves(place)
-    if len(rows) < IMAGES_MIN or _odd(attitude[rows], motion) <= MOST:
+    if len(rows) < IMAGES_MIN:
         return ""
-    if _odd(attitude[rows][:, [3, 0, 1, 2]], motion) >= 1.0 - MOST:
+    attitude = attitude[rows]
+    if _odd(attitude, motion) > MOST and _odd(attitude[:, [3, 0, 1, 2]], motion) < 1.0 - MOST:
+        return (
+            "qw: the attitude does not fit the motion, and does if the quaternion is in the order x, y, z, w: "
+            "qw is its real part"
+        )
+    if np.mean(_nose_along(attitude, motion) < APART) <= MOST:
         return ""
-    return (
-        "qw: the attitude does not fit the motion, and does if the quaternion is in the order x, y, z, w: "
-        "qw is its real part"
-    )
+    if np.mean(_nose_along(attitude, motion[:, ::-1]) > ALONG) > MOST:
+        return (
+            "n_m, e_m: the motion does not fit the heading, and does if the two are exchanged: is east the first? "
+            "n_m is north"
+        )
+    if np.mean(_nose_along(attitude * [1.0, -1.0, -1.0, -1.0], motion) > ALONG) > MOST:
+        return (
+            "qw: the attitude does not fit the motion, and its inverse does: the quaternion turns the body's axes into "
+            "north, east, down"
+        )
+    return ""
 
 
 def _strange_ratio(up: np.ndarray, agl: np.ndarray) -> float:

@@ -119,12 +119,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=_path,
         default={"path": "straight"},
         metavar="P",
-        help="straight, arc:R (m, positive: right) or weave:A,T (m, s)",
+        help="straight (default), arc:R (m, positive: right) or weave:A,T (m, s)",
     )
-    add("--speed-profile", type=_speed_profile, default=0.0, metavar="P", help="constant or ramp:A (m/s^2)")
-    add("--pitch", type=finite, default=0.0, metavar="DEG", help="constant pitch, added to the glide path's")
+    add("--speed-profile", type=_speed_profile, default=0.0, metavar="P", help="constant (default) or ramp:A (m/s^2)")
+    add(
+        "--pitch", type=finite, default=0.0, metavar="DEG", help="constant pitch, added to the glide path's (default 0)"
+    )
     add("--wobble", type=finite, default=0.0, metavar="DEG", help="amplitude of an attitude oscillation (default 0)")
-    add("--noise", type=_noise, default={}, metavar="N", help="none, rounding (whole pixels) or pixel:SIGMA (px)")
+    add(
+        "--noise",
+        type=_noise,
+        default={},
+        metavar="N",
+        help="none (default), rounding (whole pixels) or pixel:SIGMA (px)",
+    )
     add("--seed", type=int, default=1, metavar="N", help="of the pixel noise (default 1)")
     add("--clip", action="store_true", help="points outside the image are not measured")
     add(
@@ -132,22 +140,34 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=lambda text: _numbers(text, 3),
         default=(0.0, 0.0, 0.0),
         metavar="N,E,D",
-        help="NED of the ground point below the start (m)",
+        help="NED of the ground point below the start (m; default 0,0,0)",
     )
     add("--t0", type=finite, default=0.0, metavar="S", help="time stamp of the first image (default 0)")
     add("--id", type=int, default=1, metavar="N", help="track id (default 1)")
-    add("--image", type=lambda text: _numbers(text, 2), default=(1280.0, 1280.0), metavar="W,H", help="px")
+    add(
+        "--image",
+        type=lambda text: _numbers(text, 2),
+        default=(1280.0, 1280.0),
+        metavar="W,H",
+        help="px (default 1280,1280)",
+    )
     add("--focal", type=positive, default=914.0, metavar="PX", help="focal length (default 914)")
     add("--yaw-camera", type=finite, default=0.0, metavar="DEG", help="mounting, negative points left (default 0)")
     add("--pitch-camera", type=finite, default=0.0, metavar="DEG", help="mounting, positive points up (default 0)")
     add("--roll-camera", type=finite, default=0.0, metavar="DEG", help="mounting (default 0)")
-    add("--lens", type=lambda text: _numbers(text, 5), default=(0.0,) * 5, metavar="K1,K2,P1,P2,K3", help="distortion")
+    add(
+        "--lens",
+        type=lambda text: _numbers(text, 5),
+        default=(0.0,) * 5,
+        metavar="K1,K2,P1,P2,K3",
+        help="distortion (default none)",
+    )
     add(
         "--offset",
         type=lambda text: _numbers(text, 3),
         default=(0.0,) * 3,
         metavar="X,Y,Z",
-        help="camera in body axes (m)",
+        help="camera in body axes (m; default 0,0,0)",
     )
     add("--t-heading", type=_heading, default=None, metavar="DEG", help="T's Z axis; default auto: the first yaw")
     add("--out", type=Path, required=True, metavar="DIR", help="folder to write; an earlier result there is replaced")

@@ -39,9 +39,15 @@ def _method(text: str) -> str:
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Options of replay and decision, which ``options_of`` reads."""
     add = parser.add_argument
-    add("--method", type=_method, choices=("filter", "window"), default="filter", help="as goe_replay's")
-    add("--model", choices=("auto", "disc", "line"), default="auto", help="as goe_replay's")
-    add("--window", type=int, metavar="N", help="as goe_replay's: images in the window")
+    add(
+        "--method",
+        type=_method,
+        choices=("filter", "window"),
+        default="filter",
+        help="as goe_replay's (default filter)",
+    )
+    add("--model", choices=("auto", "disc", "line"), default="auto", help="as goe_replay's (default auto)")
+    add("--window", type=int, metavar="N", help="as goe_replay's: images in the window (default 8)")
     add(
         "--set",
         type=_setting,

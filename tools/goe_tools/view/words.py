@@ -90,7 +90,8 @@ def approach(answers: Answers, k: int) -> str:
     if time_s[0] == 0.0:
         when, past = "On the present course: closest approach passed", f", {measured(*miss, figures=1)} to the side"
     elif miss[0] == 0.0:
-        when, past = f"On the present course: above the obstacle in {measured(*time_s, 's', 1)}", ""
+        way = "over" if clear_m >= 0.0 else "into" if clear_m < 0.0 else "over or into"
+        when, past = f"On the present course: {way} the obstacle in {measured(*time_s, 's', 1)}", ""
     else:
         when = f"On the present course: closest approach in {measured(*time_s, 's', 1)}"
         past = f", {measured(*miss, figures=1)} to the side"
