@@ -4,8 +4,8 @@
 #
 #   firmware_flags.sh px4|ardupilot|betaflight|inav
 #
-# C99: code, which is tested, and warnings that only come with code. gcc compiles at the firmware's usual level; with GOE_LONG=1 gcc and
-# clang compile at both. dialects.sh reads the sources in the other dialects, with both compilers.
+# C99: code, which is tested, and warnings that only come with code. gcc compiles at the firmware's usual level, with Betaflight's flags
+# clang too; with GOE_LONG=1 gcc and clang compile at both. dialects.sh reads the sources in the other dialects, with both compilers.
 #
 # The safety tests are those of safety_objects.sh, linked with the firmware's flags, which may change the floating-point unit's mode.
 # UNITY_INCLUDE and UNITY_LIBRARY locate the test framework, SAFETY_OBJECTS the objects of safety_objects.sh.
@@ -53,7 +53,12 @@ run_safety() {
 compiled=0
 ran=0
 mkdir "$scratch/objects"
-mapfile -t present < <(compilers gcc ${GOE_LONG:+clang-19})
+second_compiler=
+if [ "$firmware" = betaflight ] || [ -n "${GOE_LONG:-}" ]; then
+    second_compiler=clang-19 # -ffast-math: gcc leaves some comparisons with NaN as they are, clang does not
+fi
+# shellcheck disable=SC2086 # one word or none
+mapfile -t present < <(compilers gcc $second_compiler)
 for compiler in "${present[@]}"; do
     mapfile -t common < <(known "$compiler" "${flags[@]}")
     cd "$scratch/objects"

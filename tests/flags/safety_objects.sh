@@ -41,7 +41,7 @@ fi
 } >"$scratch/safety_programs.c"
 
 rm -rf "$folder"
-for compiler in $(compilers gcc ${GOE_LONG:+clang-19}); do
+for compiler in $(compilers gcc clang-19); do
     mkdir -p "$folder/$compiler"
     cd "$folder/$compiler"
     plain=("$compiler" -std=c99 -O0 "${all_includes[@]}" -I"$root/tests/c" -I"$root/tests/flight" -I"$root/tests/mavlink"
