@@ -31,7 +31,7 @@
  * Order of calls: goe_settings_default, goe_init; then for every image goe_update, followed by goe_decide or goe_hazard. Call
  * goe_reset before another obstacle. Included are goe_limits.h (parts, limits), goe_settings.h, goe_hazard.h (closest
  * approach, decision, covariance) and goe_diagnostics.h (self-check).
- * DESIGN.md explains methods and measured limits; GLOSSARY.md defines the terms.
+ * DESIGN.md explains methods and limits; GLOSSARY.md defines terms.
  *
  * Frames
  *   earth       north, east, down (NED), meters, local, any origin
@@ -46,7 +46,7 @@
  *
  *                      ______________                  orientation: angle of the SIDE edge (length L) from Z,
  *                     /             /                               clockwise from above, -90 < b <= 90 degrees
- *                    /             / side              width W:     the FRONT edge
+ *                    /             / side              width W:     the FRONT edge, more across Z than along
  *                   /  front      /  (length L)        length L:    the SIDE edge
  *                  /_____________/                     reference point:
  *                        ^   near corner                 disc       the center
@@ -59,10 +59,10 @@
  *                                 camera
  *
  *   Example: the aircraft is at north 0, east 0, heading north; a chimney of 6 m diameter is at north 200, east -30. Then
- *   Z0 = 200 m, X0 = -30 m, width = 6 m. After 50 m of flight, Z = 150 m and X = -30 m; X0 and Z0 are unchanged.
+ *   Z0 = 200 m, X0 = -30 m, width = 6 m. After 50 m of flight, Z = 150 m.
  *
  * Memory      The caller owns goe_estimator_t, which contains all state: at most 2.9 KiB at the default window. [A9] The
- *             library uses no heap, no static variables and no recursion. [A10] Use one estimator for each obstacle.
+ *             library uses no heap, no static variables and no recursion. [A10] Each obstacle has its own estimator and decision.
  * Threads     A function accesses only its arguments' memory. Threads may share an estimator under the caller's lock. [A11]
  * Arithmetic  The library uses float, sqrtf, memcpy and memset only. [A12] With -ffp-contract=off all IEEE 754 targets
  *             compute the same bits. [A13]
@@ -218,7 +218,7 @@ typedef enum {
     GOE_REASON_NONE,
     GOE_REASON_CONVENTION, /* the filter restarted twice within 24 images: the inputs contradict each other (axes, signs,
                             * order of the quaternion, mounting, time) */
-    GOE_REASON_MOVES,      /* the obstacle moves. Without GOE_HAS_VELOCITY the reported position is wrong */
+    GOE_REASON_MOVES,      /* the obstacle moves, or inputs contradict each other. Without GOE_HAS_VELOCITY the reported position is wrong */
     GOE_REASON_BASE,       /* the points supplied as base corners are other points; the filter no longer uses them */
     GOE_REASON_SHAPE,      /* the settings require a disc, but the silhouette is that of another shape */
     GOE_REASON_LATE,       /* poses are late or early by latency_s, which the filter corrects; also without suspect */

@@ -24,7 +24,9 @@ enum { GOE_X0, GOE_Z0, GOE_ORIENTATION, GOE_WIDTH, GOE_LENGTH, GOE_HEIGHT, GOE_Q
 goe_status_t goe_covariance(const goe_estimator_t *estimator, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]);
 
 /* The aircraft's intent: flight at constant velocity. A horizontal speed below 0.1 m/s counts as hovering, also in a climb or a
- * descent. The speed is relative to the ground, or to the obstacle if its velocity is valid. */
+ * descent. The speed is relative to the ground, or to the obstacle if its velocity is valid.
+ * During an evasion, pass the velocity at which the flight continues after it, such as level flight on the course: the velocity
+ * of a climb makes the decision CLEAR, and the climb ends too early. */
 typedef struct {
     float velocity_ned_m_s[3]; /* velocity relative to the ground, each +-1e3 */
     float margin_m;            /* wanted horizontal distance to the obstacle's outline; 0 to 1e4 */

@@ -41,8 +41,8 @@ typedef struct {
     float p2;              /* tangential lens distortion; -100 to 100; default 0 */
     float k3;              /* radial lens distortion; -100 to 100; default 0 */
     float mount_yaw_deg;   /* mounting yaw, negative if the camera looks left; -360 to 360 deg; default 0 */
-    float mount_pitch_deg; /* mounting pitch; -360 to 360 deg; default 0 */
-    float mount_roll_deg;  /* mounting roll; -360 to 360 deg; default 0 */
+    float mount_pitch_deg; /* mounting pitch, negative if the camera looks down; -360 to 360 deg; default 0 */
+    float mount_roll_deg;  /* mounting roll, positive if the camera leans to the right; -360 to 360 deg; default 0 */
     float offset_m[3];     /* camera relative to pose.position_ned_m, body FRD; -1e4 to 1e4 m; default 0 */
     float width_px;        /* width of the image; 0 if unknown; 0 to 1e5 px; default 0 */
     float height_px;       /* height of the image; 0 if unknown; 0 to 1e5 px; default 0 */

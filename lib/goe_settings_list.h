@@ -23,8 +23,8 @@
     X(camera.p2, REAL, "", -100.0f, 100.0f, 0.0f, "tangential lens distortion") \
     X(camera.k3, REAL, "", -100.0f, 100.0f, 0.0f, "radial lens distortion") \
     X(camera.mount_yaw_deg, REAL, "deg", -360.0f, 360.0f, 0.0f, "mounting yaw, negative if the camera looks left") \
-    X(camera.mount_pitch_deg, REAL, "deg", -360.0f, 360.0f, 0.0f, "mounting pitch") \
-    X(camera.mount_roll_deg, REAL, "deg", -360.0f, 360.0f, 0.0f, "mounting roll") \
+    X(camera.mount_pitch_deg, REAL, "deg", -360.0f, 360.0f, 0.0f, "mounting pitch, negative if the camera looks down") \
+    X(camera.mount_roll_deg, REAL, "deg", -360.0f, 360.0f, 0.0f, "mounting roll, positive if the camera leans to the right") \
     X(camera.offset_m[0], REAL, "m", -1.0e4f, 1.0e4f, 0.0f, "lever arm, body forward") \
     X(camera.offset_m[1], REAL, "m", -1.0e4f, 1.0e4f, 0.0f, "lever arm, body right") \
     X(camera.offset_m[2], REAL, "m", -1.0e4f, 1.0e4f, 0.0f, "lever arm, body down") \

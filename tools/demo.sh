@@ -5,7 +5,7 @@ set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 cd "$root"
 
-echo "The demo takes one to two minutes on an idle machine. The first time, set-up takes some five minutes before that."
+echo "The demo takes two minutes on an idle machine. The first time, set-up takes some five minutes before that."
 tools/setup.sh --demo
 SECONDS=0
 log=.cache/demo-build.log
