@@ -39,7 +39,8 @@ static int trace = -1;
 static char *csv;
 
 static struct poptOption options[] = {
-    {"runs", 'n', POPT_ARG_INT | POPT_ARGFLAG_SHOW_DEFAULT, &runs, RUNS_GIVEN, "of each kind of obstacle and question", "N"},
+    {"runs", 'n', POPT_ARG_INT | POPT_ARGFLAG_SHOW_DEFAULT, &runs, RUNS_GIVEN, "of each kind of obstacle and question",
+     "N"},
     {"seed", 's', POPT_ARG_INT | POPT_ARGFLAG_SHOW_DEFAULT, &seed, 0, "of the first run", "N"},
     {"delay", 'd', POPT_ARG_DOUBLE | POPT_ARGFLAG_SHOW_DEFAULT, &delay_s, DELAY_GIVEN, "of a frame, s", "S"},
     {"list", 'l', POPT_ARG_NONE, &list, 0, "a line for every run that collided although it reacted, or reacted falsely",

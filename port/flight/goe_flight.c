@@ -577,7 +577,9 @@ static void report(const goe_flight_t *flight, int worst, uint32_t now_us, goe_f
     result->pose_alive = pose_alive(flight, now_us);
     result->worst = (int8_t)worst;
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
-        result->obstacles = (uint8_t)(result->obstacles + (flight->slot[i].assessed ? 1 : 0));
+        const goe_flight_slot_t *slot = &flight->slot[i];
+        result->obstacles = (uint8_t)(result->obstacles + (slot->assessed ? 1 : 0));
+        result->unplaced = (uint8_t)(result->unplaced + (goe_flight_slot_is_unplaced(slot) ? 1 : 0));
     }
     if (worst != NOBODY) {
         copy_hazard(&flight->slot[worst], &result->hazard);
@@ -757,6 +759,12 @@ goe_flight_status_t goe_flight_sectors(const goe_flight_t *flight, uint32_t max_
     const goe_flight_history_attitude_t *attitude = goe_flight_history_newest_attitude(&flight->history);
     const goe_flight_history_position_t *own = goe_flight_history_newest_position(&flight->history);
     open_sectors(flight, max_cm, sector_cm);
+    for (int i = 0; i < GOE_FLIGHT_SLOTS && attitude; i++) {
+        const goe_flight_slot_t *slot = &flight->slot[i];
+        if (goe_flight_slot_is_unplaced(slot) && slot->camera < GOE_CAMERAS_MAX) {
+            goe_flight_geometry_close_sectors(sector_cm, &flight->camera[slot->camera], attitude->q, slot->box_px);
+        }
+    }
     for (int i = 0; i < GOE_FLIGHT_SLOTS && attitude && own; i++) {
         const goe_flight_slot_t *slot = &flight->slot[i];
         if (slot->used && (slot->valid & GOE_HAS_POSITION) != 0u && !is_passed_over(flight, slot)) {

@@ -30,7 +30,7 @@
  * Cost        On a Cortex-M4F (gcc), in instructions: a sample at most 1,250; a frame 44,700 for each obstacle in it; an assessment
  *             28,700 with one obstacle and 23,200 for each further one with a position. While there is a hazard or an order, an
  *             assessment also examines paths: at most 3 times (4 + 4 GOE_FLIGHT_SLOTS), each against every obstacle.
- *             goe_flight_obstacle() 980; goe_flight_sectors() 6,600; goe_flight_init() 12,700 for each slot. No loop runs longer
+ *             goe_flight_obstacle() 980; goe_flight_sectors() 6,900; goe_flight_init() 12,700 for each slot. No loop runs longer
  *             than GOE_FLIGHT_SECTORS.
  * Failure     A call that returns a negative status, or GOE_FLIGHT_TOO_NEW, changes nothing except counters, with two exceptions:
  *             after a failed goe_flight_init() *flight cannot be used, and the 16th GOE_FLIGHT_BAD_TIME in a row calls
@@ -177,7 +177,8 @@ typedef struct {
     uint32_t id;   /* from the tracker of the camera's detector; 0: no id; the layer matches by the position in the image */
     float score;   /* 0 to 1 */
     float pixel_px; /* one sigma of box and points; 0: as in the settings; 0 to 100 */
-    goe_box_t box; /* raw pixels; give all four sides, also at the image border: the estimator detects truncation */
+    goe_box_t box; /* raw pixels; give all sides, also at the image border, where the estimator detects truncation. Leave out
+                      the bit of a side that another object hides */
     goe_pixel_t left, right, top, base_left, base_near, base_right; /* left, right, top in the image's border zone
                                                                        count as invisible; so does top if left or
                                                                        right does */
@@ -238,9 +239,10 @@ typedef struct {
                               valid detection. Once false, it stays false until the next such frame */
     bool pose_alive;       /* samples of attitude and position came within 0.5 s */
     int8_t worst;          /* slot, for goe_flight_obstacle(); -1: no known hazard. That is "clear" only if detector and
-                              pose are alive */
+                              pose are alive and unplaced is 0 */
     int8_t avoided;        /* slot of the obstacle that the action avoids; -1: none, or its track has ended */
     uint8_t obstacles;     /* number of obstacles with a position */
+    uint8_t unplaced;      /* number of detected obstacles without a position: no order avoids them */
     float needed_s;        /* time that the action needs; without an action, time that the best action would need; 0
                               without a worst obstacle */
     float target_ned_m[3]; /* 0 if GOE_FLIGHT_NONE. The height of CLIMB and GO_AROUND clears the highest known top on
@@ -469,7 +471,7 @@ goe_flight_status_t goe_flight_obstacle(const goe_flight_t *flight, int slot, go
 
 /* Finds the distance of the nearest obstacle in each sector; sector i is centered on the bearing 5 i degrees. Values in cm:
  *   - at most max_cm: the distance
- *   - max_cm + 1: the sector is in the camera's view and has no obstacle
+ *   - max_cm + 1: the sector is in the camera's view and has no obstacle, nor a detection without a position
  *   - GOE_FLIGHT_SECTOR_UNKNOWN: all other sectors
  * Obstacles whose top the aircraft passes by more than the clearance, at two sigma, are ignored. For PX4's
  * obstacle_distance use increment 5 and the frame GLOBAL.

@@ -109,13 +109,17 @@ void goe_flight_geometry_lat_lon(int32_t origin_lat_e7, int32_t origin_lon_e7, c
 
 /* ---------------------------------------------------------------------------------------------------------- bearings -- */
 
-bool goe_flight_geometry_view(const goe_flight_camera_t *camera, const float q[4], float *from_deg, float *width_deg) {
+static void look_along(const goe_flight_camera_t *camera, const float q[4], float axis[3]) {
     float body_to_ned[9];
-    float axis[3];
     const float *mounted = camera->body_from_camera;
     const float axis_body[3] = {mounted[2], mounted[5], mounted[8]};
     goe_flight_rotation(q, body_to_ned);
     goe_flight_turn(body_to_ned, axis_body, axis);
+}
+
+bool goe_flight_geometry_view(const goe_flight_camera_t *camera, const float q[4], float *from_deg, float *width_deg) {
+    float axis[3];
+    look_along(camera, q, axis);
     const float left_deg = goe_flight_atan2_deg(camera->center_px[0], camera->focal_px[0]);
     const float right_deg = goe_flight_atan2_deg(camera->size_px[0] - camera->center_px[0], camera->focal_px[0]);
     *from_deg = goe_flight_positive_deg(goe_flight_atan2_deg(axis[1], axis[0]) - left_deg);
@@ -129,6 +133,21 @@ void goe_flight_geometry_open_sectors(uint16_t sector_cm[GOE_FLIGHT_SECTORS], ui
         const float begin_deg = ((float)i - 0.5f) * SECTOR_DEG;
         if (goe_flight_positive_deg(begin_deg - from_deg) + SECTOR_DEG <= width_deg) {
             sector_cm[i] = (uint16_t)(max_cm + 1u);
+        }
+    }
+}
+
+void goe_flight_geometry_close_sectors(uint16_t sector_cm[GOE_FLIGHT_SECTORS], const goe_flight_camera_t *camera,
+                                       const float q[4], const int16_t box_px[4]) {
+    float axis[3];
+    look_along(camera, q, axis);
+    const float left_deg = goe_flight_atan2_deg((float)box_px[0] - camera->center_px[0], camera->focal_px[0]);
+    const float right_deg = goe_flight_atan2_deg((float)box_px[2] - camera->center_px[0], camera->focal_px[0]);
+    const float middle_deg = goe_flight_atan2_deg(axis[1], axis[0]) + 0.5f * (left_deg + right_deg);
+    for (int i = 0; i < GOE_FLIGHT_SECTORS; i++) {
+        const float off_deg = goe_flight_positive_deg((float)i * SECTOR_DEG - middle_deg + 180.0f) - 180.0f;
+        if (goe_flight_within(off_deg, 0.5f * (right_deg - left_deg) + 1.5f * SECTOR_DEG)) {
+            sector_cm[i] = GOE_FLIGHT_SECTOR_UNKNOWN;
         }
     }
 }

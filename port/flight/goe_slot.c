@@ -26,6 +26,10 @@ void goe_flight_slot_begin(goe_flight_slot_t *slot, uint32_t id, uint32_t time_u
 
 void goe_flight_slot_lose(goe_flight_slot_t *slot) { slot->fresh_track = slot->suspect = slot->remembered = true; }
 
+bool goe_flight_slot_is_unplaced(const goe_flight_slot_t *slot) {
+    return slot->used && (slot->valid & GOE_HAS_POSITION) == 0u;
+}
+
 float goe_flight_slot_radius_m(const goe_flight_slot_t *slot) {
     return 0.5f * sqrtf(goe_flight_square(slot->width_m) + goe_flight_square(slot->length_m));
 }

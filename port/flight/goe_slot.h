@@ -25,6 +25,9 @@ void goe_flight_slot_lose(goe_flight_slot_t *slot);
 /* The circle about the center that contains the outline, as far as it is known. */
 float goe_flight_slot_radius_m(const goe_flight_slot_t *slot);
 
+/* Whether its obstacle was detected and has no position yet. */
+bool goe_flight_slot_is_unplaced(const goe_flight_slot_t *slot);
+
 /* A known one. */
 void goe_flight_slot_shift(goe_flight_slot_t *slot, const float jump_ned_m[3]);
 

@@ -341,6 +341,27 @@ static void a_dead_detector_is_not_a_clear_sky(void) {
     TEST_ASSERT_EQUAL_UINT16(GOE_FLIGHT_SECTOR_UNKNOWN, sector_cm[3]);
 }
 
+/* [F1] GIVEN an obstacle that is detected WHEN it has no position yet THEN it is counted, and its bearing is not clear but unknown. */
+static void a_detection_without_a_position_is_not_a_clear_sky(void) {
+    flown.scene.width_m = flown.scene.length_m = 4.0;
+    flown.scene.height_m = 12.0;
+    goe_flight_assessment_t now = flown_fly(&flown, 0.02);
+    uint16_t sector_cm[GOE_FLIGHT_SECTORS];
+    while (slots_used() == 0 && flown.sample < 100) {
+        now = flown_fly(&flown, 0.02);
+    }
+    TEST_ASSERT_EQUAL(0, now.obstacles);
+    TEST_ASSERT_EQUAL(1, now.unplaced);
+    TEST_ASSERT_EQUAL(-1, now.worst);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_sectors(&flown.flight, 20000u, sector_cm));
+    const double bearing_deg = atan2(flown.scene.x0_m, flown.scene.z0_m) * 180.0 / 3.14159265358979 + 360.0;
+    TEST_ASSERT_EQUAL_UINT16(GOE_FLIGHT_SECTOR_UNKNOWN, sector_cm[(int)(bearing_deg / 5.0 + 0.5) % GOE_FLIGHT_SECTORS]);
+    TEST_ASSERT_EQUAL_UINT16(20001u, sector_cm[3]); /* next to it: in view, nothing there */
+    now = flown_fly(&flown, 3.0);
+    TEST_ASSERT_EQUAL(1, now.obstacles);
+    TEST_ASSERT_EQUAL(0, now.unplaced);
+}
+
 /* GIVEN an obstacle WHEN the own attitude or position is no longer known THEN it cannot be reported. */
 static void without_a_pose_no_obstacle_is_reported(void) {
     goe_flight_obstacle_t obstacle;
@@ -449,6 +470,7 @@ int main(void) {
     RUN_TEST(a_vanished_obstacle_is_given_up);
     RUN_TEST(an_order_does_not_pass_to_the_next_in_its_slot);
     RUN_TEST(a_dead_detector_is_not_a_clear_sky);
+    RUN_TEST(a_detection_without_a_position_is_not_a_clear_sky);
     RUN_TEST(without_a_pose_no_obstacle_is_reported);
     RUN_TEST(early_frames_are_kept_by_the_caller);
     RUN_TEST(an_image_may_come_in_parts);

@@ -299,6 +299,7 @@ mod flight {
             worst: i8,
             avoided: i8,
             obstacles: u8,
+            unplaced: u8,
             needed_s: f32,
             target_ned_m: [f32; 3],
             reason: goe_flight_reason_t,

@@ -518,12 +518,15 @@ pub struct Assessment {
     pub detector_alive: bool,
     /// Samples of attitude and position came within 0.5 s.
     pub pose_alive: bool,
-    /// Slot of the worst obstacle, for [`Flight::obstacle`]. `None` is "clear" only if detector and pose are alive.
+    /// Slot of the worst obstacle, for [`Flight::obstacle`]. `None` is "clear" only if detector and pose are alive and `unplaced`
+    /// is 0.
     pub worst: Option<usize>,
     /// Slot of the obstacle that the action is about, unless it was given up.
     pub avoided: Option<usize>,
     /// Obstacles with a position.
     pub obstacles: u8,
+    /// Detected obstacles without a position: no order avoids them.
+    pub unplaced: u8,
     /// Time that the action needs, or the best one would, s.
     pub needed_s: f32,
     /// Where to, north, east, down, m; `None` without an action.
@@ -559,6 +562,7 @@ impl Assessment {
             worst,
             avoided: slot(c.avoided),
             obstacles: c.obstacles,
+            unplaced: c.unplaced,
             needed_s: c.needed_s,
             target_ned_m: (action != Action::None).then_some(c.target_ned_m),
             reason: OrderReason::of(c.reason),

@@ -245,6 +245,7 @@ layout_flight! {
         worst: 8,
         avoided: 9,
         obstacles: 10,
+        unplaced: 11,
         needed_s: 12,
         target_ned_m: 16,
         reason: 28,

@@ -233,7 +233,8 @@ class Assessment:
     pose_alive: bool
     """Samples of attitude and position came within 0.5 s."""
     worst: int | None
-    """Slot of the worst obstacle, for ``Flight.obstacle``. None is "clear" only if detector and pose are alive."""
+    """Slot of the worst obstacle, for ``Flight.obstacle``. None is "clear" only if detector and pose are alive and
+    ``unplaced`` is 0."""
     avoided: int | None
     """Slot of the obstacle that the action is about, unless it was given up."""
     obstacles: int
@@ -250,7 +251,9 @@ class Assessment:
     """Why this action, or why none."""
     clear_m: float
     """Least distance that the action's path keeps from any known obstacle's circle, with two sigma of its place
-    taken off; -50 to 50 m; 0 without an action to a side."""
+    taken off; at most 1000 m; 0 without an action to a side."""
+    unplaced: int
+    """Detected obstacles without a position: no order avoids them."""
 
 
 class Place(NamedTuple):
@@ -340,7 +343,7 @@ def _assessment_of(c: Any) -> Assessment:
     return Assessment(
         action, c.late, c.suspect, c.detector_alive, c.pose_alive, _slot(c.worst), _slot(c.avoided), c.obstacles,
         c.needed_s, tuple(c.target_ned_m) if action else None, _lat_lon(c.target_lat_e7, c.target_lon_e7),
-        hazard_of(c.hazard) if c.worst >= 0 else None, OrderReason(c.reason), c.clear_m,
+        hazard_of(c.hazard) if c.worst >= 0 else None, OrderReason(c.reason), c.clear_m, c.unplaced,
     )  # fmt: skip
 
 
