@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Compiles the library, the flight layer and its MAVLink messages among other people's macros, and with the poorest C library that
 # it may meet: sqrtf, memcpy, memset and the compiler's own headers, everything undeclared an error. Public headers in C++ too. Macros and
-# declarations concern the front end alone, so no code is generated. gcc reads C99 with this
-# machine's C library, clang GNU C17 with the poor one; with GOE_LONG=1 each reads all four.
+# declarations concern the front end alone, so no code is generated. gcc reads C99 with this machine's C library, clang GNU C17 with the
+# poor one; with GOE_LONG=1 each compiler reads both standards with both libraries.
 set -euo pipefail
 . "$(dirname "$0")/common.sh"
 here=$root/tests/flags
