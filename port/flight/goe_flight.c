@@ -761,7 +761,7 @@ goe_flight_status_t goe_flight_sectors(const goe_flight_t *flight, uint32_t max_
     open_sectors(flight, max_cm, sector_cm);
     for (int i = 0; i < GOE_FLIGHT_SLOTS && attitude; i++) {
         const goe_flight_slot_t *slot = &flight->slot[i];
-        if (goe_flight_slot_is_unplaced(slot) && slot->camera < GOE_CAMERAS_MAX) {
+        if (goe_flight_slot_is_unplaced(slot) && has_camera(flight, slot->camera)) {
             goe_flight_geometry_close_sectors(sector_cm, &flight->camera[slot->camera], attitude->q, slot->box_px);
         }
     }

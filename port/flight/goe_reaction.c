@@ -576,7 +576,7 @@ static bool is_farther_out(const look_t *look, const goe_flight_reaction_t *r, i
 }
 
 /* Whether an obstacle counts for the end of the order. After a climb the aircraft sinks back to its line: the height of that decides. */
-static bool is_known(const look_t *look, int i) {
+static bool counts_at_end(const look_t *look, int i) {
     const goe_flight_reaction_t *r = &look->flight->reaction;
     const bool up = is_up(r->action);
     return up ? goe_flight_clear_counts(look->flight, i, r->from_ned_m[2]) : look->slot[i].counts;
@@ -595,7 +595,7 @@ static bool is_over(const look_t *look, goe_flight_reaction_t *r, bool *behind) 
     own_aside_m = is_up(r->action) ? 0.0f : farthest_aside_m(look, own_aside_m);
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         const float ahead_m = look->slot[i].at_m[0];
-        if (is_known(look, i) && is_in_the_way(look, i, own_aside_m)) {
+        if (counts_at_end(look, i) && is_in_the_way(look, i, own_aside_m)) {
             left = left || i == r->slot;
             waits = true;
             if (ahead_m < least_m && !is_outside(look, r, i)) {

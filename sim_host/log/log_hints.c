@@ -148,20 +148,22 @@ static void print_times(const log_hints_t *hints, const place_t *place) {
     }
 }
 
+static bool is_most(unsigned long count, unsigned long of) { return (double)count > MOST * (double)of; }
+
 static void print_attitude(const log_hints_t *hints, const place_t *place) {
-    const double moves = (double)hints->moves;
+    const unsigned long moves = hints->moves;
     const char *hint = NULL;
-    if (hints->moves < IMAGES_MIN) {
+    if (moves < IMAGES_MIN) {
         return;
     }
-    if ((double)hints->odd > MOST * moves && (double)hints->odd_as_xyzw < (1.0 - MOST) * moves) {
+    if (is_most(hints->odd, moves) && (double)hints->odd_as_xyzw < (1.0 - MOST) * (double)moves) {
         hint = "qw: the attitude does not fit the motion, and does if the quaternion is in the order x, y, z, w: qw is "
                "its real part";
-    } else if ((double)hints->apart > MOST * moves && (double)hints->along_exchanged > MOST * moves) {
+    } else if (is_most(hints->apart, moves) && is_most(hints->along_exchanged, moves)) {
         hint =
             "n_m, e_m: the motion does not fit the heading, and does if the two are exchanged: is east the first? n_m "
             "is north";
-    } else if ((double)hints->apart > MOST * moves && (double)hints->along_inverse > MOST * moves) {
+    } else if (is_most(hints->apart, moves) && is_most(hints->along_inverse, moves)) {
         hint =
             "qw: the attitude does not fit the motion, and its inverse does: the quaternion turns the body's axes into "
             "north, east, down";
@@ -193,7 +195,7 @@ static double strange_ratio(const log_hints_t *hints) {
 
 static void print_heights(const log_hints_t *hints, const place_t *place) {
     const double ratio = hints->heights >= IMAGES_MIN ? strange_ratio(hints) : 0.0;
-    if (ratio < 0.0 || (double)hints->below > MOST * (double)hints->images) {
+    if (ratio < 0.0 || is_most(hints->below, hints->images)) {
         begin(place);
         (void)fprintf(place->stream, "d_m: %s: is it up? d_m is down, negative above the origin\n",
                       ratio < 0.0 ? "it grows as agl_m does" : "the camera is below the ground, and agl_m is empty");
