@@ -19,7 +19,7 @@ No target counts that is farther than GOEP_DIST, lower than GOEP_ALT_MIN, far be
 ]]
 
 local HAZARD = { id = 42702, crc_extra = 62, length = 67 }
-local STATUS = { id = 42703, crc_extra = 89, length = 32 }
+local STATUS = { id = 42703, crc_extra = 89, length = 33 }
 local HEARTBEAT = { id = 0, crc_extra = 50, length = 9 } -- the parser knows it: scripts get it only if the link accepts it
 local KINDS = { [HAZARD.id] = HAZARD, [STATUS.id] = STATUS, [HEARTBEAT.id] = HEARTBEAT }
 local ORDER_FLAG = 0x20

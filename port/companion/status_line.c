@@ -59,6 +59,9 @@ static void add_obstacle(text_line_t *line, const companion_t *c) {
     const int slot = a->avoided >= 0 ? a->avoided : a->worst;
     goe_flight_obstacle_t o;
     add(line, " | obstacles %u", a->obstacles);
+    if (a->unplaced > 0) {
+        add(line, ", %u without a position", a->unplaced);
+    }
     if (a->obstacles == 0 || slot < 0 || goe_flight_obstacle(&c->flight, slot, &o) != GOE_FLIGHT_OK) {
         return;
     }

@@ -57,7 +57,7 @@ static const run_t obstacle[] = {RUN(obstacle, time_usec, time_usec, 8), RUN(obs
 static const run_t hazard[] = {RUN(hazard, time_usec, time_usec, 8), RUN(hazard, id, needed, 4),
                                RUN(hazard, slot, flags, 1)};
 static const run_t status[] = {RUN(status, time_boot_ms, time_boot_ms, 4), RUN(status, taken, delay_max, 2),
-                               RUN(status, obstacles, self_check, 1)};
+                               RUN(status, obstacles, unplaced, 1)};
 static const run_t landing_target[] = {RUN(landing_target, time_usec, time_usec, 8),
                                        RUN(landing_target, angle_x, size_y, 4),
                                        RUN(landing_target, target_num, frame, 1), RUN(landing_target, x, q, 4),

@@ -129,7 +129,7 @@ typedef struct {
 #define GOE_MAVLINK_DETECTOR_ALIVE 0x01u
 #define GOE_MAVLINK_POSE_ALIVE 0x02u
 
-/* Once a second, also with nothing in view: "clear" is no obstacles while both are alive. */
+/* Once a second, also with nothing in view: "clear" is no obstacles while both are alive and unplaced is 0. */
 typedef struct {
     uint32_t time_boot_ms;
     uint16_t taken, late, early, refused, weak, renumbered, evicted, full, resets, lost; /* goe_flight_counters_t */
@@ -138,6 +138,7 @@ typedef struct {
     uint8_t action;     /* goe_flight_action_t */
     uint8_t alive;      /* GOE_MAVLINK_DETECTOR_ALIVE, _POSE_ALIVE */
     uint8_t self_check; /* goe_self_check(): 0 is right */
+    uint8_t unplaced;   /* detected obstacles without a position: no order avoids them; an extension */
 } goe_mavlink_status_t;
 
 /* ------------------------------------------------------------------------------- standard messages, fields as in theirs -- */

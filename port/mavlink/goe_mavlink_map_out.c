@@ -138,6 +138,7 @@ void goe_mavlink_to_status(const goe_flight_counters_t *counters, const goe_flig
     message->lost = counters->lost;
     message->delay_mean = message->delay_max = NO_DELAY;
     message->obstacles = assessment->obstacles;
+    message->unplaced = assessment->unplaced;
     message->action = (uint8_t)assessment->action;
     message->alive = (uint8_t)((assessment->detector_alive ? GOE_MAVLINK_DETECTOR_ALIVE : 0u) |
                                (assessment->pose_alive ? GOE_MAVLINK_POSE_ALIVE : 0u));

@@ -181,6 +181,7 @@ static void the_status_counts(void) {
     const goe_flight_counters_t counters = {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u, 9u, 10u};
     goe_mavlink_status_t m;
     assessment.obstacles = 4u;
+    assessment.unplaced = 2u;
     assessment.action = GOE_FLIGHT_CLIMB;
     assessment.pose_alive = true;
     goe_mavlink_to_status(&counters, &assessment, 0x400u, &own, &m);
@@ -189,6 +190,7 @@ static void the_status_counts(void) {
     TEST_ASSERT_EQUAL_UINT16(65535u, m.delay_mean);
     TEST_ASSERT_EQUAL_UINT16(65535u, m.delay_max);
     TEST_ASSERT_EQUAL_UINT8(4u, m.obstacles);
+    TEST_ASSERT_EQUAL_UINT8(2u, m.unplaced);
     TEST_ASSERT_EQUAL_UINT8(GOE_FLIGHT_CLIMB, m.action);
     TEST_ASSERT_EQUAL_HEX8(GOE_MAVLINK_POSE_ALIVE, m.alive);
     TEST_ASSERT_EQUAL_UINT8(255u, m.self_check); /* never truncated to "right" */

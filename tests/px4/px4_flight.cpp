@@ -193,6 +193,7 @@ static void compare_obstacle(const goe_flight_obstacle_t &o, const goe_obstacle_
 void Px4Flight::compare(const goe_flight_assessment_t &assessment, const goe_status_s &topic) {
     TEST_ASSERT_EQUAL(assessment.action, topic.action);
     TEST_ASSERT_EQUAL(assessment.obstacles, topic.obstacles);
+    TEST_ASSERT_EQUAL(assessment.unplaced, topic.unplaced);
     TEST_ASSERT_EQUAL(assessment.worst, topic.worst);
     TEST_ASSERT_EQUAL(assessment.detector_alive, topic.detector_alive);
     TEST_ASSERT_EQUAL(assessment.pose_alive, topic.pose_alive);

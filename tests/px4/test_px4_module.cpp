@@ -510,6 +510,8 @@ static void the_words_are_those_of_the_numbers() {
     TEST_ASSERT_TRUE(says(line_of(overview, 6), "NOT KNOWN"));
     overview.status.pose_alive = true;
     TEST_ASSERT_FALSE(says(line_of(overview, 6), "NOT KNOWN"));
+    overview.status.unplaced = 2;
+    TEST_ASSERT_TRUE(says(line_of(overview, 6), "NOT KNOWN, 0 of 4, 2 without a position"));
 }
 
 static void it_starts_once_and_explains_itself() {

@@ -233,6 +233,7 @@ void status(const goe_flight_t &flight, const goe_flight_assessment_t &assessmen
     topic.detector_alive = assessment.detector_alive;
     topic.pose_alive = assessment.pose_alive;
     topic.obstacles = assessment.obstacles;
+    topic.unplaced = assessment.unplaced;
     topic.worst = assessment.worst;
     topic.avoided = assessment.avoided;
     topic.action = static_cast<uint8_t>(assessment.action);

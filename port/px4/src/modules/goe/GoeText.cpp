@@ -67,9 +67,10 @@ void report_images(const goe_status_s &s, char *line) {
 
 void report_tracks(const goe_status_s &s, char *line) {
     const bool nothing = s.obstacles == 0;
-    snprintf(line, GOE_TEXT_LINE, "obstacles  %s%u of %d; tracks ended by resets: %u, no room for %u",
-             nothing && !(s.detector_alive && s.pose_alive) ? "NOT KNOWN, " : "", s.obstacles, GOE_FLIGHT_SLOTS, s.lost,
-             s.full);
+    snprintf(line, GOE_TEXT_LINE,
+             "obstacles  %s%u of %d, %u without a position; tracks ended by resets: %u, no room for %u",
+             nothing && !(s.detector_alive && s.pose_alive && s.unplaced == 0) ? "NOT KNOWN, " : "", s.obstacles,
+             GOE_FLIGHT_SLOTS, s.unplaced, s.lost, s.full);
 }
 
 const char *phase_text(uint8_t phase) {
