@@ -149,6 +149,15 @@ static bool default_path(char **path, const char *directory, const char *name, c
     return true;
 }
 
+/* The last value of --set if it can be no setting: the log's folder, after a --set without a value. */
+static const char *taken_by_set(const options_t *options) {
+    const char *last = NULL;
+    for (size_t i = 0; options->set != NULL && options->set[i] != NULL; i++) {
+        last = options->set[i];
+    }
+    return last != NULL && strchr(last, '=') == NULL ? last : NULL;
+}
+
 static bool is_file(const char *path) {
     struct stat status;
     return stat(path, &status) == 0 && S_ISREG(status.st_mode);
@@ -170,6 +179,13 @@ static bool parse_arguments(poptContext context, const struct poptOption *table,
     const char *surplus = poptPeekArg(context);
     if (surplus != NULL) {
         return complain(surplus, "one folder at a time");
+    }
+    if (directory == NULL && taken_by_set(options) != NULL) {
+        setting_fault_t fault;
+        goe_settings_t unused;
+        goe_settings_default(&unused);
+        (void)setting_assign(&unused, taken_by_set(options), &fault);
+        return complain("--set", fault.text);
     }
     if (directory != NULL && is_file(directory)) {
         char reason[CHOICE_FAULT_MAX];

@@ -96,6 +96,17 @@ static void append(setting_fault_t *fault, const char *text) {
     (void)snprintf(fault->text + used, sizeof fault->text - used, "%s", text);
 }
 
+/* The setting whose group was left out; null if there is none. */
+static const char *without_group(const char *name, size_t length) {
+    for (size_t i = 0; i < count_tuned(); i++) {
+        const char *dot = strrchr(settings_by_name[i].name, '.');
+        if (dot != NULL && strlen(dot + 1) == length && strncmp(dot + 1, name, length) == 0) {
+            return settings_by_name[i].name;
+        }
+    }
+    return NULL;
+}
+
 static bool list_names(const char *name, size_t length, setting_fault_t *fault) {
     const excerpt_t excerpt = excerpt_of(name, length);
     const char *now = renamed_name(name, length);
@@ -107,9 +118,10 @@ static bool list_names(const char *name, size_t length, setting_fault_t *fault) 
     for (size_t i = 0; i < count_tuned(); i++) {
         nearest_name_try(&nearest, settings_by_name[i].name);
     }
-    if (nearest.name != NULL) {
+    const char *full = without_group(name, length);
+    if (full != NULL || nearest.name != NULL) {
         (void)snprintf(fault->text, sizeof fault->text, "'%s' is no setting; did you mean %s?", excerpt.text,
-                       nearest.name);
+                       full != NULL ? full : nearest.name);
         return false;
     }
     (void)snprintf(fault->text, sizeof fault->text, "'%s' is no setting; there are ", excerpt.text);

@@ -906,6 +906,7 @@ BAD_USAGE = [
     (["--set", "refined.gate_sigma=4"], "--set: unknown setting refined.gate_sigma: now filter.gate_sigma"),
     (["--set"], "--set: missing argument"),
     (["--set", ""], "--set: '' is no setting; there are navigation.attitude_bias_sd_deg, "),
+    (["--set", "box_noise_px=1"], "--set: 'box_noise_px' is no setting; did you mean detector.box_noise_px?"),
     (["--set", "pixel_px=1"], "--set: 'pixel_px' is no setting; there are navigation.attitude_bias_sd_deg, "),
     (["--set", "detector.point_p=1"], "--set: 'detector.point_p' is no setting; did you mean detector.point_noise_px?"),
     (
@@ -954,6 +955,10 @@ def test_bad_usage(log: Path, options: list[str], reason: str) -> None:
 
 def test_no_arguments() -> None:
     assert "name the log's folder" in call(check=2).stderr
+
+
+def test_set_without_a_value_takes_the_folder(log: Path) -> None:
+    assert f"--set: '{str(log)[:3]}" in call("--set", log, check=2).stderr
 
 
 def test_help_and_version() -> None:
