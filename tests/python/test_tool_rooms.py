@@ -41,7 +41,8 @@ FLOORS = {
     ),
     "ci": (
         ("__init__",),
-        ("affected", "cost", "embed_logs", "packages", "settings_header", "settings_table", "tidy_commands"),
+        ("settings_header",),
+        ("affected", "cost", "embed_logs", "packages", "settings_table", "tidy_commands"),
         ("evidence",),
         ("__main__",),
     ),

@@ -27,7 +27,12 @@ NAMED = {  # defaults that are no numbers
     "GOE_WINDOW_DEFAULT": "8 (at most GOE_WINDOW_MAX)",
 }
 CENTER = ("camera.cx_px", "camera.cy_px")  # 0 is in their range, and wrong
-MUST_BE_SET = "no default: must be set"
+MUST_BE_SET = "must be set"
+
+
+def must_be_set(path: str, value: float, low: float) -> bool:
+    """A default below the range, or one that is in it and wrong, means that the user must set it."""
+    return value < low or path in CENTER
 
 
 @dataclass(frozen=True)
@@ -56,8 +61,8 @@ class Field:
             return f"default {NAMED[self.value]}"
         if self.kind == "TRUTH":
             return f"default {'true' if self.value == '1' else 'false'}"
-        is_outside = float(plain(self.value)) < float(plain(self.low))
-        return MUST_BE_SET if is_outside or self.path in CENTER else f"default {plain(self.value)}"
+        required = must_be_set(self.path, *(float(plain(number)) for number in (self.value, self.low)))
+        return f"no default: {MUST_BE_SET}" if required else f"default {plain(self.value)}"
 
     @property
     def comment(self) -> str:

@@ -17,6 +17,8 @@ from pathlib import Path
 from goe_tools.logs.marked_block import MarkedBlock
 from goe_tools.places import ROOT
 
+from .settings_header import MUST_BE_SET, must_be_set
+
 TABLE = MarkedBlock("settings")
 MANUAL = ROOT / "lib" / "README.md"
 
@@ -32,9 +34,7 @@ class Setting:
 
     @property
     def default(self) -> str:
-        """A default outside its range means that the user must set it."""
-        inside = float(self.low) <= float(self.value) <= float(self.high)
-        return self.value if inside and self.name not in ("camera.cx_px", "camera.cy_px") else "must be set"
+        return MUST_BE_SET if must_be_set(self.name, float(self.value), float(self.low)) else self.value
 
     @property
     def limit(self) -> str:
