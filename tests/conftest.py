@@ -1,10 +1,11 @@
 """For all tests: programs started here receive interrupts, even if the caller of pytest ignores them; those marked
-``release`` run with GOE_LONG=1 alone."""
+``release`` run with GOE_LONG=1 alone. After the time GOE_TESTS_END (seconds since 1970) no further test begins."""
 
 from __future__ import annotations
 
 import os
 import signal
+import time
 
 import pytest
 
@@ -19,3 +20,9 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         later = [item for item in items if item.get_closest_marker("release")]
         config.hook.pytest_deselected(items=later)
         items[:] = [item for item in items if item not in set(later)]
+
+
+def pytest_runtest_setup() -> None:
+    end = os.environ.get("GOE_TESTS_END")
+    if end and time.time() > float(end):
+        pytest.skip("no time left in a quick run")

@@ -4,7 +4,8 @@
 #
 #   tools/test.sh           everything
 #   tools/test.sh --quick   build, unit tests, golden hashes, and the Python tests that the latest changes affect: those
-#                           since the branch main, or since GOE_SINCE; on main since the commit before
+#                           since the branch main, or since GOE_SINCE; on main since the commit before. After 150 s no
+#                           further test begins; the skipped ones are counted
 #
 # Two steps run at a time. A line for each appears when it has ended, with its own time and that of the processors. Every step's full
 # output is kept in .cache/test/. Ctrl-C ends all that runs. GOE_KITTI_DIR names a folder of recorded flights to compare goe_replay
@@ -42,6 +43,7 @@ skipped=()
 missing=()
 side_by_side=2
 tail_lines=60
+quick_s=150 # of a quick run, after which no further Python test begins
 
 log_of() { echo "$logs/$(tr -c '[:alnum:]\n' _ <<<"$1").log"; }
 
@@ -283,13 +285,15 @@ test_replay_sanitized() { GOE_REPLAY=$root/$sanitized/sim_host/goe_replay run_py
 test_companion_sanitized() {
     GOE_COMPANION=$root/$sanitized/port/companion/goe_companion run_pytest tests/companion/test_companion_disturbed.py
 }
+# pytest_affected <part>: 0 or 1, every second file. No test may be left.
 pytest_affected() {
-    local files
-    mapfile -t files < <("$python" -m ci affected)
+    local files status=0
+    mapfile -t files < <("$python" -m ci affected | awk "NR % 2 == $1")
     if [ ${#files[@]} = 0 ]; then
         echo "the change affects no test in Python"
     else
-        run_pytest "${files[@]}"
+        GOE_TESTS_END=$tests_end run_pytest "${files[@]}" || status=$?
+        [ "$status" = 5 ] || return "$status"
     fi
 }
 run_pytest() { "$python" -m pytest -q -rfEs --rootdir "$root" -p no:cacheprovider -c tools/pyproject.toml "$@"; }
@@ -313,8 +317,12 @@ if $quick; then
     add "ruff" "$python" -m ruff check --config tools/pyproject.toml tools tests port/python
     shows='tests passed' add "unit tests" ctest --preset default -L unit -j "$jobs"
     add "golden hashes" ctest --test-dir build/tests/targets --output-on-failure -R '^(flight_)?replay$'
-    shows='(passed|failed|skipped).* in [0-9.]+|affects no test' add "affected Python tests" pytest_affected
+    tests_end=$(($(date +%s) - SECONDS + quick_s))
+    for part in 1 0; do
+        shows='(passed|failed|skipped).* in [0-9.]+|affects no test' add "affected Python tests, part $part" pytest_affected $part
+    done
     run_steps
+    while read -r reason; do skip "pytest: $reason"; done < <(sed -n 's/^SKIPPED //p' $logs/affected*.log)
     finish
 fi
 
@@ -346,28 +354,11 @@ fi
 # The longest first, in one process. tests/host and the hostile senders run below, with the sanitizers.
 shows='(passed|failed|skipped).* in [0-9.]+' add "pytest" run_pytest tests \
     --ignore=tests/host --ignore=tests/companion/test_companion_disturbed.py
-if has cppcheck && has gcc; then
-    shows='MISSED' add "MISRA C:2012, gcc -fanalyzer" "$python" -m ci evidence --quick --only misra --only analyzers --jobs 1
-else
-    lacks "MISRA C:2012 and gcc -fanalyzer (no cppcheck or gcc)"
-fi
 if [ -n "${GOE_LONG:-}" ] && has frama-c; then
     add "proof: quick part" "$python" -m ci evidence --quick --only proof --jobs 1
 elif [ -n "${GOE_LONG:-}" ]; then
     lacks "proof (no frama-c)"
 fi
-left_out=release
-[ -z "${GOE_LONG:-}" ] || left_out=nothing
-shows='tests passed|Total Test time' add "ctest: targets" \
-    ctest --test-dir build/tests/targets -LE "$left_out" --output-on-failure -j "$jobs" # under QEMU
-if has arm-none-eabi-gcc && has qemu-system-arm && has riscv64-unknown-elf-gcc && has qemu-system-riscv32; then
-    # Of the builds that ctest has made, three targets; a release measures all.
-    after="ctest: targets" add "cost ledger" "$python" -m ci ledger --check m4f-gcc-os m4f-gcc-o2 m0plus-gcc-os
-    after="cost ledger" add "cost of the flight layer" "$python" -m ci flight_cost
-else
-    lacks "cost ledger (needs the ARM and RISC-V compilers and QEMU)"
-fi
-shows='tests passed|Total Test time' add "ctest: all but targets" ctest --preset default -LE "targets|$left_out" -j "$jobs"
 # One build of clang counts what the unit tests reach, and has the sanitizers. Without clang gcc's has them.
 sanitized=build-asan
 sanitizers=sanitizers
@@ -393,6 +384,23 @@ fi
 after=$sanitizers add "sanitizers: goe_replay on logs" replay_sanitized
 shows=passed after=$sanitizers add "sanitizers: goe_replay on bad input" test_replay_sanitized
 shows=passed after=$sanitizers add "sanitizers: goe_companion and hostile senders" test_companion_sanitized
+left_out=release
+[ -z "${GOE_LONG:-}" ] || left_out=nothing
+shows='tests passed|Total Test time' add "ctest: targets" \
+    ctest --test-dir build/tests/targets -LE "$left_out" --output-on-failure -j "$jobs" # under QEMU
+if has arm-none-eabi-gcc && has qemu-system-arm && has riscv64-unknown-elf-gcc && has qemu-system-riscv32; then
+    # Of the builds that ctest has made, three targets; a release measures all.
+    after="ctest: targets" add "cost ledger" "$python" -m ci ledger --check m4f-gcc-os m4f-gcc-o2 m0plus-gcc-os
+    after="cost ledger" add "cost of the flight layer" "$python" -m ci flight_cost
+else
+    lacks "cost ledger (needs the ARM and RISC-V compilers and QEMU)"
+fi
+shows='tests passed|Total Test time' add "ctest: all but targets" ctest --preset default -LE "targets|$left_out" -j "$jobs"
+if has cppcheck && has gcc; then
+    shows='MISSED' add "MISRA C:2012, gcc -fanalyzer" "$python" -m ci evidence --quick --only misra --only analyzers --jobs 1
+else
+    lacks "MISRA C:2012 and gcc -fanalyzer (no cppcheck or gcc)"
+fi
 run_steps
 
 while read -r name; do

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -31,6 +33,23 @@ def test_a_named_file_and_the_library_affect_their_tests() -> None:
     assert "tests/python/test_affected.py" in affected.affected({"any/named_here.csv"})
     assert set(affected.LIBRARY_TESTS) <= set(affected.affected({"lib/refined/goe_refined.c"}))
     assert affected.affected({"nothing_names_this.xyz"[::-1]}) == []
+
+
+def test_a_page_affects_its_own_tests_and_those_of_all_pages() -> None:
+    found = affected.affected({"README.md", "tests/python/test_words.py"})
+    assert found[0] == "tests/python/test_words.py"
+    assert {*affected.PAGE_TESTS, "tests/python/test_view_command.py"} <= set(found)
+    assert "tests/python/test_lies.py" not in found
+
+
+def test_after_its_time_a_quick_run_begins_no_test() -> None:
+    one = f"{Path(__file__)}::{test_a_changed_test_affects_itself_alone.__name__}"
+    words = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", one]
+    for end_s, outcome in (("1", "1 skipped"), ("1e12", "1 passed")):
+        done = subprocess.run(
+            words, cwd=ROOT / "tests", capture_output=True, text=True, env={**os.environ, "GOE_TESTS_END": end_s}
+        )
+        assert outcome in done.stdout
 
 
 def test_changes_are_those_of_commits_work_tree_and_new_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -34,7 +34,7 @@ OWN = [
     "cat",
     "cut",
 ]
-STEPS = {"build", "ruff", "unit tests", "golden hashes", "affected Python tests"}
+STEPS = {"build", "ruff", "unit tests", "golden hashes", *(f"affected Python tests, part {part}" for part in (0, 1))}
 
 
 class Checkout:

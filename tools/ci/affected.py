@@ -1,8 +1,9 @@
 """Python tests that a change affects: ``python -m ci affected`` prints their files for ``tools/test.sh --quick``.
 
 A test file is affected if it changed, if it imports a changed module, directly or through one other module, or if
-it names a changed file. A change of the library or the flight layer also affects the tests of the package goe. Deeper
-dependencies are covered by the whole run only.
+it names a changed file. A change of the library or the flight layer also affects the tests of the package goe, and a
+change of a page the tests of all pages. Deeper dependencies are covered by the whole run only. The changed tests come
+first.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ IMPORTED_FROM = (ROOT / "tools", ROOT / "tests" / "python")
 DEPTH = 2  # longest chain of imports from a test to a changed module
 LIBRARY = ("lib/", "port/flight/", "port/python/")
 LIBRARY_TESTS = ("tests/python/test_port_python.py", "tests/python/test_port_python_golden.py")
+PAGE_TESTS = ("tests/python/test_words.py", "tests/python/test_readme_commands.py")
 
 
 def git(*arguments: str) -> list[str]:
@@ -73,6 +75,16 @@ def imports() -> dict[Path, set[Path]]:
     }
 
 
+def names_of(path: str) -> tuple[str, ...]:
+    """What a test calls the file: its name, or that of a page with its folder."""
+    parts = ("ROOT", *Path(path).parts)
+    if parts[-1] == "CMakeLists.txt":
+        return ()
+    if parts[-1] == "README.md":
+        return f"{parts[-2]}/README.md", f'{parts[-2]}" / "README.md"', f'{parts[-2]} / "README.md"'
+    return (parts[-1],)
+
+
 def affected(paths: set[str]) -> list[str]:
     """Test files that these changes affect."""
     by_name, uses = modules(), imports()
@@ -80,11 +92,14 @@ def affected(paths: set[str]) -> list[str]:
     hit = {ROOT / path for path in paths}
     for _ in range(DEPTH):
         hit |= {path for path, used in uses.items() if used & hit}
-    names = {Path(path).name for path in paths} - {"README.md", "CMakeLists.txt"}
+    names = {name for path in paths for name in names_of(path)}
     found = (tests & hit) | {test for test in tests if any(name in test.read_text(encoding="utf-8") for name in names)}
     if any(path.startswith(LIBRARY) for path in paths):
         found |= {ROOT / path for path in LIBRARY_TESTS}
-    return sorted(str(path.relative_to(ROOT)) for path in found)
+    if any(path.endswith(".md") for path in paths):
+        found |= {ROOT / path for path in PAGE_TESTS}
+    ordered = sorted(str(path.relative_to(ROOT)) for path in found)
+    return sorted(ordered, key=lambda path: path not in paths)
 
 
 def add_arguments(_: argparse.ArgumentParser) -> None:
