@@ -120,7 +120,7 @@ bool several_campaign(int flights, uint64_t first, uint64_t step, bool lists, bo
         (void)snprintf(name, sizeof name, "%.1f s", obey_s[i]);
         print_row("obeyed after ", name, &by_obey[i]);
     }
-    print_row("next to its line", "", &by_autopilot[0]);
+    print_row("flying straight on", "", &by_autopilot[0]);
     print_row("about the target", "", &by_autopilot[1]);
     puts("");
     puts("| goal | missed by | |");
