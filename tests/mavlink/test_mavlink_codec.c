@@ -69,7 +69,8 @@ static void frames_are_those_of_others(void) {
     goe_mavlink_sender_t other = {1u, 158u, 255u};
     any_message_t fields;
     memset(&fields, 0, sizeof fields);
-    const goe_mavlink_status_t status = {123456789u, 1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u, 9u, 10u, 11u, 12u, 2u, 3u, 3u, 0u, 0u};
+    const goe_mavlink_status_t status = {123456789u, 1u,  2u,  3u,  4u, 5u, 6u, 7u, 8u,
+                                         9u,         10u, 11u, 12u, 2u, 3u, 3u, 0u, 0u};
     fields.status = status;
     check_frame(&sender, GOE_MAVLINK_STATUS, &fields, status_frame, sizeof status_frame);
     fields.features = some_features();
