@@ -24,40 +24,55 @@ static bool is_same(const goe_flight_candidate_t *candidate, const goe_flight_ca
     return seen->id != 0u || goe_flight_candidate_overlap(candidate->box_px, seen->box_px) >= OVERLAP_MIN;
 }
 
-static goe_flight_candidate_t *find(goe_flight_candidate_t *table, const goe_flight_candidate_t *seen) {
-    for (int i = 0; i < GOE_FLIGHT_CANDIDATES; i++) {
-        if (is_same(&table[i], seen)) {
-            return &table[i];
-        }
-    }
-    return NULL;
+bool goe_flight_candidate_waits(const goe_flight_candidate_t *candidate, uint32_t time_us) {
+    return candidate->images != 0 && goe_flight_between_us(time_us, candidate->time_us) <= APART_US;
 }
 
-static goe_flight_candidate_t *take_place(goe_flight_candidate_t *table, uint32_t time_us) {
-    goe_flight_candidate_t *oldest = &table[0];
+/* Its place in the table; none: GOE_FLIGHT_CANDIDATES. */
+static int find(const goe_flight_candidate_t *table, const goe_flight_candidate_t *seen) {
+    int i = 0;
+    while (i < GOE_FLIGHT_CANDIDATES && !is_same(&table[i], seen)) {
+        i++;
+    }
+    return i;
+}
+
+/* A free place, or that of the candidate undetected for the longest. */
+static int place_for(const goe_flight_candidate_t *table, uint32_t time_us) {
+    int oldest = 0;
     for (int i = 0; i < GOE_FLIGHT_CANDIDATES; i++) {
-        goe_flight_candidate_t *other = &table[i];
-        if (other->images == 0) {
-            return other;
+        if (table[i].images == 0) {
+            return i;
         }
-        if (goe_flight_between_us(time_us, other->time_us) > goe_flight_between_us(time_us, oldest->time_us)) {
-            oldest = other;
+        if (goe_flight_between_us(time_us, table[i].time_us) > goe_flight_between_us(time_us, table[oldest].time_us)) {
+            oldest = i;
         }
     }
     return oldest;
 }
 
+bool goe_flight_candidate_displaces(const goe_flight_candidate_t table[GOE_FLIGHT_CANDIDATES],
+                                    const goe_flight_candidate_t *seen) {
+    return find(table, seen) == GOE_FLIGHT_CANDIDATES &&
+           goe_flight_candidate_waits(&table[place_for(table, seen->time_us)], seen->time_us);
+}
+
+void goe_flight_candidate_return(goe_flight_candidate_t table[GOE_FLIGHT_CANDIDATES],
+                                 const goe_flight_candidate_t *seen) {
+    goe_flight_candidate_t *candidate = &table[place_for(table, seen->time_us)];
+    *candidate = *seen;
+    candidate->images = 1;
+}
+
 bool goe_flight_candidate_confirm(goe_flight_candidate_t table[GOE_FLIGHT_CANDIDATES],
                                   const goe_flight_candidate_t *seen, int images) {
-    goe_flight_candidate_t *candidate = find(table, seen);
-    uint8_t before = 0;
-    if (!candidate) {
-        candidate = take_place(table, seen->time_us);
-    } else if (goe_flight_between_us(seen->time_us, candidate->time_us) <= 0) {
+    const int found = find(table, seen);
+    goe_flight_candidate_t *candidate = &table[found < GOE_FLIGHT_CANDIDATES ? found : place_for(table, seen->time_us)];
+    const bool known = found < GOE_FLIGHT_CANDIDATES;
+    if (known && goe_flight_between_us(seen->time_us, candidate->time_us) <= 0) {
         return false; /* twice in one image */
-    } else {
-        before = candidate->images;
     }
+    const uint8_t before = known ? candidate->images : 0;
     *candidate = *seen;
     candidate->images = (uint8_t)(before + 1);
     if (candidate->images < images) {

@@ -7,6 +7,17 @@
 /* Share of the union of two boxes (left, top, right, bottom) that both cover, 0 to 1. */
 float goe_flight_candidate_overlap(const int16_t a[4], const int16_t b[4]);
 
+/* Whether a detection waits in this place: its obstacle has no slot, and was detected at most a second before the time. */
+bool goe_flight_candidate_waits(const goe_flight_candidate_t *candidate, uint32_t time_us);
+
+/* Whether this detection is new, and takes the place of one that still waits. */
+bool goe_flight_candidate_displaces(const goe_flight_candidate_t table[GOE_FLIGHT_CANDIDATES],
+                                    const goe_flight_candidate_t *seen);
+
+/* A confirmed detection found no slot: it waits again, and is confirmed again by the next images. */
+void goe_flight_candidate_return(goe_flight_candidate_t table[GOE_FLIGHT_CANDIDATES],
+                                 const goe_flight_candidate_t *seen);
+
 /* One more image of this detection, by its id or, without one, its box. Returns true once it was detected in `images` of them: it is
  * no candidate any more. The table is fixed: when it is full, the candidate undetected for the longest is forgotten. */
 bool goe_flight_candidate_confirm(goe_flight_candidate_t table[GOE_FLIGHT_CANDIDATES],

@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "goe_candidate.h"
 #include "goe_clock.h"
 #include "goe_flight_maths.h"
 #include "goe_flight_seal.h"
@@ -23,10 +24,11 @@
 #define LONGITUDE_MAX_E7 1800000000
 #define STALE_MAX 16 /* samples in a row that are not newer: the clock was set back */
 #define POSE_ALIVE_S 0.5f
+#define CROWDED_US 1000000 /* for which a detection without a place counts, as one of a candidate */
 #define SECTOR_MAX_CM 65000u
 #define NOBODY (-1)
 /* Of an obstacle, as goe_flight.h lists it. */
-#define TOLD (GOE_HAS_POSITION | GOE_HAS_HEIGHT | GOE_HAS_WIDTH | GOE_HAS_LENGTH | GOE_HAS_ORIENTATION)
+#define REPORTED (GOE_HAS_POSITION | GOE_HAS_HEIGHT | GOE_HAS_WIDTH | GOE_HAS_LENGTH | GOE_HAS_ORIENTATION)
 
 /* ---------------------------------------------------------------------------------------------------------- settings -- */
 
@@ -113,7 +115,7 @@ static void forget(goe_flight_t *flight) {
     memset(flight->velocity_ned_m_s, 0, sizeof flight->velocity_ned_m_s);
     goe_flight_reaction_clear(&flight->reaction);
     flight->had_frame = 0;
-    flight->origin_known = false;
+    flight->origin_known = flight->crowded = false;
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         goe_flight_slot_begin(&flight->slot[i], 0u, 0u);
         flight->slot[i].used = false;
@@ -572,6 +574,24 @@ static void report_action(const goe_flight_t *flight, goe_flight_assessment_t *r
     }
 }
 
+/* Whether detections of the last second had no place at all: they may be anywhere in the view. */
+static bool is_crowded(const goe_flight_t *flight) {
+    return flight->crowded &&
+           goe_flight_between_us(flight->capture_us, flight->crowded_us) <= CROWDED_US;
+}
+
+/* Detected obstacles without a position: with a slot, or waiting for one. */
+static uint8_t count_unplaced(const goe_flight_t *flight) {
+    int count = is_crowded(flight) ? 1 : 0;
+    for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+        count += goe_flight_slot_is_unplaced(&flight->slot[i]) ? 1 : 0;
+    }
+    for (int i = 0; i < GOE_FLIGHT_CANDIDATES; i++) {
+        count += goe_flight_candidate_waits(&flight->candidate[i], flight->capture_us) ? 1 : 0;
+    }
+    return (uint8_t)count;
+}
+
 static void report(const goe_flight_t *flight, int worst, uint32_t now_us, goe_flight_assessment_t *result) {
     result->detector_alive = detector_alive(flight, now_us);
     result->pose_alive = pose_alive(flight, now_us);
@@ -579,8 +599,8 @@ static void report(const goe_flight_t *flight, int worst, uint32_t now_us, goe_f
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         const goe_flight_slot_t *slot = &flight->slot[i];
         result->obstacles = (uint8_t)(result->obstacles + (slot->assessed ? 1 : 0));
-        result->unplaced = (uint8_t)(result->unplaced + (goe_flight_slot_is_unplaced(slot) ? 1 : 0));
     }
+    result->unplaced = count_unplaced(flight);
     if (worst != NOBODY) {
         copy_hazard(&flight->slot[worst], &result->hazard);
         result->suspect = flight->slot[worst].suspect;
@@ -704,7 +724,7 @@ goe_flight_status_t goe_flight_obstacle(const goe_flight_t *flight, int slot, go
     }
     const goe_flight_slot_t *one = &flight->slot[slot];
     obstacle->id = one->id;
-    obstacle->valid = one->valid & TOLD;
+    obstacle->valid = one->valid & REPORTED;
     obstacle->model = one->model <= GOE_MODEL_PRISM ? (goe_model_t)one->model : GOE_MODEL_NONE;
     obstacle->suspect = one->suspect;
     obstacle->in_view = one->in_view;
@@ -733,7 +753,7 @@ static bool is_passed_over(const goe_flight_t *flight, const goe_flight_slot_t *
 static void open_sectors(const goe_flight_t *flight, uint32_t max_cm, uint16_t sector_cm[GOE_FLIGHT_SECTORS]) {
     const goe_flight_history_attitude_t *attitude = goe_flight_history_newest_attitude(&flight->history);
     const uint32_t now_us = flight->assessed_us;
-    const bool alive = pose_alive(flight, now_us);
+    const bool alive = pose_alive(flight, now_us) && !is_crowded(flight);
     for (int i = 0; i < GOE_FLIGHT_SECTORS; i++) {
         sector_cm[i] = GOE_FLIGHT_SECTOR_UNKNOWN;
     }
@@ -743,6 +763,22 @@ static void open_sectors(const goe_flight_t *flight, uint32_t max_cm, uint16_t s
         if (alive && camera_alive(flight, i, now_us) &&
             goe_flight_geometry_view(&flight->camera[i], attitude->q, &from_deg, &width_deg)) {
             goe_flight_geometry_open_sectors(sector_cm, max_cm, from_deg, width_deg);
+        }
+    }
+}
+
+/* Where an obstacle was detected that has no position. */
+static void close_sectors(const goe_flight_t *flight, const float q[4], uint16_t sector_cm[GOE_FLIGHT_SECTORS]) {
+    for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+        const goe_flight_slot_t *slot = &flight->slot[i];
+        if (goe_flight_slot_is_unplaced(slot) && has_camera(flight, slot->camera)) {
+            goe_flight_geometry_close_sectors(sector_cm, &flight->camera[slot->camera], q, slot->box_px);
+        }
+    }
+    for (int i = 0; i < GOE_FLIGHT_CANDIDATES; i++) {
+        const goe_flight_candidate_t *candidate = &flight->candidate[i];
+        if (goe_flight_candidate_waits(candidate, flight->capture_us) && has_camera(flight, candidate->camera)) {
+            goe_flight_geometry_close_sectors(sector_cm, &flight->camera[candidate->camera], q, candidate->box_px);
         }
     }
 }
@@ -759,11 +795,8 @@ goe_flight_status_t goe_flight_sectors(const goe_flight_t *flight, uint32_t max_
     const goe_flight_history_attitude_t *attitude = goe_flight_history_newest_attitude(&flight->history);
     const goe_flight_history_position_t *own = goe_flight_history_newest_position(&flight->history);
     open_sectors(flight, max_cm, sector_cm);
-    for (int i = 0; i < GOE_FLIGHT_SLOTS && attitude; i++) {
-        const goe_flight_slot_t *slot = &flight->slot[i];
-        if (goe_flight_slot_is_unplaced(slot) && has_camera(flight, slot->camera)) {
-            goe_flight_geometry_close_sectors(sector_cm, &flight->camera[slot->camera], attitude->q, slot->box_px);
-        }
+    if (attitude) {
+        close_sectors(flight, attitude->q, sector_cm);
     }
     for (int i = 0; i < GOE_FLIGHT_SLOTS && attitude && own; i++) {
         const goe_flight_slot_t *slot = &flight->slot[i];

@@ -30,7 +30,7 @@
  * Cost        On a Cortex-M4F (gcc), in instructions: a sample at most 1,250; a frame 44,700 for each obstacle in it; an assessment
  *             28,700 with one obstacle and 23,200 for each further one with a position. While there is a hazard or an order, an
  *             assessment also examines paths: at most 3 times (4 + 4 GOE_FLIGHT_SLOTS), each against every obstacle.
- *             goe_flight_obstacle() 980; goe_flight_sectors() 6,900; goe_flight_init() 12,700 for each slot. No loop runs longer
+ *             goe_flight_obstacle() 980; goe_flight_sectors() 7,000; goe_flight_init() 12,700 for each slot. No loop runs longer
  *             than GOE_FLIGHT_SECTORS.
  * Failure     A call that returns a negative status, or GOE_FLIGHT_TOO_NEW, changes nothing except counters, with two exceptions:
  *             after a failed goe_flight_init() *flight cannot be used, and the 16th GOE_FLIGHT_BAD_TIME in a row calls
@@ -213,7 +213,8 @@ typedef enum {
 /* The reason of the action. */
 typedef enum {
     GOE_FLIGHT_REASON_NONE = 0,  /* no order is given, and none is withheld */
-    GOE_FLIGHT_REASON_CLEAR = 1, /* the path of the order is clear of all known obstacles */
+    GOE_FLIGHT_REASON_CLEAR = 1, /* the path of the order is clear of all known obstacles. With loiter_m 0 that path goes on
+                                    along the order line: an aircraft that turns elsewhere at the target leaves it */
     GOE_FLIGHT_REASON_LEAST_BAD = 2, /* no path is clear: the order has the largest distance that was found */
     /* an order is due and withheld, because the aircraft ... */
     GOE_FLIGHT_REASON_LOW = 3,   /* is lower than order_height_m */
@@ -242,7 +243,8 @@ typedef struct {
                               pose are alive and unplaced is 0 */
     int8_t avoided;        /* slot of the obstacle that the action avoids; -1: none, or its track has ended */
     uint8_t obstacles;     /* number of obstacles with a position */
-    uint8_t unplaced;      /* number of detected obstacles without a position: no order avoids them */
+    uint8_t unplaced;      /* number of detected obstacles without a position, also those that wait for confirmation or for
+                              a slot: no order avoids them */
     float needed_s;        /* time that the action needs; without an action, time that the best action would need; 0
                               without a worst obstacle */
     float target_ned_m[3]; /* 0 if GOE_FLIGHT_NONE. The height of CLIMB and GO_AROUND clears the highest known top on
@@ -397,6 +399,8 @@ typedef struct {
     uint8_t ground_source; /* that source: GOE_FLIGHT_RANGE_FINDER, ... */
     uint8_t had_frame; /* bit i: camera i has had a frame */
     goe_flag_t origin_known;
+    goe_flag_t crowded; /* detections had neither a slot nor a place among the candidates, last at crowded_us */
+    uint32_t crowded_us;
     int32_t origin_lat_e7, origin_lon_e7;
     goe_flight_candidate_t candidate[GOE_FLIGHT_CANDIDATES];
     goe_flight_slot_t slot[GOE_FLIGHT_SLOTS];
@@ -471,7 +475,8 @@ goe_flight_status_t goe_flight_obstacle(const goe_flight_t *flight, int slot, go
 
 /* Finds the distance of the nearest obstacle in each sector; sector i is centered on the bearing 5 i degrees. Values in cm:
  *   - at most max_cm: the distance
- *   - max_cm + 1: the sector is in the camera's view and has no obstacle, nor a detection without a position
+ *   - max_cm + 1: the sector is in the camera's view and has no obstacle, nor a detection without a position,
+ *     a slot or a confirmation
  *   - GOE_FLIGHT_SECTOR_UNKNOWN: all other sectors
  * Obstacles whose top the aircraft passes by more than the clearance, at two sigma, are ignored. For PX4's
  * obstacle_distance use increment 5 and the frame GLOBAL.

@@ -183,20 +183,41 @@ static void give_renumbered(goe_flight_t *flight, const goe_flight_slot_view_t *
     }
 }
 
+/* What a slot is given up for while its obstacle is still detected waits for another one. */
+static void wait_again(goe_flight_t *flight, const goe_flight_slot_t *slot) {
+    const goe_flight_candidate_t candidate = {slot->id,
+                                              slot->detected_us,
+                                              {slot->box_px[0], slot->box_px[1], slot->box_px[2], slot->box_px[3]},
+                                              slot->camera,
+                                              1};
+    if (slot->used) {
+        goe_flight_candidate_return(flight->candidate, &candidate);
+    }
+}
+
 static void give_new(goe_flight_t *flight, const goe_flight_slot_view_t *view, const goe_flight_frame_t *frame,
                      uint32_t waiting, uint32_t *taken) {
     for (int k = 0; k < frame->count; k++) {
         const goe_flight_detection_t *detection = &frame->detection[k];
         goe_flight_candidate_t candidate = {detection->id, view->time_us, {0, 0, 0, 0}, view->camera, 0};
         if (((waiting >> k) & 1u) == 0u ||
-            (!goe_flight_slot_box_of(detection, candidate.box_px) && detection->id == 0u) ||
-            !goe_flight_candidate_confirm(flight->candidate, &candidate, (int)flight->settings.confirm_images)) {
+            (!goe_flight_slot_box_of(detection, candidate.box_px) && detection->id == 0u)) {
+            continue;
+        }
+        if (goe_flight_candidate_displaces(flight->candidate, &candidate)) {
+            flight->crowded = true;
+            flight->crowded_us = view->time_us;
+        }
+        if (!goe_flight_candidate_confirm(flight->candidate, &candidate, (int)flight->settings.confirm_images)) {
             continue;
         }
         const int i = free_place(flight, view->time_us);
         if (i != NOBODY) {
+            wait_again(flight, &flight->slot[i]);
             goe_flight_slot_begin(&flight->slot[i], detection->id, view->time_us);
             give(flight, i, view, detection, taken);
+        } else {
+            goe_flight_candidate_return(flight->candidate, &candidate);
         }
     }
 }

@@ -362,6 +362,77 @@ static void a_detection_without_a_position_is_not_a_clear_sky(void) {
     TEST_ASSERT_EQUAL(0, now.unplaced);
 }
 
+/* GIVEN an obstacle WHEN its first image has come, and it waits for its confirmation THEN it is counted, and its bearing is not clear. */
+static void a_detection_that_waits_is_not_a_clear_sky(void) {
+    flown.scene.width_m = flown.scene.length_m = 4.0;
+    flown.scene.height_m = 12.0;
+    goe_flight_assessment_t now = flown_fly(&flown, 0.02);
+    uint16_t sector_cm[GOE_FLIGHT_SECTORS];
+    while (flown.flight.candidate[0].images == 0 && flown.sample < 100) {
+        TEST_ASSERT_EQUAL(0, now.unplaced);
+        now = flown_fly(&flown, 0.02);
+    }
+    TEST_ASSERT_EQUAL(0, slots_used());
+    TEST_ASSERT_EQUAL(1, now.unplaced);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_sectors(&flown.flight, 20000u, sector_cm));
+    const double bearing_deg = atan2(flown.scene.x0_m, flown.scene.z0_m) * 180.0 / 3.14159265358979 + 360.0;
+    TEST_ASSERT_EQUAL_UINT16(GOE_FLIGHT_SECTOR_UNKNOWN, sector_cm[(int)(bearing_deg / 5.0 + 0.5) % GOE_FLIGHT_SECTORS]);
+    TEST_ASSERT_EQUAL_UINT16(20001u, sector_cm[3]); /* next to it: in view, nothing there */
+}
+
+/* Boxes side by side in an image, each with its own id; the image's width has space for all of them. */
+static void detect_row(uint32_t first_id, int count) {
+    goe_flight_detection_t detections[GOE_FLIGHT_DETECTIONS];
+    for (int i = 0; i < count; i++) {
+        detections[i] = flown_detection(&flown, flown.sample - 1);
+        detections[i].id = first_id + (uint32_t)i;
+        detections[i].box.left_px = 50.0f + 38.0f * (float)i;
+        detections[i].box.right_px = detections[i].box.left_px + 20.0f;
+    }
+    const goe_flight_frame_t frame = flown_frame(&flown, flown.sample - 1, detections, (uint8_t)count);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(&flown.flight, &frame));
+}
+
+static bool is_placed(uint32_t id) {
+    bool placed = false;
+    for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+        const goe_flight_slot_t *slot = &flown.flight.slot[i];
+        placed = placed || (slot->used && slot->id == id && (slot->valid & GOE_HAS_POSITION) != 0u);
+    }
+    return placed;
+}
+
+/* GIVEN more detections than slots, and than places to wait THEN the bearing of none that has no position is clear, and the count
+ * of these is not 0. */
+static void a_full_table_is_not_a_clear_sky(void) {
+    for (int count = 1; count <= 30; count += count < 8 ? 1 : 11) {
+        setUp();
+        flown.detects = false;
+        for (int frames = 0; frames < 40;) {
+            goe_flight_assessment_t now;
+            uint16_t sector_cm[GOE_FLIGHT_SECTORS];
+            if (!flown_step(&flown)) {
+                continue;
+            }
+            detect_row(100u, count);
+            frames++;
+            TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_assess(&flown.flight, flown_now_us(&flown), false, &now));
+            TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_sectors(&flown.flight, 65000u, sector_cm));
+            for (int i = 0; i < count; i++) {
+                if (is_placed(100u + (uint32_t)i)) {
+                    continue; /* its own place counts, which need not be where this box is */
+                }
+                TEST_ASSERT_GREATER_THAN(0, now.unplaced);
+                const goe_flight_camera_t *camera = &flown.flight.camera[0];
+                const double u = 60.0 + 38.0 * i - (double)camera->center_px[0];
+                const double bearing_deg = atan2(u, (double)camera->focal_px[0]) * 180.0 / 3.14159265358979 + 360.0;
+                const int sector = (int)(bearing_deg / 5.0 + 0.5) % GOE_FLIGHT_SECTORS;
+                TEST_ASSERT_NOT_EQUAL(65001u, sector_cm[sector]);
+            }
+        }
+    }
+}
+
 /* GIVEN an obstacle WHEN the own attitude or position is no longer known THEN it cannot be reported. */
 static void without_a_pose_no_obstacle_is_reported(void) {
     goe_flight_obstacle_t obstacle;
@@ -471,6 +542,8 @@ int main(void) {
     RUN_TEST(an_order_does_not_pass_to_the_next_in_its_slot);
     RUN_TEST(a_dead_detector_is_not_a_clear_sky);
     RUN_TEST(a_detection_without_a_position_is_not_a_clear_sky);
+    RUN_TEST(a_detection_that_waits_is_not_a_clear_sky);
+    RUN_TEST(a_full_table_is_not_a_clear_sky);
     RUN_TEST(without_a_pose_no_obstacle_is_reported);
     RUN_TEST(early_frames_are_kept_by_the_caller);
     RUN_TEST(an_image_may_come_in_parts);
