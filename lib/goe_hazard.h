@@ -15,7 +15,7 @@ enum { GOE_X0, GOE_Z0, GOE_ORIENTATION, GOE_WIDTH, GOE_LENGTH, GOE_HEIGHT, GOE_Q
 
 /* Writes the covariance of x0_m, z0_m, orientation_deg, width_m, length_m, height_m of the latest estimate, in meters and
  * degrees. Rows and columns of a quantity that is not valid are 0. The diagonal contains the squared sigmas. For a stale
- * estimate the variances of x0 and z0 are larger: they include the growth of the sigmas of x_m and z_m with age.
+ * estimate the variances of x0, z0 and the height are larger: they include the growth of the sigmas with age.
  * All elements off the diagonal are 0 for an estimate of the window method, and for one from before a restart or a change of
  * the model.
  *   covariance  always written, unless null; all zero after a failure
