@@ -169,6 +169,15 @@ def test_a_mistake_is_reported_before_anything_is_made(
     assert not out.exists()
 
 
+def test_an_obstacle_out_of_view_is_named(
+    scenario: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scenario.write_text(AHEAD.replace("yaw-camera = 0", "yaw-camera = 170", 1))
+    words = ["--runs", "2", "--jobs", "1", "--out", str(tmp_path / "out")]
+    assert main(["montecarlo", str(scenario), *words]) == 0
+    assert capsys.readouterr().out.count("Was the obstacle in the camera's view?") == 2
+
+
 def test_places_that_cannot_be(scenario: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file, words = tmp_path / "file", ["--runs", "1", "--jobs", "1"]
     file.write_text("mine")
@@ -178,6 +187,11 @@ def test_places_that_cannot_be(scenario: Path, tmp_path: Path, capsys: pytest.Ca
         assert main(["montecarlo", str(scenario), *words, "--out", str(out)]) == 2
         assert str(out) in capsys.readouterr().err
     assert file.read_text() == "mine"
+    log = tmp_path / "log"
+    log.mkdir()
+    (log / "frames.csv").touch()
+    assert main(["montecarlo", str(scenario), *words, "--out", str(log)]) == 2
+    assert "is the folder of a log" in capsys.readouterr().err and len(list(log.iterdir())) == 1
     own = scenario.rename(tmp_path / "runs.csv")  # the name of an output
     assert main(["montecarlo", str(own), *words, "--out", str(tmp_path)]) == 2
     assert "the output would replace" in capsys.readouterr().err and own.read_text() == AHEAD

@@ -30,6 +30,7 @@ from . import words
 from .flown import PROGRAM, Pass, Scenario, fly
 from .summary import Summary, summaries
 
+LOG_FILES = ("camera.ini", "frames.csv")
 DEFAULT_OUT = Path("montecarlo")
 LAST_SEED = 2**62  # goe_sim's limit, minus a reserve for the runs
 TABLE_WIDTH = 118
@@ -59,6 +60,8 @@ def read_scenario(arguments: argparse.Namespace) -> Scenario:
 
 
 def make_folder(path: Path) -> None:
+    if any((path / name).exists() for name in LOG_FILES):
+        raise LogError(path, 0, "", "is the folder of a log; name another one with --out")
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -123,7 +126,8 @@ def run(arguments: argparse.Namespace) -> int:
                 bar.update()
     except BaseException:  # Ctrl-C, a lost process or cluster: keeps the finished runs
         if flown:
-            print(f"stopped early: {len(flown)} of {arguments.runs} runs are complete", file=sys.stderr)
+            complete = f"{len(flown)} of {arguments.runs} runs are complete"
+            print(f"stopped early: {complete}; writing their files", file=sys.stderr)
             with suppress(ValueError), deaf():
                 report(scenario, flown, arguments)
         raise

@@ -18,6 +18,11 @@ HOW_TO_READ = (
     "error, from the number of runs."
 )
 
+EARLY = (
+    "While the range is uncertain, a path near the margin has a conflict probability above the rule's 10 %. Such a "
+    "warning usually ends when the range is known better."
+)
+
 
 def figure_of(value: float, unit: str) -> str:
     if not math.isfinite(value):
@@ -58,6 +63,8 @@ def warning_sentences(warnings: Warnings, margin_m: float, clearance_m: float) -
     if warnings.runs > warnings.violated:
         harmless = warnings.runs - warnings.violated
         said.append(f"False warnings: {warnings.false} of {harmless} runs without a violation.")
+        if warnings.false:
+            said.append(EARLY)
     if warnings.suspect:
         said.append(f"The estimate was suspect at least once in {warnings.suspect} runs.")
     return said
@@ -66,4 +73,6 @@ def warning_sentences(warnings: Warnings, margin_m: float, clearance_m: float) -
 def unanswered(summary: Summary) -> str:
     """The quantities without an answer in any run; empty: none."""
     absent = [q.symbol for q in QUANTITIES if not summary.row(q.key).runs]
+    if len(absent) == len(QUANTITIES):
+        return "No run gave an estimate. Was the obstacle in the camera's view? goe_sim --help has the camera's angles."
     return f"No answer to compare with the truth: {', '.join(absent)}." if absent else ""

@@ -36,7 +36,8 @@ class Chart:
 CHARTS = (
     Chart("z_m", "Distance ahead", "m", "along the direction of flight, to the reference point", "z_sd_m"),
     Chart("x_m", "Distance to the side", "m", "right of the direction of flight; negative: left", "x_sd_m"),
-    Chart("width_m", "Width", "m", "of the front; a disc's diameter", "width_sd_m", least=0.0),
+    Chart("width_m", "Width", "m", "of the front; disc: diameter; upright box: across the first line of sight",
+          "width_sd_m", least=0.0),
     Chart("height_m", "Height", "m", "top above ground", "height_sd_m", least=0.0),
     Chart("length_m", "Length", "m", "of the side", "length_sd_m", least=0.0),
     Chart("orientation_deg", "Orientation", "°", "of the side from the direction of flight, clockwise",
