@@ -263,7 +263,14 @@ static void explain_no_estimate(const char *path, const tally_t *tally) {
             separator = ", ";
         }
     }
-    (void)fprintf(stderr, "%s)\n", *separator == '\0' ? "there are no rows" : "");
+    const unsigned long without = tally->rows[(int)GOE_NO_DETECTION - (int)STATUS_FIRST];
+    unsigned long rows = 0;
+    for (int i = 0; i < STATUSES; i++) {
+        rows += tally->rows[i];
+    }
+    (void)fprintf(stderr, "%s)%s\n", rows == 0 ? "there are no rows" : "",
+                  rows > 0 && rows == without ? "; is there a column of a box, box_left_px, or of a point, left_u?"
+                                              : "");
 }
 
 static bool print_error(const input_error_t *error) {
@@ -442,7 +449,7 @@ int main(int argc, char **argv) {
         {"camera", 0, POPT_ARG_STRING, &options.camera, 0, "in place of DIR/camera.ini", "FILE"},
         {"frames", 0, POPT_ARG_STRING, &options.frames, 0, "in place of DIR/frames.csv", "FILE"},
         {"settings", 0, POPT_ARG_NONE, &options.settings, 0,
-         "print every setting and exit: name, unit, low, high, default, text, between tabs", NULL},
+         "print every setting of --set and exit: name, unit, low, high, default, text, between tabs", NULL},
         {"help", 'h', POPT_ARG_NONE, &options.help, 0, "print this and exit", NULL},
         {"version", 0, POPT_ARG_NONE, &options.version, 0, "print the version and exit", NULL},
         POPT_TABLEEND};

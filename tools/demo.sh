@@ -4,6 +4,10 @@
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 cd "$root"
+if [ $# != 0 ]; then
+    sed -n '2,/^set/ { /^#/ s/^# \{0,1\}//p }' "$0"
+    [[ $1 == -h || $1 == --help ]] && exit 0 || exit 2
+fi
 
 echo "The demo takes two minutes on an idle machine. The first time, set-up takes some five minutes before that."
 tools/setup.sh --demo
@@ -53,6 +57,7 @@ echo
 echo "The report:                  $root/build/report.html"
 echo "The replay, with a slider:   $root/build/view.html"
 echo "Numbers:                     $root/$out, $root/$campaign/cases.csv, $root/$orders"
+echo "The programs:                $root/build/sim_host: goe_replay, goe_sim, goe_campaign, goe_avoid"
 echo "More tools:                  . .venv/bin/activate, then python -m goe_tools --help"
 echo
 echo "Done in $SECONDS s after set-up."

@@ -114,6 +114,11 @@ static bool list_names(const char *name, size_t length, setting_fault_t *fault) 
         (void)snprintf(fault->text, sizeof fault->text, "unknown setting %s: now %s", excerpt.text, now);
         return false;
     }
+    if (strncmp(name, "camera.", strlen("camera.")) == 0) {
+        (void)snprintf(fault->text, sizeof fault->text, "'%s' is no setting of the command line; it is in camera.ini",
+                       excerpt.text);
+        return false;
+    }
     nearest_name_t nearest = nearest_name_of(name, length);
     for (size_t i = 0; i < count_tuned(); i++) {
         nearest_name_try(&nearest, settings_by_name[i].name);

@@ -917,7 +917,7 @@ BAD_USAGE = [
     (["--something-else"], "--something-else: unknown option ("),
     (["--set", "something.else=1"], "orientation_memory and window.min_baseline_m"),
     (["--set", "window=5"], "--set: 'window' is no setting"),
-    (["--set", "camera.fx_px=5"], "--set: 'camera.fx_px' is no setting"),
+    (["--set", "camera.fx_px=5"], "--set: 'camera.fx_px' is no setting of the command line; it is in camera.ini"),
     (["--set", "\x1b[31m=5"], "--set: '?[31m' is no setting"),
     (
         ["--set", "detector.point_noise_px"],
@@ -989,7 +989,7 @@ def test_no_row_gave_an_estimate(tmp_path: Path) -> None:
     assert "no row gave an estimate (converging: 7)" in done.stderr
     done = call(write_log(tmp_path, table([pose_row(0.1 * k, 1.5 * k) for k in range(7)])), check=1)
     assert len(done.stdout.splitlines()) == 8
-    assert "no row gave an estimate (no_detection: 7)" in done.stderr
+    assert "no row gave an estimate (no_detection: 7); is there a column of a box" in done.stderr
 
 
 # ------------------------------------------------------------------------------------------------------------- output
