@@ -576,8 +576,7 @@ static void report_action(const goe_flight_t *flight, goe_flight_assessment_t *r
 
 /* Whether detections of the last second had no place at all: they may be anywhere in the view. */
 static bool is_crowded(const goe_flight_t *flight) {
-    return flight->crowded &&
-           goe_flight_between_us(flight->capture_us, flight->crowded_us) <= CROWDED_US;
+    return flight->crowded && goe_flight_between_us(flight->capture_us, flight->crowded_us) <= CROWDED_US;
 }
 
 /* Detected obstacles without a position: with a slot, or waiting for one. */
