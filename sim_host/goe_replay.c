@@ -263,7 +263,7 @@ static void explain_no_estimate(const char *path, const tally_t *tally) {
             separator = ", ";
         }
     }
-    const unsigned long without = tally->rows[(int)GOE_NO_DETECTION - (int)STATUS_FIRST];
+    const unsigned long without = tally->rows[GOE_NO_DETECTION - (int)STATUS_FIRST];
     unsigned long rows = 0;
     for (int i = 0; i < STATUSES; i++) {
         rows += tally->rows[i];
