@@ -4,7 +4,9 @@
 #include "goe_flight_maths.h"
 
 #define APART_US 1000000
-#define OVERLAP_MIN 0.3f /* the usual threshold of trackers by overlap */
+#define BURIED_US 10000000 /* longer than any image is late */
+#define WAITING 1          /* of `images`: no image counts yet */
+#define OVERLAP_MIN 0.3f   /* the usual threshold of trackers by overlap */
 
 static float length(int from, int to) { return to > from ? (float)(to - from) : 0.0f; }
 
@@ -24,8 +26,23 @@ static bool is_same(const goe_flight_candidate_t *candidate, const goe_flight_ca
     return seen->id != 0u || goe_flight_candidate_overlap(candidate->box_px, seen->box_px) >= OVERLAP_MIN;
 }
 
-bool goe_flight_candidate_waits(const goe_flight_candidate_t *candidate, uint32_t time_us) {
-    return candidate->images != 0 && goe_flight_between_us(time_us, candidate->time_us) <= APART_US;
+bool goe_flight_candidate_waits(const goe_flight_candidate_t *candidate) { return candidate->images != 0; }
+
+void goe_flight_candidate_expire(goe_flight_candidate_t table[GOE_FLIGHT_CANDIDATES], uint8_t camera,
+                                 uint32_t time_us) {
+    for (int i = 0; i < GOE_FLIGHT_CANDIDATES; i++) {
+        if (table[i].camera == camera && goe_flight_between_us(time_us, table[i].time_us) > APART_US) {
+            table[i].images = 0;
+        }
+    }
+}
+
+void goe_flight_candidate_bury(goe_flight_candidate_t table[GOE_FLIGHT_CANDIDATES], uint32_t now_us) {
+    for (int i = 0; i < GOE_FLIGHT_CANDIDATES; i++) {
+        if (goe_flight_between_us(now_us, table[i].time_us) > BURIED_US) {
+            table[i].images = 0;
+        }
+    }
 }
 
 /* Its place in the table; none: GOE_FLIGHT_CANDIDATES. */
@@ -54,14 +71,14 @@ static int place_for(const goe_flight_candidate_t *table, uint32_t time_us) {
 bool goe_flight_candidate_displaces(const goe_flight_candidate_t table[GOE_FLIGHT_CANDIDATES],
                                     const goe_flight_candidate_t *seen) {
     return find(table, seen) == GOE_FLIGHT_CANDIDATES &&
-           goe_flight_candidate_waits(&table[place_for(table, seen->time_us)], seen->time_us);
+           goe_flight_candidate_waits(&table[place_for(table, seen->time_us)]);
 }
 
 void goe_flight_candidate_return(goe_flight_candidate_t table[GOE_FLIGHT_CANDIDATES],
                                  const goe_flight_candidate_t *seen) {
     goe_flight_candidate_t *candidate = &table[place_for(table, seen->time_us)];
     *candidate = *seen;
-    candidate->images = 1;
+    candidate->images = WAITING;
 }
 
 bool goe_flight_candidate_confirm(goe_flight_candidate_t table[GOE_FLIGHT_CANDIDATES],
@@ -72,10 +89,10 @@ bool goe_flight_candidate_confirm(goe_flight_candidate_t table[GOE_FLIGHT_CANDID
     if (known && goe_flight_between_us(seen->time_us, candidate->time_us) <= 0) {
         return false; /* twice in one image */
     }
-    const uint8_t before = known ? candidate->images : 0;
+    const uint8_t before = known ? candidate->images : WAITING;
     *candidate = *seen;
     candidate->images = (uint8_t)(before + 1);
-    if (candidate->images < images) {
+    if (candidate->images < images + WAITING) {
         return false;
     }
     candidate->images = 0;

@@ -7,14 +7,20 @@
 /* Share of the union of two boxes (left, top, right, bottom) that both cover, 0 to 1. */
 float goe_flight_candidate_overlap(const int16_t a[4], const int16_t b[4]);
 
-/* Whether a detection waits in this place: its obstacle has no slot, and was detected at most a second before the time. */
-bool goe_flight_candidate_waits(const goe_flight_candidate_t *candidate, uint32_t time_us);
+/* Whether a detection waits in this place: its obstacle has no slot. */
+bool goe_flight_candidate_waits(const goe_flight_candidate_t *candidate);
+
+/* An image of a camera has come: what it did not detect for a second does not wait any more. */
+void goe_flight_candidate_expire(goe_flight_candidate_t table[GOE_FLIGHT_CANDIDATES], uint8_t camera, uint32_t time_us);
+
+/* The same after ten seconds, without an image: times of half an hour ago would look like future ones. */
+void goe_flight_candidate_bury(goe_flight_candidate_t table[GOE_FLIGHT_CANDIDATES], uint32_t now_us);
 
 /* Whether this detection is new, and takes the place of one that still waits. */
 bool goe_flight_candidate_displaces(const goe_flight_candidate_t table[GOE_FLIGHT_CANDIDATES],
                                     const goe_flight_candidate_t *seen);
 
-/* A confirmed detection found no slot: it waits again, and is confirmed again by the next images. */
+/* A confirmed detection found no slot: it waits again, and its images count from the next one. */
 void goe_flight_candidate_return(goe_flight_candidate_t table[GOE_FLIGHT_CANDIDATES],
                                  const goe_flight_candidate_t *seen);
 

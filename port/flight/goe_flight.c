@@ -24,7 +24,6 @@
 #define LONGITUDE_MAX_E7 1800000000
 #define STALE_MAX 16 /* samples in a row that are not newer: the clock was set back */
 #define POSE_ALIVE_S 0.5f
-#define CROWDED_US 1000000 /* for which a detection without a place counts, as one of a candidate */
 #define SECTOR_MAX_CM 65000u
 #define NOBODY (-1)
 /* Of an obstacle, as goe_flight.h lists it. */
@@ -574,19 +573,14 @@ static void report_action(const goe_flight_t *flight, goe_flight_assessment_t *r
     }
 }
 
-/* Whether detections of the last second had no place at all: they may be anywhere in the view. */
-static bool is_crowded(const goe_flight_t *flight) {
-    return flight->crowded && goe_flight_between_us(flight->capture_us, flight->crowded_us) <= CROWDED_US;
-}
-
 /* Detected obstacles without a position: with a slot, or waiting for one. */
 static uint8_t count_unplaced(const goe_flight_t *flight) {
-    int count = is_crowded(flight) ? 1 : 0;
+    int count = flight->crowded ? 1 : 0;
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         count += goe_flight_slot_is_unplaced(&flight->slot[i]) ? 1 : 0;
     }
     for (int i = 0; i < GOE_FLIGHT_CANDIDATES; i++) {
-        count += goe_flight_candidate_waits(&flight->candidate[i], flight->capture_us) ? 1 : 0;
+        count += goe_flight_candidate_waits(&flight->candidate[i]) ? 1 : 0;
     }
     return (uint8_t)count;
 }
@@ -752,7 +746,7 @@ static bool is_passed_over(const goe_flight_t *flight, const goe_flight_slot_t *
 static void open_sectors(const goe_flight_t *flight, uint32_t max_cm, uint16_t sector_cm[GOE_FLIGHT_SECTORS]) {
     const goe_flight_history_attitude_t *attitude = goe_flight_history_newest_attitude(&flight->history);
     const uint32_t now_us = flight->assessed_us;
-    const bool alive = pose_alive(flight, now_us) && !is_crowded(flight);
+    const bool alive = pose_alive(flight, now_us) && !flight->crowded;
     for (int i = 0; i < GOE_FLIGHT_SECTORS; i++) {
         sector_cm[i] = GOE_FLIGHT_SECTOR_UNKNOWN;
     }
@@ -776,7 +770,7 @@ static void close_sectors(const goe_flight_t *flight, const float q[4], uint16_t
     }
     for (int i = 0; i < GOE_FLIGHT_CANDIDATES; i++) {
         const goe_flight_candidate_t *candidate = &flight->candidate[i];
-        if (goe_flight_candidate_waits(candidate, flight->capture_us) && has_camera(flight, candidate->camera)) {
+        if (goe_flight_candidate_waits(candidate) && has_camera(flight, candidate->camera)) {
             goe_flight_geometry_close_sectors(sector_cm, &flight->camera[candidate->camera], q, candidate->box_px);
         }
     }

@@ -30,8 +30,8 @@
  * Cost        On a Cortex-M4F (gcc), in instructions: a sample at most 1,250; a frame 44,700 for each obstacle in it; an assessment
  *             28,700 with one obstacle and 23,200 for each further one with a position. While there is a hazard or an order, an
  *             assessment also examines paths: at most 3 times (4 + 4 GOE_FLIGHT_SLOTS), each against every obstacle.
- *             goe_flight_obstacle() 980; goe_flight_sectors() 7,000; goe_flight_init() 12,700 for each slot. No loop runs longer
- *             than GOE_FLIGHT_SECTORS.
+ *             goe_flight_obstacle() 980; goe_flight_sectors() 7,000 with one obstacle; goe_flight_init() 12,700 for each
+ *             slot. No loop runs longer than GOE_FLIGHT_SECTORS.
  * Failure     A call that returns a negative status, or GOE_FLIGHT_TOO_NEW, changes nothing except counters, with two exceptions:
  *             after a failed goe_flight_init() *flight cannot be used, and the 16th GOE_FLIGHT_BAD_TIME in a row calls
  *             goe_flight_restart(). [F5]
@@ -336,7 +336,7 @@ typedef struct { /* goe_candidate.c */
     uint32_t id, time_us;
     int16_t box_px[4];
     uint8_t camera;
-    uint8_t images; /* 0: free */
+    uint8_t images; /* 0: free; otherwise one more than the images that count */
 } goe_flight_candidate_t;
 
 typedef struct { /* goe_slot.c */
@@ -474,9 +474,9 @@ goe_flight_status_t goe_flight_assess(goe_flight_t *flight, uint32_t now_us, uin
 goe_flight_status_t goe_flight_obstacle(const goe_flight_t *flight, int slot, goe_flight_obstacle_t *obstacle);
 
 /* Finds the distance of the nearest obstacle in each sector; sector i is centered on the bearing 5 i degrees. Values in cm:
- *   - at most max_cm: the distance
+ *   - at most max_cm: the distance of an obstacle with a position; while unplaced is not 0 there may be a nearer one
  *   - max_cm + 1: the sector is in the camera's view and has no obstacle, nor a detection without a position,
- *     a slot or a confirmation
+ *     a slot or a confirmation, in the latest attitude
  *   - GOE_FLIGHT_SECTOR_UNKNOWN: all other sectors
  * Obstacles whose top the aircraft passes by more than the clearance, at two sigma, are ignored. For PX4's
  * obstacle_distance use increment 5 and the frame GLOBAL.

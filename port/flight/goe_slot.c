@@ -200,7 +200,7 @@ void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t cam
         slot->fresh_track = false;
         note(slot, camera_ned_m, &estimate, since_s);
         if (seen) {
-            (void)goe_flight_slot_box_of(seen, slot->box_px);
+            (void)goe_flight_slot_box_of(seen, camera, slot->box_px);
         }
     }
 }
@@ -215,7 +215,16 @@ static void widen(float extent[4], float u, float v, bool *any) {
     *any = true;
 }
 
-bool goe_flight_slot_box_of(const goe_flight_detection_t *detection, int16_t box_px[4]) {
+/* The sides that are given, and the image's border for the others. */
+static void span_of(const goe_box_t *box, const goe_flight_camera_t *camera, float extent[4]) {
+    extent[0] = (box->sides & GOE_SIDE_LEFT) != 0u ? box->left_px : 0.0f;
+    extent[1] = (box->sides & GOE_SIDE_TOP) != 0u ? box->top_px : 0.0f;
+    extent[2] = (box->sides & GOE_SIDE_RIGHT) != 0u ? box->right_px : camera->size_px[0];
+    extent[3] = (box->sides & GOE_SIDE_BOTTOM) != 0u ? box->bottom_px : camera->size_px[1];
+}
+
+bool goe_flight_slot_box_of(const goe_flight_detection_t *detection, const goe_flight_camera_t *camera,
+                            int16_t box_px[4]) {
     const goe_pixel_t *const points[6] = {&detection->left,      &detection->right,     &detection->top,
                                           &detection->base_left, &detection->base_near, &detection->base_right};
     const goe_box_t *box = &detection->box;
@@ -230,6 +239,9 @@ bool goe_flight_slot_box_of(const goe_flight_detection_t *detection, int16_t box
                 widen(extent, points[i]->u_px, points[i]->v_px, &any);
             }
         }
+    }
+    if (!any) {
+        span_of(box, camera, extent);
     }
     for (int axis = 0; axis < 2; axis++) { /* two points of one row have a height too */
         const float lacking = 0.5f * goe_flight_larger(SIZE_MIN_PX - (extent[axis + 2] - extent[axis]), 0.0f);

@@ -7,9 +7,11 @@
 
 #define COORDINATE_MAX_PX 1.0e5f
 #define PIXEL_SD_MAX_PX 100.0f
-#define UNDETECTED_S 2.0f /* after which a track without a position, or a passed one, may be given up */
-#define WORTH_KEPT 0.5f   /* a slot of more worth is never given up for a new obstacle */
-#define ORDERED_S 30.0f   /* while an order is active every obstacle is kept so long: the way back leads past it */
+#define UNDETECTED_S 2.0f  /* after which a track without a position, or a passed one, may be given up */
+#define WORTH_KEPT 0.5f    /* a slot of more worth is never given up for a new obstacle */
+#define ORDERED_S 30.0f    /* while an order is active every obstacle is kept so long: the way back leads past it */
+#define CROWDED_US 1000000 /* for which a detection without a place counts */
+#define BURIED_US 10000000 /* ... without an image: older times would look like future ones */
 #define NOBODY (-1)
 
 /* ------------------------------------------------------------------------------------------------------- detections -- */
@@ -39,13 +41,21 @@ static bool is_good(const goe_flight_detection_t *d) {
            is_good_pixel(&d->base_right);
 }
 
+/* A detection has no place, or no known one: it may be anywhere in the view. */
+static void crowd(goe_flight_t *flight, uint32_t time_us) {
+    flight->crowded = true;
+    flight->crowded_us = time_us;
+}
+
 /* Detections to be used, as bits; the others are counted. *readable: there is a readable detection, or the image has none. */
-static uint32_t usable(goe_flight_t *flight, const goe_flight_frame_t *frame, bool *readable) {
+static uint32_t usable(goe_flight_t *flight, const goe_flight_slot_view_t *view, const goe_flight_frame_t *frame,
+                       bool *readable) {
     uint32_t bits = 0u;
     *readable = frame->number == 0u && frame->count == 0u;
     for (int k = 0; k < frame->count; k++) {
         if (!is_good(&frame->detection[k])) {
             goe_flight_count(&flight->counters.refused);
+            crowd(flight, view->time_us);
         } else if (frame->detection[k].score < flight->settings.score_min) {
             goe_flight_count(&flight->counters.weak);
             *readable = true;
@@ -158,6 +168,8 @@ static void give_known(goe_flight_t *flight, const goe_flight_slot_view_t *view,
             *waiting &= ~(1u << k);
             if (((*taken >> i) & 1u) == 0u) {
                 give(flight, i, view, &frame->detection[k], taken);
+            } else { /* a second one of this id */
+                crowd(flight, view->time_us);
             }
         }
     }
@@ -168,7 +180,7 @@ static void give_renumbered(goe_flight_t *flight, const goe_flight_slot_view_t *
     for (int k = 0; k < frame->count; k++) {
         const goe_flight_detection_t *detection = &frame->detection[k];
         int16_t box_px[4];
-        if (((*waiting >> k) & 1u) == 0u || !goe_flight_slot_box_of(detection, box_px)) {
+        if (((*waiting >> k) & 1u) == 0u || !goe_flight_slot_box_of(detection, &flight->camera[view->camera], box_px)) {
             continue;
         }
         const int i = claimant(flight, view, *taken, box_px);
@@ -200,13 +212,16 @@ static void give_new(goe_flight_t *flight, const goe_flight_slot_view_t *view, c
     for (int k = 0; k < frame->count; k++) {
         const goe_flight_detection_t *detection = &frame->detection[k];
         goe_flight_candidate_t candidate = {detection->id, view->time_us, {0, 0, 0, 0}, view->camera, 0};
-        if (((waiting >> k) & 1u) == 0u ||
-            (!goe_flight_slot_box_of(detection, candidate.box_px) && detection->id == 0u)) {
+        if (((waiting >> k) & 1u) == 0u) {
+            continue;
+        }
+        const bool matches = goe_flight_slot_box_of(detection, &flight->camera[view->camera], candidate.box_px);
+        if (!matches && detection->id == 0u) { /* no other image can be matched to it */
+            crowd(flight, view->time_us);
             continue;
         }
         if (goe_flight_candidate_displaces(flight->candidate, &candidate)) {
-            flight->crowded = true;
-            flight->crowded_us = view->time_us;
+            crowd(flight, view->time_us);
         }
         if (!goe_flight_candidate_confirm(flight->candidate, &candidate, (int)flight->settings.confirm_images)) {
             continue;
@@ -234,7 +249,9 @@ static void give_nothing(goe_flight_t *flight, const goe_flight_slot_view_t *vie
 
 bool goe_flight_table_take(goe_flight_t *flight, const goe_flight_slot_view_t *view, const goe_flight_frame_t *frame) {
     bool readable;
-    uint32_t waiting = usable(flight, frame, &readable);
+    goe_flight_candidate_expire(flight->candidate, view->camera, view->time_us);
+    flight->crowded = flight->crowded && goe_flight_between_us(view->time_us, flight->crowded_us) <= CROWDED_US;
+    uint32_t waiting = usable(flight, view, frame, &readable);
     uint32_t taken = 0u;
     give_known(flight, view, frame, &waiting, &taken);
     give_renumbered(flight, view, frame, &waiting, &taken);
@@ -252,6 +269,8 @@ static bool is_ahead(const goe_flight_t *flight, const goe_flight_slot_t *slot) 
 }
 
 void goe_flight_table_age(goe_flight_t *flight, uint32_t now_us) {
+    goe_flight_candidate_bury(flight->candidate, now_us);
+    flight->crowded = flight->crowded && goe_flight_between_us(now_us, flight->crowded_us) <= BURIED_US;
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         goe_flight_slot_t *slot = &flight->slot[i];
         const float undetected_s = goe_flight_between_s(now_us, slot->detected_us);

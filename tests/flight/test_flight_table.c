@@ -78,19 +78,25 @@ static void a_track_without_a_position_is_not_suspect(void) {
     TEST_ASSERT_TRUE(images > 0);
 }
 
-/* Assessments at 10 Hz without a sample or a frame more; whether the detector was alive in any after the first two seconds. */
-static bool revives(double seconds) {
+/* An assessment with a sample, so many tenths of a second after the time; no frame comes. */
+static goe_flight_assessment_t assess_later(uint32_t from_us, int tenths) {
     goe_flight_assessment_t now;
+    goe_flight_attitude_t attitude;
+    goe_flight_position_t position;
+    flown_samples(&flown, 0, &attitude, &position);
+    attitude.time_us = position.time_us = from_us + (uint32_t)tenths * 100000u;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_attitude(&flown.flight, &attitude));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_position(&flown.flight, &position));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_assess(&flown.flight, position.time_us, false, &now));
+    return now;
+}
+
+/* Whether the detector was alive in any assessment after the first two seconds without a frame. */
+static bool revives(double seconds) {
     bool alive = false;
     const uint32_t from_us = flown_now_us(&flown);
     for (int k = 1; k <= (int)(10.0 * seconds); k++) {
-        goe_flight_attitude_t attitude;
-        goe_flight_position_t position;
-        flown_samples(&flown, 0, &attitude, &position);
-        attitude.time_us = position.time_us = from_us + (uint32_t)k * 100000u;
-        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_attitude(&flown.flight, &attitude));
-        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_position(&flown.flight, &position));
-        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_assess(&flown.flight, position.time_us, false, &now));
+        const goe_flight_assessment_t now = assess_later(from_us, k);
         alive = alive || (k > 20 && now.detector_alive);
     }
     return alive;
@@ -402,6 +408,14 @@ static bool is_placed(uint32_t id) {
     return placed;
 }
 
+/* The sector of the middle of a box, in a level camera that looks north. */
+static int sector_of(const goe_box_t *box) {
+    const goe_flight_camera_t *camera = &flown.flight.camera[0];
+    const double u = 0.5 * ((double)box->left_px + (double)box->right_px) - (double)camera->center_px[0];
+    const double bearing_deg = atan2(u, (double)camera->focal_px[0]) * 180.0 / 3.14159265358979 + 360.0;
+    return (int)(bearing_deg / 5.0 + 0.5) % GOE_FLIGHT_SECTORS;
+}
+
 /* GIVEN more detections than slots, and than places to wait THEN the bearing of none that has no position is clear, and the count
  * of these is not 0. */
 static void a_full_table_is_not_a_clear_sky(void) {
@@ -423,13 +437,61 @@ static void a_full_table_is_not_a_clear_sky(void) {
                     continue; /* its own place counts, which need not be where this box is */
                 }
                 TEST_ASSERT_GREATER_THAN(0, now.unplaced);
-                const goe_flight_camera_t *camera = &flown.flight.camera[0];
-                const double u = 60.0 + 38.0 * i - (double)camera->center_px[0];
-                const double bearing_deg = atan2(u, (double)camera->focal_px[0]) * 180.0 / 3.14159265358979 + 360.0;
-                const int sector = (int)(bearing_deg / 5.0 + 0.5) % GOE_FLIGHT_SECTORS;
-                TEST_ASSERT_NOT_EQUAL(65001u, sector_cm[sector]);
+                const goe_box_t box = {50.0f + 38.0f * (float)i, 0.0f, 70.0f + 38.0f * (float)i, 0.0f, GOE_SIDES_ALL};
+                TEST_ASSERT_NOT_EQUAL(65001u, sector_cm[sector_of(&box)]);
             }
         }
+    }
+}
+
+/* GIVEN a box whose side another object hides, with an id or without one, or a detection that is no number next to a good one THEN the
+ * bearing is not clear. */
+static void a_detection_that_cannot_be_used_is_not_a_clear_sky(void) {
+    for (int kind = 0; kind < 3; kind++) {
+        setUp();
+        flown.detects = false;
+        for (int frames = 0; frames < 12;) {
+            goe_flight_assessment_t now;
+            uint16_t sector_cm[GOE_FLIGHT_SECTORS];
+            goe_flight_detection_t detection[2];
+            if (!flown_step(&flown)) {
+                continue;
+            }
+            detection[0] = detection[1] = flown_detection(&flown, flown.sample - 1);
+            detection[0].id = kind == 0 ? 0u : 5u;
+            detection[0].box.sides = kind < 2 ? GOE_SIDE_LEFT | GOE_SIDE_RIGHT | GOE_SIDE_TOP : GOE_SIDES_ALL;
+            detection[0].pixel_px = kind == 2 ? NAN : 0.0f;
+            detection[1].id = 6u;
+            detection[1].box.left_px = 1000.0f;
+            detection[1].box.right_px = 1020.0f;
+            const goe_flight_frame_t frame = flown_frame(&flown, flown.sample - 1, detection, 2);
+            TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(&flown.flight, &frame));
+            frames++;
+            TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_assess(&flown.flight, flown_now_us(&flown), false, &now));
+            TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_sectors(&flown.flight, 65000u, sector_cm));
+            if (!is_placed(5u)) {
+                TEST_ASSERT_GREATER_THAN(0, now.unplaced);
+                TEST_ASSERT_NOT_EQUAL(65001u, sector_cm[sector_of(&detection[0].box)]);
+            }
+        }
+    }
+}
+
+/* GIVEN a false detection, or a crowd of them WHEN half an hour has passed, where times wrap THEN nothing is left of them. */
+static void a_false_detection_is_forgotten_for_good(void) {
+    for (int count = 1; count < 30; count += 27) {
+        setUp();
+        flown.detects = false;
+        while (!flown_step(&flown)) {
+        }
+        detect_row(100u, count);
+        const uint32_t from_us = flown_now_us(&flown);
+        TEST_ASSERT_GREATER_THAN(0, assess_later(from_us, 1).unplaced);
+        for (int tenths = 2; tenths < 80 * 60 * 10; tenths++) {
+            const goe_flight_assessment_t now = assess_later(from_us, tenths);
+            TEST_ASSERT_TRUE(tenths < 120 || now.unplaced == 0);
+        }
+        TEST_ASSERT_FALSE(flown.flight.crowded);
     }
 }
 
@@ -544,6 +606,8 @@ int main(void) {
     RUN_TEST(a_detection_without_a_position_is_not_a_clear_sky);
     RUN_TEST(a_detection_that_waits_is_not_a_clear_sky);
     RUN_TEST(a_full_table_is_not_a_clear_sky);
+    RUN_TEST(a_detection_that_cannot_be_used_is_not_a_clear_sky);
+    RUN_TEST(a_false_detection_is_forgotten_for_good);
     RUN_TEST(without_a_pose_no_obstacle_is_reported);
     RUN_TEST(early_frames_are_kept_by_the_caller);
     RUN_TEST(an_image_may_come_in_parts);

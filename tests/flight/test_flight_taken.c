@@ -318,7 +318,7 @@ static void any_points_make_their_box(void) {
                 high[axis] = fmax(high[axis], (double)(axis == 0 ? points[i]->u_px : points[i]->v_px));
             }
         }
-        const bool found = goe_flight_slot_box_of(&d, box_px);
+        const bool found = goe_flight_slot_box_of(&d, &flight->camera[0], box_px);
         TEST_ASSERT_EQUAL(low[0] < 1.0e8, found);
         for (int axis = 0; axis < 2 && found; axis++) {
             const double lacking = fmax(BOX_MIN_PX - (high[axis] - low[axis]), 0.0);

@@ -98,7 +98,7 @@ void Goe::follow_parameters() {
         }
     }
     const goe_status_s &status = _overview.status;
-    const bool idle = status.obstacles == 0 && status.action == goe_status_s::ACTION_NONE;
+    const bool idle = status.obstacles == 0 && status.unplaced == 0 && status.action == goe_status_s::ACTION_NONE;
     if (_waiting && (!is_armed() || !_in_use || idle)) {
         use_parameters();
     }
