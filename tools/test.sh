@@ -288,7 +288,8 @@ test_companion_sanitized() {
 # pytest_affected <part>: 0 or 1, every second file. No test may be left.
 pytest_affected() {
     local files status=0
-    mapfile -t files < <("$python" -m ci affected | awk "NR % 2 == $1")
+    "$python" -m ci affected >"$logs/affected-$1" || return 1
+    mapfile -t files < <(awk "NR % 2 == $1" "$logs/affected-$1")
     if [ ${#files[@]} = 0 ]; then
         echo "the change affects no test in Python"
     else

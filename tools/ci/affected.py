@@ -17,7 +17,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-IMPORTED_FROM = (ROOT / "tools", ROOT / "tests" / "python")
+IMPORTED_FROM = (ROOT / "tools", *sorted({path.parent for path in (ROOT / "tests").rglob("test_*.py")}))
 DEPTH = 2  # longest chain of imports from a test to a changed module
 LIBRARY = ("lib/", "port/flight/", "port/python/")
 LIBRARY_TESTS = ("tests/python/test_port_python.py", "tests/python/test_port_python_golden.py")
@@ -107,5 +107,6 @@ def add_arguments(_: argparse.ArgumentParser) -> None:
 
 
 def run(_: argparse.Namespace) -> int:
-    print("\n".join(affected(changed())))
+    for path in affected(changed()):
+        print(path)
     return 0

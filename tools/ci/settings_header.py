@@ -30,9 +30,9 @@ CENTER = ("camera.cx_px", "camera.cy_px")  # 0 is in their range, and wrong
 MUST_BE_SET = "must be set"
 
 
-def must_be_set(path: str, value: float, low: float) -> bool:
-    """A default below the range, or one that is in it and wrong, means that the user must set it."""
-    return value < low or path in CENTER
+def must_be_set(path: str, value: float, low: float, high: float) -> bool:
+    """A default outside the range, or one that is in it and wrong, means that the user must set it."""
+    return not low <= value <= high or path in CENTER
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class Field:
             return f"default {NAMED[self.value]}"
         if self.kind == "TRUTH":
             return f"default {'true' if self.value == '1' else 'false'}"
-        required = must_be_set(self.path, *(float(plain(number)) for number in (self.value, self.low)))
+        required = must_be_set(self.path, *(float(plain(number)) for number in (self.value, self.low, self.high)))
         return f"no default: {MUST_BE_SET}" if required else f"default {plain(self.value)}"
 
     @property

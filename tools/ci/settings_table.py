@@ -34,7 +34,7 @@ class Setting:
 
     @property
     def default(self) -> str:
-        return MUST_BE_SET if must_be_set(self.name, float(self.value), float(self.low)) else self.value
+        return MUST_BE_SET if must_be_set(self.name, *map(float, (self.value, self.low, self.high))) else self.value
 
     @property
     def limit(self) -> str:
