@@ -132,12 +132,12 @@ static bool check_window(const options_t *options) {
 }
 
 /* directory/name in place of a path that was not given singly. */
-static bool default_path(char **path, const char *directory, const char *name, const char *option) {
+static bool default_path(char **path, const char *directory, const char *name) {
     if (*path != NULL) {
         return true;
     }
     if (directory == NULL) {
-        return complain(option, "missing: name the log's folder, or both --camera and --frames");
+        return complain("DIR", "missing: name the log's folder, or both --camera and --frames");
     }
     const size_t capacity = strlen(directory) + strlen(name) + 2u;
     *path = malloc(capacity);
@@ -194,8 +194,8 @@ static bool parse_arguments(poptContext context, const struct poptOption *table,
                        slash != NULL ? (int)(slash - directory) : 1, slash != NULL ? directory : ".");
         return complain(directory, reason);
     }
-    return default_path(&options->camera, directory, "camera.ini", "--camera") &&
-           default_path(&options->frames, directory, "frames.csv", "--frames");
+    return default_path(&options->camera, directory, "camera.ini") &&
+           default_path(&options->frames, directory, "frames.csv");
 }
 
 static bool set_by_name(char *const *set, goe_settings_t *settings) {

@@ -154,7 +154,7 @@ python=${PYTHON:-python3}
 stamp=.venv/installed
 state=$("$python" --version && cat tools/requirements.txt tools/pyproject.toml && echo "$root")
 if [ ! -e $stamp ] || [ "$(cat $stamp)" != "$state" ]; then
-    echo "setup: making .venv"
+    echo "setup: making .venv (some three minutes)"
     rm -rf .venv
     "$python" -m venv .venv >>"$log" 2>&1 || die "no Python environment can be made"
     .venv/bin/python -m pip install --quiet --disable-pip-version-check -r tools/requirements.txt >>"$log" 2>&1 ||

@@ -115,8 +115,8 @@ static bool list_names(const char *name, size_t length, setting_fault_t *fault) 
         return false;
     }
     if (strncmp(name, "camera.", strlen("camera.")) == 0) {
-        (void)snprintf(fault->text, sizeof fault->text, "'%s' is no setting of the command line; it is in camera.ini",
-                       excerpt.text);
+        (void)snprintf(fault->text, sizeof fault->text,
+                       "'%s' is no setting here; the camera has its own file or section", excerpt.text);
         return false;
     }
     nearest_name_t nearest = nearest_name_of(name, length);

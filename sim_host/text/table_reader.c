@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -12,6 +13,7 @@
 
 #include "nearest_name.h"
 
+#define OTHERS_MAX 200 /* of the list of missing columns */
 #define BUFFER_BYTES (256u * 1024u)
 #define FIRST_CAPACITY 1024u
 #define FIELD_STEP_BYTES (64u * 1024u) /* by which the parser enlarges its room for a field; its own are tiny */
@@ -185,7 +187,23 @@ const char *table_reader_misspelt(const table_reader_t *reader, size_t *next, co
     return NULL;
 }
 
+/* The other missing columns, as the end of a message; empty: there are none. */
+static void list_others(const table_reader_t *reader, const char *name, char text[OTHERS_MAX]) {
+    size_t used = 0;
+    text[0] = '\0';
+    for (size_t i = 0; reader->header_done && i < reader->wanted_count; i++) {
+        const char *other = reader->wanted[i].name;
+        if (reader->wanted[i].required && !table_reader_has(reader, i) && strcmp(other, name) != 0 &&
+            used < OTHERS_MAX) {
+            used +=
+                (size_t)snprintf(text + used, OTHERS_MAX - used, "%s%s", used == 0 ? "; also missing: " : ", ", other);
+        }
+    }
+}
+
 static void fail_missing(table_reader_t *reader, const char *name) {
+    char others[OTHERS_MAX];
+    list_others(reader, name, others);
     const char delimiter = reader->header_done ? other_delimiter(reader) : 0;
     const char *instead = reader->header_done ? mistyped(reader, name) : NULL;
     if (delimiter != 0) {
@@ -195,11 +213,11 @@ static void fail_missing(table_reader_t *reader, const char *name) {
              : delimiter == ';' ? "semicolons"
                                 : "bars");
     } else if (instead != NULL) {
-        FAIL(reader, reader->header_line, name, "missing column; is '%s' meant to be it?",
-             excerpt_of(instead, strlen(instead)).text);
+        FAIL(reader, reader->header_line, name, "missing column; is '%s' meant to be it?%s",
+             excerpt_of(instead, strlen(instead)).text, others);
     } else {
-        FAIL(reader, reader->header_line, name, "%s",
-             reader->header_done ? "missing column" : "missing column, the file is empty");
+        FAIL(reader, reader->header_line, name, "missing column%s",
+             reader->header_done ? others : ", the file is empty");
     }
 }
 

@@ -171,6 +171,13 @@ def test_a_required_column_misspelt(tmp_path: Path, capsys: pytest.CaptureFixtur
     assert said(folder) == (2, f"{folder / 'frames.csv'}:1: e_m: missing column; is 'e_me' meant to be it?\n")
 
 
+def test_all_missing_columns_are_named_at_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = write(tmp_path / "log", renamed("n_m", "p0")(renamed("qz", "p1")(renamed("qw", "p2")(rows()))))
+    place = f"{folder / 'frames.csv'}:1: n_m:"
+    assert python_said(folder, capsys) == f"{place} column is missing; also missing: qw, qz"
+    assert said(folder) == (2, f"{place} missing column; also missing: qw, qz\n")
+
+
 def test_an_optional_column_misspelt(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     sides = {"box_left": 1, "box_top_px": 2, "box_rigth_px": 3, "box_bottom_px": 4, "colour": 5}
     folder = write(tmp_path / "log", change(lambda row: sides)(rows()))

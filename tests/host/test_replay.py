@@ -917,7 +917,7 @@ BAD_USAGE = [
     (["--something-else"], "--something-else: unknown option ("),
     (["--set", "something.else=1"], "orientation_memory and window.min_baseline_m"),
     (["--set", "window=5"], "--set: 'window' is no setting"),
-    (["--set", "camera.fx_px=5"], "--set: 'camera.fx_px' is no setting of the command line; it is in camera.ini"),
+    (["--set", "camera.fx_px=5"], "--set: 'camera.fx_px' is no setting here; the camera has its own file or section"),
     (["--set", "\x1b[31m=5"], "--set: '?[31m' is no setting"),
     (
         ["--set", "detector.point_noise_px"],

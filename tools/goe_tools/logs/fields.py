@@ -105,9 +105,11 @@ def _missing(header: list[str], name: str, known: Sequence[str]) -> str:
 
 
 def _check_header(header: list[str], path: Path, line: int, required: Sequence[str], known: Sequence[str]) -> None:
-    for name in required:
-        if name not in header:
-            raise LogError(path, line, name, _missing(header, name, known))
+    absent = [name for name in required if name not in header]
+    if absent:
+        message = _missing(header, absent[0], known)
+        others = f"; also missing: {', '.join(absent[1:])}" if len(absent) > 1 and len(header) > 1 else ""
+        raise LogError(path, line, absent[0], message + others)
     for name in known:
         if header.count(name) > 1:
             raise LogError(path, line, name, "column is given twice")

@@ -12,15 +12,16 @@ from .summary import EXPECTED, Row, Share, Summary, Warnings
 SIMULATION = "All of this is simulation: goe_sim flew every run."
 HEADS = ("quantity", "runs", "last error", "last sigma", "within 1 sigma", "within 2 sigma", "rms of error / sigma")
 HOW_TO_READ = (
-    f"If the sigmas are right, {EXPECTED[1]:.0%} of the answers lie within 1 sigma of the truth and {EXPECTED[2]:.0%} "
+    f"If the sigmas are right, {EXPECTED[1]:.0%} of the estimates lie within 1 sigma of the truth and {EXPECTED[2]:.0%} "
     "within 2 sigma. More: the sigmas are wider than necessary. Less: they are too small for the sensors of this "
     "scenario; configure the errors of the sensors with --set. A number after +- is one standard "
-    "error, from the number of runs."
+    "error, from the number of runs. Last error and last sigma are medians over the runs, of the absolute error and "
+    "of the sigma of a run's last estimate."
 )
 
 EARLY = (
-    "While the range is uncertain, a path near the margin has a conflict probability above the rule's 10 %. Such a "
-    "warning usually ends when the range is known better."
+    "While the range is uncertain, a path near the margin often has a conflict probability above that of the rule. "
+    "Such a warning usually ends when the range is known better."
 )
 
 
@@ -34,7 +35,7 @@ def figure_of(value: float, unit: str) -> str:
 def percent(share: Share) -> str:
     if not math.isfinite(share.mean):
         return "-"
-    error = f" +- {100.0 * share.error:.1f}" if math.isfinite(share.error) else ""
+    error = f" +- {100.0 * share.error:.1f}" if math.isfinite(share.error) and share.error > 0.0 else ""
     return f"{100.0 * share.mean:.1f}{error} %"
 
 
@@ -71,8 +72,8 @@ def warning_sentences(warnings: Warnings, margin_m: float, clearance_m: float) -
 
 
 def unanswered(summary: Summary) -> str:
-    """The quantities without an answer in any run; empty: none."""
+    """The quantities without an estimate in any run; empty: none."""
     absent = [q.symbol for q in QUANTITIES if not summary.row(q.key).runs]
     if len(absent) == len(QUANTITIES):
         return "No run gave an estimate. Was the obstacle in the camera's view? goe_sim --help has the camera's angles."
-    return f"No answer to compare with the truth: {', '.join(absent)}." if absent else ""
+    return f"No estimate to compare with the truth: {', '.join(absent)}." if absent else ""
