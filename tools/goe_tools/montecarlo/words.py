@@ -12,9 +12,9 @@ from .summary import EXPECTED, Row, Share, Summary, Warnings
 SIMULATION = "All of this is simulation: goe_sim flew every run."
 HEADS = ("quantity", "runs", "last error", "last sigma", "within 1 sigma", "within 2 sigma", "rms of error / sigma")
 HOW_TO_READ = (
-    f"If the sigmas are right, {EXPECTED[1]:.0%} of the estimates lie within 1 sigma of the truth and {EXPECTED[2]:.0%} "
-    "within 2 sigma. More: the sigmas are wider than necessary. Less: they are too small for the sensors of this "
-    "scenario; configure the errors of the sensors with --set. A number after +- is one standard "
+    f"If the sigmas are right, {EXPECTED[1]:.0%} of the estimates lie within 1 sigma of the truth and "
+    f"{EXPECTED[2]:.0%} within 2 sigma. More: the sigmas are wider than necessary. Less: they are too small for the "
+    "sensors of this scenario; configure the errors of the sensors with --set. A number after +- is one standard "
     "error, from the number of runs. Last error and last sigma are medians over the runs, of the absolute error and "
     "of the sigma of a run's last estimate."
 )
