@@ -23,6 +23,7 @@ from tqdm import tqdm
 
 from ..library import package
 from ..logs.fields import LogError, read_text
+from ..logs.whole_file import log_files
 from ..spread import Workers, connect, deaf, spread, workers_of
 from ..spread import add_arguments as add_workers
 from ..view.command import add_options, options_of
@@ -30,7 +31,6 @@ from . import words
 from .flown import PROGRAM, Pass, Scenario, fly
 from .summary import Summary, summaries
 
-LOG_FILES = ("camera.ini", "frames.csv")
 DEFAULT_OUT = Path("montecarlo")
 LAST_SEED = 2**62  # goe_sim's limit, minus a reserve for the runs
 TABLE_WIDTH = 118
@@ -60,7 +60,7 @@ def read_scenario(arguments: argparse.Namespace) -> Scenario:
 
 
 def make_folder(path: Path) -> None:
-    if any((path / name).exists() for name in LOG_FILES):
+    if any(file.exists() for file in log_files(path)):
         raise LogError(path, 0, "", "is the folder of a log; name another one with --out")
     try:
         path.mkdir(parents=True, exist_ok=True)
