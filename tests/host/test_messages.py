@@ -178,6 +178,13 @@ def test_all_missing_columns_are_named_at_once(tmp_path: Path, capsys: pytest.Ca
     assert said(folder) == (2, f"{place} missing column; also missing: qw, qz\n")
 
 
+def test_a_header_of_one_column_is_missing_all_others(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = write(tmp_path / "log", [{"t_s": row["t_s"]} for row in rows()])
+    place, others = f"{folder / 'frames.csv'}:1: id:", "also missing: n_m, e_m, d_m, qw, qx, qy, qz"
+    assert python_said(folder, capsys) == f"{place} column is missing; {others}"
+    assert said(folder) == (2, f"{place} missing column; {others}\n")
+
+
 def test_an_optional_column_misspelt(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     sides = {"box_left": 1, "box_top_px": 2, "box_rigth_px": 3, "box_bottom_px": 4, "colour": 5}
     folder = write(tmp_path / "log", change(lambda row: sides)(rows()))

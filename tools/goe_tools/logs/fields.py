@@ -92,24 +92,25 @@ def _nearest(name: str, names: Sequence[str]) -> str:
     return next(iter(difflib.get_close_matches(name, names, 1, SIMILARITY_MIN)), "")
 
 
-def _missing(header: list[str], name: str, known: Sequence[str]) -> str:
-    """The message for a missing column."""
+def _missing(header: list[str], absent: list[str], known: Sequence[str]) -> str:
+    """The message for missing columns, about the first one most."""
     for delimiter, plural in DELIMITERS.items():
         if len(header) == 1 and delimiter in header[0]:
             return f"column is missing: {plural} separate the columns; there must be commas, and points in the numbers"
+    others = f"; also missing: {', '.join(absent[1:])}" if len(absent) > 1 else ""
+    name = absent[0]
     old = [before for before in header if renamed_names().get(before) == name]
     if old:
-        return f"unknown column {old[0]}: now {name}"
+        return f"unknown column {old[0]}: now {name}{others}"
     instead = _nearest(name, [other for other in header if other not in known])
-    return f"column is missing; is '{instead}' meant to be it?" if instead else "column is missing"
+    meant = f"; is '{instead}' meant to be it?" if instead else ""
+    return f"column is missing{meant}{others}"
 
 
 def _check_header(header: list[str], path: Path, line: int, required: Sequence[str], known: Sequence[str]) -> None:
     absent = [name for name in required if name not in header]
     if absent:
-        message = _missing(header, absent[0], known)
-        others = f"; also missing: {', '.join(absent[1:])}" if len(absent) > 1 and len(header) > 1 else ""
-        raise LogError(path, line, absent[0], message + others)
+        raise LogError(path, line, absent[0], _missing(header, absent, known))
     for name in known:
         if header.count(name) > 1:
             raise LogError(path, line, name, "column is given twice")
