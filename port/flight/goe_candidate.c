@@ -1,4 +1,4 @@
-/* Candidates. SPDX-License-Identifier: MIT */
+/* Candidates, in a fixed table. SPDX-License-Identifier: MIT */
 #include "goe_candidate.h"
 
 #include "goe_flight_maths.h"
@@ -26,25 +26,6 @@ static bool is_same(const goe_flight_candidate_t *candidate, const goe_flight_ca
     return seen->id != 0u || goe_flight_candidate_overlap(candidate->box_px, seen->box_px) >= OVERLAP_MIN;
 }
 
-bool goe_flight_candidate_waits(const goe_flight_candidate_t *candidate) { return candidate->images != 0; }
-
-void goe_flight_candidate_expire(goe_flight_candidate_t table[GOE_FLIGHT_CANDIDATES], uint8_t camera,
-                                 uint32_t time_us) {
-    for (int i = 0; i < GOE_FLIGHT_CANDIDATES; i++) {
-        if (table[i].camera == camera && goe_flight_between_us(time_us, table[i].time_us) > APART_US) {
-            table[i].images = 0;
-        }
-    }
-}
-
-void goe_flight_candidate_bury(goe_flight_candidate_t table[GOE_FLIGHT_CANDIDATES], uint32_t now_us) {
-    for (int i = 0; i < GOE_FLIGHT_CANDIDATES; i++) {
-        if (goe_flight_between_us(now_us, table[i].time_us) > BURIED_US) {
-            table[i].images = 0;
-        }
-    }
-}
-
 /* Its place in the table; none: GOE_FLIGHT_CANDIDATES. */
 static int find(const goe_flight_candidate_t *table, const goe_flight_candidate_t *seen) {
     int i = 0;
@@ -55,39 +36,39 @@ static int find(const goe_flight_candidate_t *table, const goe_flight_candidate_
 }
 
 /* A free place, or that of the candidate undetected for the longest. */
-static int place_for(const goe_flight_candidate_t *table, uint32_t time_us) {
-    int oldest = 0;
+static goe_flight_candidate_t *place_for(goe_flight_waiting_t *waiting, uint32_t time_us) {
+    goe_flight_candidate_t *oldest = &waiting->place[0];
     for (int i = 0; i < GOE_FLIGHT_CANDIDATES; i++) {
-        if (table[i].images == 0) {
-            return i;
+        goe_flight_candidate_t *other = &waiting->place[i];
+        if (other->images == 0) {
+            return other;
         }
-        if (goe_flight_between_us(time_us, table[i].time_us) > goe_flight_between_us(time_us, table[oldest].time_us)) {
-            oldest = i;
+        if (goe_flight_between_us(time_us, other->time_us) > goe_flight_between_us(time_us, oldest->time_us)) {
+            oldest = other;
         }
     }
+    goe_flight_candidate_crowd(waiting, time_us);
     return oldest;
 }
 
-bool goe_flight_candidate_displaces(const goe_flight_candidate_t table[GOE_FLIGHT_CANDIDATES],
-                                    const goe_flight_candidate_t *seen) {
-    return find(table, seen) == GOE_FLIGHT_CANDIDATES &&
-           goe_flight_candidate_waits(&table[place_for(table, seen->time_us)]);
+void goe_flight_candidate_crowd(goe_flight_waiting_t *waiting, uint32_t time_us) {
+    waiting->crowded = true;
+    waiting->crowded_us = time_us;
 }
 
-void goe_flight_candidate_return(goe_flight_candidate_t table[GOE_FLIGHT_CANDIDATES],
-                                 const goe_flight_candidate_t *seen) {
-    goe_flight_candidate_t *candidate = &table[place_for(table, seen->time_us)];
+void goe_flight_candidate_return(goe_flight_waiting_t *waiting, const goe_flight_candidate_t *seen) {
+    goe_flight_candidate_t *candidate = place_for(waiting, seen->time_us);
     *candidate = *seen;
     candidate->images = WAITING;
 }
 
-bool goe_flight_candidate_confirm(goe_flight_candidate_t table[GOE_FLIGHT_CANDIDATES],
-                                  const goe_flight_candidate_t *seen, int images) {
-    const int found = find(table, seen);
-    goe_flight_candidate_t *candidate = &table[found < GOE_FLIGHT_CANDIDATES ? found : place_for(table, seen->time_us)];
+bool goe_flight_candidate_confirm(goe_flight_waiting_t *waiting, const goe_flight_candidate_t *seen, int images) {
+    const int found = find(waiting->place, seen);
     const bool known = found < GOE_FLIGHT_CANDIDATES;
+    goe_flight_candidate_t *candidate = known ? &waiting->place[found] : place_for(waiting, seen->time_us);
     if (known && goe_flight_between_us(seen->time_us, candidate->time_us) <= 0) {
-        return false; /* twice in one image */
+        goe_flight_candidate_crowd(waiting, seen->time_us); /* twice in one image */
+        return false;
     }
     const uint8_t before = known ? candidate->images : WAITING;
     *candidate = *seen;
@@ -97,4 +78,31 @@ bool goe_flight_candidate_confirm(goe_flight_candidate_t table[GOE_FLIGHT_CANDID
     }
     candidate->images = 0;
     return true;
+}
+
+static void forget(goe_flight_waiting_t *waiting, unsigned cameras, uint32_t time_us, int32_t after_us) {
+    for (int i = 0; i < GOE_FLIGHT_CANDIDATES; i++) {
+        goe_flight_candidate_t *candidate = &waiting->place[i];
+        const bool meant = ((cameras >> candidate->camera) & 1u) != 0u;
+        if (meant && goe_flight_between_us(time_us, candidate->time_us) > after_us) {
+            candidate->images = 0;
+        }
+    }
+    waiting->crowded = waiting->crowded && goe_flight_between_us(time_us, waiting->crowded_us) <= after_us;
+}
+
+void goe_flight_candidate_expire(goe_flight_waiting_t *waiting, uint8_t camera, uint32_t time_us) {
+    forget(waiting, 1u << camera, time_us, APART_US);
+}
+
+void goe_flight_candidate_bury(goe_flight_waiting_t *waiting, uint32_t now_us) {
+    forget(waiting, (1u << GOE_CAMERAS_MAX) - 1u, now_us, BURIED_US);
+}
+
+int goe_flight_candidate_count(const goe_flight_waiting_t *waiting) {
+    int count = waiting->crowded ? 1 : 0;
+    for (int i = 0; i < GOE_FLIGHT_CANDIDATES; i++) {
+        count += waiting->place[i].images != 0 ? 1 : 0;
+    }
+    return count;
 }

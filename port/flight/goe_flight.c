@@ -110,11 +110,11 @@ static void forget(goe_flight_t *flight) {
     goe_flight_history_clear(&flight->history);
     memset(&flight->marks, 0, sizeof flight->marks);
     memset(&flight->clock, 0, sizeof flight->clock);
-    memset(flight->candidate, 0, sizeof flight->candidate);
+    memset(&flight->waiting, 0, sizeof flight->waiting);
     memset(flight->velocity_ned_m_s, 0, sizeof flight->velocity_ned_m_s);
     goe_flight_reaction_clear(&flight->reaction);
     flight->had_frame = 0;
-    flight->origin_known = flight->crowded = false;
+    flight->origin_known = false;
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         goe_flight_slot_begin(&flight->slot[i], 0u, 0u);
         flight->slot[i].used = false;
@@ -573,18 +573,6 @@ static void report_action(const goe_flight_t *flight, goe_flight_assessment_t *r
     }
 }
 
-/* Detected obstacles without a position: with a slot, or waiting for one. */
-static uint8_t count_unplaced(const goe_flight_t *flight) {
-    int count = flight->crowded ? 1 : 0;
-    for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
-        count += goe_flight_slot_is_unplaced(&flight->slot[i]) ? 1 : 0;
-    }
-    for (int i = 0; i < GOE_FLIGHT_CANDIDATES; i++) {
-        count += goe_flight_candidate_waits(&flight->candidate[i]) ? 1 : 0;
-    }
-    return (uint8_t)count;
-}
-
 static void report(const goe_flight_t *flight, int worst, uint32_t now_us, goe_flight_assessment_t *result) {
     result->detector_alive = detector_alive(flight, now_us);
     result->pose_alive = pose_alive(flight, now_us);
@@ -592,8 +580,9 @@ static void report(const goe_flight_t *flight, int worst, uint32_t now_us, goe_f
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         const goe_flight_slot_t *slot = &flight->slot[i];
         result->obstacles = (uint8_t)(result->obstacles + (slot->assessed ? 1 : 0));
+        result->unplaced = (uint8_t)(result->unplaced + (goe_flight_slot_is_unplaced(slot) ? 1 : 0));
     }
-    result->unplaced = count_unplaced(flight);
+    result->unplaced = (uint8_t)(result->unplaced + goe_flight_candidate_count(&flight->waiting));
     if (worst != NOBODY) {
         copy_hazard(&flight->slot[worst], &result->hazard);
         result->suspect = flight->slot[worst].suspect;
@@ -746,7 +735,7 @@ static bool is_passed_over(const goe_flight_t *flight, const goe_flight_slot_t *
 static void open_sectors(const goe_flight_t *flight, uint32_t max_cm, uint16_t sector_cm[GOE_FLIGHT_SECTORS]) {
     const goe_flight_history_attitude_t *attitude = goe_flight_history_newest_attitude(&flight->history);
     const uint32_t now_us = flight->assessed_us;
-    const bool alive = pose_alive(flight, now_us) && !flight->crowded;
+    const bool alive = pose_alive(flight, now_us) && !flight->waiting.crowded;
     for (int i = 0; i < GOE_FLIGHT_SECTORS; i++) {
         sector_cm[i] = GOE_FLIGHT_SECTOR_UNKNOWN;
     }
@@ -761,17 +750,15 @@ static void open_sectors(const goe_flight_t *flight, uint32_t max_cm, uint16_t s
 }
 
 /* Where an obstacle was detected that has no position. */
-static void close_sectors(const goe_flight_t *flight, const float q[4], uint16_t sector_cm[GOE_FLIGHT_SECTORS]) {
+static void close_sectors(const goe_flight_t *flight, uint16_t sector_cm[GOE_FLIGHT_SECTORS]) {
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
-        const goe_flight_slot_t *slot = &flight->slot[i];
-        if (goe_flight_slot_is_unplaced(slot) && has_camera(flight, slot->camera)) {
-            goe_flight_geometry_close_sectors(sector_cm, &flight->camera[slot->camera], q, slot->box_px);
+        if (goe_flight_slot_is_unplaced(&flight->slot[i])) {
+            goe_flight_geometry_close_sectors(sector_cm, &flight->slot[i].bearings);
         }
     }
     for (int i = 0; i < GOE_FLIGHT_CANDIDATES; i++) {
-        const goe_flight_candidate_t *candidate = &flight->candidate[i];
-        if (goe_flight_candidate_waits(candidate) && has_camera(flight, candidate->camera)) {
-            goe_flight_geometry_close_sectors(sector_cm, &flight->camera[candidate->camera], q, candidate->box_px);
+        if (flight->waiting.place[i].images != 0) {
+            goe_flight_geometry_close_sectors(sector_cm, &flight->waiting.place[i].bearings);
         }
     }
 }
@@ -788,9 +775,7 @@ goe_flight_status_t goe_flight_sectors(const goe_flight_t *flight, uint32_t max_
     const goe_flight_history_attitude_t *attitude = goe_flight_history_newest_attitude(&flight->history);
     const goe_flight_history_position_t *own = goe_flight_history_newest_position(&flight->history);
     open_sectors(flight, max_cm, sector_cm);
-    if (attitude) {
-        close_sectors(flight, attitude->q, sector_cm);
-    }
+    close_sectors(flight, sector_cm);
     for (int i = 0; i < GOE_FLIGHT_SLOTS && attitude && own; i++) {
         const goe_flight_slot_t *slot = &flight->slot[i];
         if (slot->used && (slot->valid & GOE_HAS_POSITION) != 0u && !is_passed_over(flight, slot)) {

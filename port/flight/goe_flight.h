@@ -27,7 +27,7 @@
  *             frame and an assessment return GOE_FLIGHT_CORRUPTED. [F3] An estimator that returns GOE_CORRUPTED starts again; if its
  *             settings are lost, it takes those of another slot. Until it has a position again, the slot keeps its position, hazard
  *             and warning, marked suspect. [F4] The rest (poses, clocks, positions, the active order) is not sealed.
- * Cost        On a Cortex-M4F (gcc), in instructions: a sample at most 1,250; a frame 44,700 for each obstacle in it; an assessment
+ * Cost        On a Cortex-M4F (gcc), in instructions: a sample at most 1,250; a frame 45,900 for each obstacle in it; an assessment
  *             28,700 with one obstacle and 23,200 for each further one with a position. While there is a hazard or an order, an
  *             assessment also examines paths: at most 3 times (4 + 4 GOE_FLIGHT_SLOTS), each against every obstacle.
  *             goe_flight_obstacle() 980; goe_flight_sectors() 7,000 with one obstacle; goe_flight_init() 12,700 for each
@@ -49,14 +49,14 @@
 
 /* Like the limits of goe.h, these may be defined in GOE_CONFIG_HEADER. */
 #ifndef GOE_FLIGHT_SLOTS
-#define GOE_FLIGHT_SLOTS 4 /* most obstacles at a time, 1 to 16; each takes an estimator and 128 bytes */
+#define GOE_FLIGHT_SLOTS 4 /* most obstacles at a time, 1 to 16; each takes an estimator and 136 bytes */
 #endif
 #if GOE_FLIGHT_SLOTS < 1 || GOE_FLIGHT_SLOTS > 16
 #error "GOE_FLIGHT_SLOTS must be 1 to 16"
 #endif
 
 #define GOE_FLIGHT_SAMPLES 32    /* samples in each ring of the pose history: 0.6 s or more */
-#define GOE_FLIGHT_CANDIDATES 6  /* new obstacles that wait for confirmation */
+#define GOE_FLIGHT_CANDIDATES 6  /* new obstacles that wait for confirmation or for a slot */
 #define GOE_FLIGHT_DETECTIONS 32 /* most detections in one call of goe_flight_frame() */
 #define GOE_FLIGHT_SECTORS 72    /* sectors of goe_flight_sectors(), 5 degrees each, the first centered on north */
 
@@ -243,8 +243,8 @@ typedef struct {
                               pose are alive and unplaced is 0 */
     int8_t avoided;        /* slot of the obstacle that the action avoids; -1: none, or its track has ended */
     uint8_t obstacles;     /* number of obstacles with a position */
-    uint8_t unplaced;      /* number of detected obstacles without a position, also those that wait for confirmation or for
-                              a slot: no order avoids them */
+    uint8_t unplaced;      /* at least so many detected obstacles have no position, also those that wait for confirmation or
+                              for a slot; 0: none. No order avoids them */
     float needed_s;        /* time that the action needs; without an action, time that the best action would need; 0
                               without a worst obstacle */
     float target_ned_m[3]; /* 0 if GOE_FLIGHT_NONE. The height of CLIMB and GO_AROUND clears the highest known top on
@@ -332,12 +332,23 @@ typedef struct { /* goe_clock.c: sender's clock to autopilot's */
     goe_flag_t has_before, synced;
 } goe_flight_clock_t;
 
+typedef struct { /* goe_geometry.c: the bearings of a detection, at its exposure, degrees */
+    int16_t middle_deg, half_deg; /* half_deg 180: any */
+} goe_flight_bearings_t;
+
 typedef struct { /* goe_candidate.c */
     uint32_t id, time_us;
     int16_t box_px[4];
     uint8_t camera;
     uint8_t images; /* 0: free; otherwise one more than the images that count */
+    goe_flight_bearings_t bearings;
 } goe_flight_candidate_t;
+
+typedef struct { /* goe_candidate.c */
+    goe_flight_candidate_t place[GOE_FLIGHT_CANDIDATES];
+    uint32_t crowded_us;
+    goe_flag_t crowded; /* a detection had no place, or no known one, last at crowded_us */
+} goe_flight_waiting_t;
 
 typedef struct { /* goe_slot.c */
     goe_estimator_t estimator;
@@ -350,6 +361,7 @@ typedef struct { /* goe_slot.c */
     float top_m, top_sd_m, width_m, length_m, length_heading_deg;
     float age_s; /* at taken_us */
     int16_t box_px[4];
+    goe_flight_bearings_t bearings; /* of the latest detection */
     uint8_t valid, model, reset_count;
     uint8_t camera; /* that detected it last */
     goe_flag_t used, fresh_track, suspect, in_view, assessed;
@@ -399,10 +411,8 @@ typedef struct {
     uint8_t ground_source; /* that source: GOE_FLIGHT_RANGE_FINDER, ... */
     uint8_t had_frame; /* bit i: camera i has had a frame */
     goe_flag_t origin_known;
-    goe_flag_t crowded; /* detections had neither a slot nor a place among the candidates, last at crowded_us */
-    uint32_t crowded_us;
     int32_t origin_lat_e7, origin_lon_e7;
-    goe_flight_candidate_t candidate[GOE_FLIGHT_CANDIDATES];
+    goe_flight_waiting_t waiting;
     goe_flight_slot_t slot[GOE_FLIGHT_SLOTS];
 } goe_flight_t;
 
@@ -476,7 +486,7 @@ goe_flight_status_t goe_flight_obstacle(const goe_flight_t *flight, int slot, go
 /* Finds the distance of the nearest obstacle in each sector; sector i is centered on the bearing 5 i degrees. Values in cm:
  *   - at most max_cm: the distance of an obstacle with a position; while unplaced is not 0 there may be a nearer one
  *   - max_cm + 1: the sector is in the camera's view and has no obstacle, nor a detection without a position,
- *     a slot or a confirmation, in the latest attitude
+ *     a slot or a confirmation
  *   - GOE_FLIGHT_SECTOR_UNKNOWN: all other sectors
  * Obstacles whose top the aircraft passes by more than the clearance, at two sigma, are ignored. For PX4's
  * obstacle_distance use increment 5 and the frame GLOBAL.

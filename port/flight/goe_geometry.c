@@ -11,6 +11,7 @@
 #define POLE_COSINE_MIN 0.017f
 #define TURN_E7 3600000000
 #define LEVEL_MIN 0.2f /* of the optical axis: its horizontal part */
+#define STEEP 100.0f   /* tangent of a right angle, for bearings: straight down or up may be in between */
 #define SECTOR_DEG 5.0f
 #define CM_PER_M 100.0f
 #define TOUCH_MIN 1u /* cm: 0 means something else to some readers */
@@ -109,17 +110,26 @@ void goe_flight_geometry_lat_lon(int32_t origin_lat_e7, int32_t origin_lon_e7, c
 
 /* ---------------------------------------------------------------------------------------------------------- bearings -- */
 
-static void look_along(const goe_flight_camera_t *camera, const float q[4], float axis[3]) {
-    float body_to_ned[9];
-    const float *mounted = camera->body_from_camera;
-    const float axis_body[3] = {mounted[2], mounted[5], mounted[8]};
-    goe_flight_rotation(q, body_to_ned);
-    goe_flight_turn(body_to_ned, axis_body, axis);
+/* A ray through a pixel, north, east, down; its length is of no interest. */
+static void look_through(const goe_flight_camera_t *camera, const float body_to_ned[9], float u_px, float v_px,
+                         float ray[3]) {
+    const float seen[3] = {(u_px - camera->center_px[0]) / camera->focal_px[0],
+                           (v_px - camera->center_px[1]) / camera->focal_px[1], 1.0f};
+    float body[3];
+    goe_flight_turn(camera->body_from_camera, seen, body);
+    goe_flight_turn(body_to_ned, body, ray);
+}
+
+/* From -180 to 180. */
+static float apart_deg(float from_deg, float to_deg) {
+    return goe_flight_positive_deg(to_deg - from_deg + 180.0f) - 180.0f;
 }
 
 bool goe_flight_geometry_view(const goe_flight_camera_t *camera, const float q[4], float *from_deg, float *width_deg) {
+    float body_to_ned[9];
     float axis[3];
-    look_along(camera, q, axis);
+    goe_flight_rotation(q, body_to_ned);
+    look_through(camera, body_to_ned, camera->center_px[0], camera->center_px[1], axis);
     const float left_deg = goe_flight_atan2_deg(camera->center_px[0], camera->focal_px[0]);
     const float right_deg = goe_flight_atan2_deg(camera->size_px[0] - camera->center_px[0], camera->focal_px[0]);
     *from_deg = goe_flight_positive_deg(goe_flight_atan2_deg(axis[1], axis[0]) - left_deg);
@@ -137,16 +147,34 @@ void goe_flight_geometry_open_sectors(uint16_t sector_cm[GOE_FLIGHT_SECTORS], ui
     }
 }
 
-void goe_flight_geometry_close_sectors(uint16_t sector_cm[GOE_FLIGHT_SECTORS], const goe_flight_camera_t *camera,
-                                       const float q[4], const int16_t box_px[4]) {
-    float axis[3];
-    look_along(camera, q, axis);
-    const float left_deg = goe_flight_atan2_deg((float)box_px[0] - camera->center_px[0], camera->focal_px[0]);
-    const float right_deg = goe_flight_atan2_deg((float)box_px[2] - camera->center_px[0], camera->focal_px[0]);
-    const float middle_deg = goe_flight_atan2_deg(axis[1], axis[0]) + 0.5f * (left_deg + right_deg);
+void goe_flight_geometry_bearings(const goe_flight_camera_t *camera, const float q[4], const float extent_px[4],
+                                  goe_flight_bearings_t *bearings) {
+    float body_to_ned[9];
+    float middle[3];
+    float ray[3];
+    float tangent = 0.0f; /* of the widest corner */
+    bool below = false;
+    goe_flight_rotation(q, body_to_ned);
+    look_through(camera, body_to_ned, 0.5f * (extent_px[0] + extent_px[2]), 0.5f * (extent_px[1] + extent_px[3]),
+                 middle);
+    for (int corner = 0; corner < 4; corner++) {
+        look_through(camera, body_to_ned, extent_px[(corner & 1) != 0 ? 2 : 0], extent_px[(corner & 2) != 0 ? 3 : 1],
+                     ray);
+        const float across = goe_flight_absolute(middle[0] * ray[1] - middle[1] * ray[0]);
+        const float along = middle[0] * ray[0] + middle[1] * ray[1];
+        below = below || along * STEEP <= across;
+        tangent = below ? tangent : goe_flight_larger(tangent, across / along);
+    }
+    const float half_deg = goe_flight_atan2_deg(tangent, 1.0f) + 1.0f; /* whole degrees, up */
+    const float middle_deg = goe_flight_positive_deg(goe_flight_atan2_deg(middle[1], middle[0]));
+    bearings->middle_deg = (int16_t)middle_deg;
+    bearings->half_deg = below ? GOE_FLIGHT_ANY_BEARING : (int16_t)half_deg;
+}
+
+void goe_flight_geometry_close_sectors(uint16_t sector_cm[GOE_FLIGHT_SECTORS], const goe_flight_bearings_t *bearings) {
     for (int i = 0; i < GOE_FLIGHT_SECTORS; i++) {
-        const float off_deg = goe_flight_positive_deg((float)i * SECTOR_DEG - middle_deg + 180.0f) - 180.0f;
-        if (goe_flight_within(off_deg, 0.5f * (right_deg - left_deg) + 1.5f * SECTOR_DEG)) {
+        const float off_deg = apart_deg((float)bearings->middle_deg, (float)i * SECTOR_DEG);
+        if (goe_flight_within(off_deg, (float)bearings->half_deg + 1.5f * SECTOR_DEG)) {
             sector_cm[i] = GOE_FLIGHT_SECTOR_UNKNOWN;
         }
     }
@@ -170,7 +198,7 @@ void goe_flight_geometry_enter_circle(uint16_t sector_cm[GOE_FLIGHT_SECTORS], ui
     const float half_deg = outside > 0.0f ? goe_flight_atan2_deg(radius_m, sqrtf(outside)) : 180.0f;
     const float bearing_deg = goe_flight_atan2_deg(away_ne_m[1], away_ne_m[0]);
     for (int i = 0; i < GOE_FLIGHT_SECTORS; i++) {
-        const float off_deg = goe_flight_positive_deg((float)i * SECTOR_DEG - bearing_deg + 180.0f) - 180.0f;
+        const float off_deg = apart_deg(bearing_deg, (float)i * SECTOR_DEG);
         if (goe_flight_within(off_deg, half_deg + 0.5f * SECTOR_DEG)) {
             enter(&sector_cm[i], cm);
         }

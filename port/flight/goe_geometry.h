@@ -24,9 +24,14 @@ bool goe_flight_geometry_view(const goe_flight_camera_t *camera, const float q[4
 void goe_flight_geometry_open_sectors(uint16_t sector_cm[GOE_FLIGHT_SECTORS], uint32_t max_cm, float from_deg,
                                       float width_deg);
 
-/* The sectors that a box of this camera touches, and one more on each side, are unknown. */
-void goe_flight_geometry_close_sectors(uint16_t sector_cm[GOE_FLIGHT_SECTORS], const goe_flight_camera_t *camera,
-                                       const float q[4], const int16_t box_px[4]);
+#define GOE_FLIGHT_ANY_BEARING 180 /* of half_deg */
+
+/* Bearings of a part of the image (left, top, right, bottom, pixels), without lens distortion: those of its middle and its corners. */
+void goe_flight_geometry_bearings(const goe_flight_camera_t *camera, const float q[4], const float extent_px[4],
+                                  goe_flight_bearings_t *bearings);
+
+/* The sectors of these bearings, and one more on each side, are unknown. */
+void goe_flight_geometry_close_sectors(uint16_t sector_cm[GOE_FLIGHT_SECTORS], const goe_flight_bearings_t *bearings);
 
 /* A circle at a place relative to the aircraft enters the sectors that it touches, by its nearest point. */
 void goe_flight_geometry_enter_circle(uint16_t sector_cm[GOE_FLIGHT_SECTORS], uint32_t max_cm, const float away_ne_m[2],

@@ -20,6 +20,7 @@ void goe_flight_slot_begin(goe_flight_slot_t *slot, uint32_t id, uint32_t time_u
     const size_t after = offsetof(goe_flight_slot_t, hazard);
     memset((unsigned char *)slot + after, 0, sizeof *slot - after);
     slot->id = id;
+    slot->bearings.half_deg = GOE_FLIGHT_ANY_BEARING;
     slot->taken_us = slot->detected_us = time_us;
     slot->used = slot->fresh_track = true;
 }
@@ -183,6 +184,7 @@ void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t cam
     image.noise.height_sd_m = slot->height_sd_m; /* counts once, in an image of the estimator's choice */
     if (seen) {
         set_features(&image, camera, seen);
+        goe_flight_slot_bearings_of(seen, camera, view->pose.q, &slot->bearings);
     }
     const goe_status_t status = goe_update(&slot->estimator, &image, &estimate);
     slot->in_view = seen != NULL;
@@ -200,7 +202,7 @@ void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t cam
         slot->fresh_track = false;
         note(slot, camera_ned_m, &estimate, since_s);
         if (seen) {
-            (void)goe_flight_slot_box_of(seen, camera, slot->box_px);
+            (void)goe_flight_slot_box_of(seen, slot->box_px);
         }
     }
 }
@@ -215,34 +217,29 @@ static void widen(float extent[4], float u, float v, bool *any) {
     *any = true;
 }
 
-/* The sides that are given, and the image's border for the others. */
-static void span_of(const goe_box_t *box, const goe_flight_camera_t *camera, float extent[4]) {
-    extent[0] = (box->sides & GOE_SIDE_LEFT) != 0u ? box->left_px : 0.0f;
-    extent[1] = (box->sides & GOE_SIDE_TOP) != 0u ? box->top_px : 0.0f;
-    extent[2] = (box->sides & GOE_SIDE_RIGHT) != 0u ? box->right_px : camera->size_px[0];
-    extent[3] = (box->sides & GOE_SIDE_BOTTOM) != 0u ? box->bottom_px : camera->size_px[1];
-}
-
-bool goe_flight_slot_box_of(const goe_flight_detection_t *detection, const goe_flight_camera_t *camera,
-                            int16_t box_px[4]) {
+/* Left, top, right and bottom of the points of its border; false: it has none. */
+static bool extent_of(const goe_flight_detection_t *detection, float extent[4]) {
     const goe_pixel_t *const points[6] = {&detection->left,      &detection->right,     &detection->top,
                                           &detection->base_left, &detection->base_near, &detection->base_right};
     const goe_box_t *box = &detection->box;
-    float extent[4] = {0.0f, 0.0f, 0.0f, 0.0f};
     bool any = false;
+    memset(extent, 0, 4 * sizeof extent[0]);
     if (box->sides == GOE_SIDES_ALL) {
         widen(extent, box->left_px, box->top_px, &any);
         widen(extent, box->right_px, box->bottom_px, &any);
-    } else {
-        for (int i = 0; i < 6; i++) {
-            if (goe_flight_is_set(&points[i]->visible)) {
-                widen(extent, points[i]->u_px, points[i]->v_px, &any);
-            }
+        return true;
+    }
+    for (int i = 0; i < 6; i++) {
+        if (goe_flight_is_set(&points[i]->visible)) {
+            widen(extent, points[i]->u_px, points[i]->v_px, &any);
         }
     }
-    if (!any) {
-        span_of(box, camera, extent);
-    }
+    return any;
+}
+
+bool goe_flight_slot_box_of(const goe_flight_detection_t *detection, int16_t box_px[4]) {
+    float extent[4];
+    const bool any = extent_of(detection, extent);
     for (int axis = 0; axis < 2; axis++) { /* two points of one row have a height too */
         const float lacking = 0.5f * goe_flight_larger(SIZE_MIN_PX - (extent[axis + 2] - extent[axis]), 0.0f);
         const float low = goe_flight_clamped(extent[axis] - lacking, -PIXEL_MAX, PIXEL_MAX);
@@ -251,6 +248,20 @@ bool goe_flight_slot_box_of(const goe_flight_detection_t *detection, const goe_f
         box_px[axis + 2] = (int16_t)high;
     }
     return any;
+}
+
+/* What the detection does not show of a box reaches to the image's border. */
+void goe_flight_slot_bearings_of(const goe_flight_detection_t *detection, const goe_flight_camera_t *camera,
+                                 const float q[4], goe_flight_bearings_t *bearings) {
+    const goe_box_t *box = &detection->box;
+    float extent[4];
+    if ((box->sides != 0u && box->sides != GOE_SIDES_ALL) || !extent_of(detection, extent)) {
+        extent[0] = (box->sides & GOE_SIDE_LEFT) != 0u ? box->left_px : 0.0f;
+        extent[1] = (box->sides & GOE_SIDE_TOP) != 0u ? box->top_px : 0.0f;
+        extent[2] = (box->sides & GOE_SIDE_RIGHT) != 0u ? box->right_px : camera->size_px[0];
+        extent[3] = (box->sides & GOE_SIDE_BOTTOM) != 0u ? box->bottom_px : camera->size_px[1];
+    }
+    goe_flight_geometry_bearings(camera, q, extent, bearings);
 }
 
 /* At half the top's height, or half the own one where the top is not known. */

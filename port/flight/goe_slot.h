@@ -37,10 +37,12 @@ void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t cam
                           const goe_flight_slot_view_t *view, const float jumps_ned_m[3],
                           const goe_flight_detection_t *seen);
 
-/* Points of a detection's border as a box, whole pixels. A side that is not given lies at the image's border; then, and without any
- * point, false: no box of another image can be matched to it. */
-bool goe_flight_slot_box_of(const goe_flight_detection_t *detection, const goe_flight_camera_t *camera,
-                            int16_t box_px[4]);
+/* Points of a detection's border as a box, whole pixels; false: it has none. */
+bool goe_flight_slot_box_of(const goe_flight_detection_t *detection, int16_t box_px[4]);
+
+/* Where it may be, by the attitude at its exposure. */
+void goe_flight_slot_bearings_of(const goe_flight_detection_t *detection, const goe_flight_camera_t *camera,
+                                 const float q[4], goe_flight_bearings_t *bearings);
 
 /* Whether this box, in this view, is likely to be of the slot's obstacle: how near, 0 to 1; 0: not. */
 float goe_flight_slot_claims(const goe_flight_slot_t *slot, const goe_flight_camera_t cameras[GOE_CAMERAS_MAX],

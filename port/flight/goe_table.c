@@ -7,11 +7,9 @@
 
 #define COORDINATE_MAX_PX 1.0e5f
 #define PIXEL_SD_MAX_PX 100.0f
-#define UNDETECTED_S 2.0f  /* after which a track without a position, or a passed one, may be given up */
-#define WORTH_KEPT 0.5f    /* a slot of more worth is never given up for a new obstacle */
-#define ORDERED_S 30.0f    /* while an order is active every obstacle is kept so long: the way back leads past it */
-#define CROWDED_US 1000000 /* for which a detection without a place counts */
-#define BURIED_US 10000000 /* ... without an image: older times would look like future ones */
+#define UNDETECTED_S 2.0f /* after which a track without a position, or a passed one, may be given up */
+#define WORTH_KEPT 0.5f   /* a slot of more worth is never given up for a new obstacle */
+#define ORDERED_S 30.0f   /* while an order is active every obstacle is kept so long: the way back leads past it */
 #define NOBODY (-1)
 
 /* ------------------------------------------------------------------------------------------------------- detections -- */
@@ -41,12 +39,6 @@ static bool is_good(const goe_flight_detection_t *d) {
            is_good_pixel(&d->base_right);
 }
 
-/* A detection has no place, or no known one: it may be anywhere in the view. */
-static void crowd(goe_flight_t *flight, uint32_t time_us) {
-    flight->crowded = true;
-    flight->crowded_us = time_us;
-}
-
 /* Detections to be used, as bits; the others are counted. *readable: there is a readable detection, or the image has none. */
 static uint32_t usable(goe_flight_t *flight, const goe_flight_slot_view_t *view, const goe_flight_frame_t *frame,
                        bool *readable) {
@@ -55,7 +47,7 @@ static uint32_t usable(goe_flight_t *flight, const goe_flight_slot_view_t *view,
     for (int k = 0; k < frame->count; k++) {
         if (!is_good(&frame->detection[k])) {
             goe_flight_count(&flight->counters.refused);
-            crowd(flight, view->time_us);
+            goe_flight_candidate_crowd(&flight->waiting, view->time_us);
         } else if (frame->detection[k].score < flight->settings.score_min) {
             goe_flight_count(&flight->counters.weak);
             *readable = true;
@@ -169,7 +161,7 @@ static void give_known(goe_flight_t *flight, const goe_flight_slot_view_t *view,
             if (((*taken >> i) & 1u) == 0u) {
                 give(flight, i, view, &frame->detection[k], taken);
             } else { /* a second one of this id */
-                crowd(flight, view->time_us);
+                goe_flight_candidate_crowd(&flight->waiting, view->time_us);
             }
         }
     }
@@ -180,7 +172,7 @@ static void give_renumbered(goe_flight_t *flight, const goe_flight_slot_view_t *
     for (int k = 0; k < frame->count; k++) {
         const goe_flight_detection_t *detection = &frame->detection[k];
         int16_t box_px[4];
-        if (((*waiting >> k) & 1u) == 0u || !goe_flight_slot_box_of(detection, &flight->camera[view->camera], box_px)) {
+        if (((*waiting >> k) & 1u) == 0u || !goe_flight_slot_box_of(detection, box_px)) {
             continue;
         }
         const int i = claimant(flight, view, *taken, box_px);
@@ -195,15 +187,12 @@ static void give_renumbered(goe_flight_t *flight, const goe_flight_slot_view_t *
     }
 }
 
-/* What a slot is given up for while its obstacle is still detected waits for another one. */
+/* The obstacle of a slot that is given up waits for another one. */
 static void wait_again(goe_flight_t *flight, const goe_flight_slot_t *slot) {
-    const goe_flight_candidate_t candidate = {slot->id,
-                                              slot->detected_us,
-                                              {slot->box_px[0], slot->box_px[1], slot->box_px[2], slot->box_px[3]},
-                                              slot->camera,
-                                              1};
+    goe_flight_candidate_t candidate = {slot->id, slot->detected_us, {0, 0, 0, 0}, slot->camera, 0, slot->bearings};
+    memcpy(candidate.box_px, slot->box_px, sizeof candidate.box_px);
     if (slot->used) {
-        goe_flight_candidate_return(flight->candidate, &candidate);
+        goe_flight_candidate_return(&flight->waiting, &candidate);
     }
 }
 
@@ -211,19 +200,16 @@ static void give_new(goe_flight_t *flight, const goe_flight_slot_view_t *view, c
                      uint32_t waiting, uint32_t *taken) {
     for (int k = 0; k < frame->count; k++) {
         const goe_flight_detection_t *detection = &frame->detection[k];
-        goe_flight_candidate_t candidate = {detection->id, view->time_us, {0, 0, 0, 0}, view->camera, 0};
+        goe_flight_candidate_t candidate = {detection->id, view->time_us, {0, 0, 0, 0}, view->camera, 0, {0, 0}};
         if (((waiting >> k) & 1u) == 0u) {
             continue;
         }
-        const bool matches = goe_flight_slot_box_of(detection, &flight->camera[view->camera], candidate.box_px);
-        if (!matches && detection->id == 0u) { /* no other image can be matched to it */
-            crowd(flight, view->time_us);
+        goe_flight_slot_bearings_of(detection, &flight->camera[view->camera], view->pose.q, &candidate.bearings);
+        if (!goe_flight_slot_box_of(detection, candidate.box_px) && detection->id == 0u) {
+            goe_flight_candidate_crowd(&flight->waiting, view->time_us); /* no other image can be matched to it */
             continue;
         }
-        if (goe_flight_candidate_displaces(flight->candidate, &candidate)) {
-            crowd(flight, view->time_us);
-        }
-        if (!goe_flight_candidate_confirm(flight->candidate, &candidate, (int)flight->settings.confirm_images)) {
+        if (!goe_flight_candidate_confirm(&flight->waiting, &candidate, (int)flight->settings.confirm_images)) {
             continue;
         }
         const int i = free_place(flight, view->time_us);
@@ -232,7 +218,7 @@ static void give_new(goe_flight_t *flight, const goe_flight_slot_view_t *view, c
             goe_flight_slot_begin(&flight->slot[i], detection->id, view->time_us);
             give(flight, i, view, detection, taken);
         } else {
-            goe_flight_candidate_return(flight->candidate, &candidate);
+            goe_flight_candidate_return(&flight->waiting, &candidate);
         }
     }
 }
@@ -249,8 +235,7 @@ static void give_nothing(goe_flight_t *flight, const goe_flight_slot_view_t *vie
 
 bool goe_flight_table_take(goe_flight_t *flight, const goe_flight_slot_view_t *view, const goe_flight_frame_t *frame) {
     bool readable;
-    goe_flight_candidate_expire(flight->candidate, view->camera, view->time_us);
-    flight->crowded = flight->crowded && goe_flight_between_us(view->time_us, flight->crowded_us) <= CROWDED_US;
+    goe_flight_candidate_expire(&flight->waiting, view->camera, view->time_us);
     uint32_t waiting = usable(flight, view, frame, &readable);
     uint32_t taken = 0u;
     give_known(flight, view, frame, &waiting, &taken);
@@ -269,8 +254,7 @@ static bool is_ahead(const goe_flight_t *flight, const goe_flight_slot_t *slot) 
 }
 
 void goe_flight_table_age(goe_flight_t *flight, uint32_t now_us) {
-    goe_flight_candidate_bury(flight->candidate, now_us);
-    flight->crowded = flight->crowded && goe_flight_between_us(now_us, flight->crowded_us) <= BURIED_US;
+    goe_flight_candidate_bury(&flight->waiting, now_us);
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         goe_flight_slot_t *slot = &flight->slot[i];
         const float undetected_s = goe_flight_between_s(now_us, slot->detected_us);

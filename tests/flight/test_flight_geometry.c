@@ -220,6 +220,74 @@ static void the_view_turns_with_the_aircraft(void) {
     TEST_ASSERT_FALSE(goe_flight_geometry_view(&camera, ahead, &from_deg, &width_deg));
 }
 
+/* A ray through a pixel, by the definitions of goe.h, in doubles: its bearing. */
+static double bearing_through(const goe_flight_camera_t *camera, const float q[4], double u_px, double v_px) {
+    const double w = (double)q[0];
+    const double v[3] = {(double)q[1], (double)q[2], (double)q[3]};
+    const double seen[3] = {(u_px - (double)camera->center_px[0]) / (double)camera->focal_px[0],
+                            (v_px - (double)camera->center_px[1]) / (double)camera->focal_px[1], 1.0};
+    double body[3];
+    double ne[2];
+    for (int i = 0; i < 3; i++) {
+        const float *row = &camera->body_from_camera[3 * i];
+        body[i] = (double)row[0] * seen[0] + (double)row[1] * seen[1] + (double)row[2] * seen[2];
+    }
+    for (int i = 0; i < 2; i++) { /* b + 2 v x (v x b + w b) */
+        const int j = (i + 1) % 3;
+        const int k = (i + 2) % 3;
+        const double along_j = v[k] * body[i] - v[i] * body[k] + w * body[j];
+        const double along_k = v[i] * body[j] - v[j] * body[i] + w * body[k];
+        ne[i] = body[i] + 2.0 * (v[j] * along_k - v[k] * along_j);
+    }
+    return DEG_PER_RAD * atan2(ne[1], ne[0]);
+}
+
+/* Each pixel of a part of the image, in any camera at any attitude, lies within its bearings; and one of them lies at their end. */
+static void bearings_contain_every_pixel_and_no_more(void) {
+    int some = 0;
+    for (int k = 0; k < 1000; k++) {
+        goe_flight_camera_t camera;
+        goe_flight_bearings_t bearings;
+        goe_camera_t settings;
+        double most = 0.0;
+        memset(&settings, 0, sizeof settings);
+        memset(&camera, 0, sizeof camera);
+        settings.fx_px = settings.fy_px = (float)check_random_between(&any, 300.0, 1500.0);
+        settings.width_px = settings.height_px = 1000.0f;
+        settings.cx_px = settings.cy_px = 500.0f;
+        settings.mount_yaw_deg = (float)check_random_between(&any, -180.0, 180.0);
+        settings.mount_pitch_deg = (float)check_random_between(&any, -90.0, 30.0);
+        settings.mount_roll_deg = (float)check_random_between(&any, -30.0, 30.0);
+        goe_flight_geometry_camera(&camera, &settings);
+        const double roll = 0.5 / DEG_PER_RAD * check_random_between(&any, -50.0, 50.0);
+        const double yaw = 0.5 / DEG_PER_RAD * check_random_between(&any, -180.0, 180.0);
+        const float q[4] = {(float)(cos(yaw) * cos(roll)), (float)(cos(yaw) * sin(roll)), (float)(sin(yaw) * sin(roll)),
+                            (float)(sin(yaw) * cos(roll))};
+        float extent[4];
+        for (int axis = 0; axis < 2; axis++) {
+            extent[axis] = (float)check_random_between(&any, 0.0, 1000.0);
+            extent[axis + 2] = extent[axis] + (float)check_random_between(&any, 1.0, 500.0);
+        }
+        goe_flight_geometry_bearings(&camera, q, extent, &bearings);
+        for (int i = 0; i < 17 * 17; i++) {
+            const int column = i % 17;
+            const int line = i / 17;
+            const double u = (double)extent[0] + (double)(extent[2] - extent[0]) * column / 16.0;
+            const double v = (double)extent[1] + (double)(extent[3] - extent[1]) * line / 16.0;
+            const double off = fabs(remainder(bearing_through(&camera, q, u, v) - bearings.middle_deg, 360.0));
+            most = fmax(most, off);
+        }
+        TEST_ASSERT_TRUE(most <= bearings.half_deg + 1.0); /* middle_deg is a whole number */
+        if (bearings.half_deg != GOE_FLIGHT_ANY_BEARING) {
+            TEST_ASSERT_TRUE(most >= bearings.half_deg - 2.0);
+            some++;
+        } else {
+            TEST_ASSERT_TRUE(most > 88.0);
+        }
+    }
+    TEST_ASSERT_TRUE(some > 500);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_point_is_visible_where_the_scene_draws_it);
@@ -230,5 +298,6 @@ int main(void) {
     RUN_TEST(a_circle_enters_the_sectors_that_it_touches);
     RUN_TEST(the_nearest_counts_and_distant_ones_do_not);
     RUN_TEST(the_view_turns_with_the_aircraft);
+    RUN_TEST(bearings_contain_every_pixel_and_no_more);
     return UNITY_END();
 }

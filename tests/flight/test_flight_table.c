@@ -374,7 +374,7 @@ static void a_detection_that_waits_is_not_a_clear_sky(void) {
     flown.scene.height_m = 12.0;
     goe_flight_assessment_t now = flown_fly(&flown, 0.02);
     uint16_t sector_cm[GOE_FLIGHT_SECTORS];
-    while (flown.flight.candidate[0].images == 0 && flown.sample < 100) {
+    while (flown.flight.waiting.place[0].images == 0 && flown.sample < 100) {
         TEST_ASSERT_EQUAL(0, now.unplaced);
         now = flown_fly(&flown, 0.02);
     }
@@ -384,6 +384,38 @@ static void a_detection_that_waits_is_not_a_clear_sky(void) {
     const double bearing_deg = atan2(flown.scene.x0_m, flown.scene.z0_m) * 180.0 / 3.14159265358979 + 360.0;
     TEST_ASSERT_EQUAL_UINT16(GOE_FLIGHT_SECTOR_UNKNOWN, sector_cm[(int)(bearing_deg / 5.0 + 0.5) % GOE_FLIGHT_SECTORS]);
     TEST_ASSERT_EQUAL_UINT16(20001u, sector_cm[3]); /* next to it: in view, nothing there */
+}
+
+/* GIVEN an obstacle without a position, or a detection that waits WHEN the aircraft turns or banks, and nothing is detected any more
+ * THEN its bearing stays unknown: the turn does not take it along. */
+static void a_turn_leaves_the_bearing_of_a_detection(void) {
+    for (int kind = 0; kind < 4; kind++) {
+        setUp();
+        goe_flight_assessment_t now = flown_fly(&flown, 0.02);
+        while ((kind < 2 ? flown.flight.waiting.place[0].images == 0 : slots_used() == 0) && flown.sample < 100) {
+            now = flown_fly(&flown, 0.02);
+        }
+        TEST_ASSERT_EQUAL(1, now.unplaced);
+        const double bearing_deg = atan2(flown.scene.x0_m, flown.scene.z0_m) * 180.0 / 3.14159265358979;
+        const int sector = (int)((bearing_deg + 360.0) / 5.0 + 0.5) % GOE_FLIGHT_SECTORS;
+        goe_flight_attitude_t attitude;
+        goe_flight_position_t position;
+        uint16_t sector_cm[GOE_FLIGHT_SECTORS];
+        flown_samples(&flown, flown.sample, &attitude, &position);
+        const float half_rad = 0.5f * (kind % 2 == 0 ? 20.0f : 40.0f) / 57.29578f;
+        memset(attitude.q, 0, sizeof attitude.q);
+        attitude.q[0] = cosf(half_rad);
+        attitude.q[kind % 2 == 0 ? 3 : 1] = sinf(half_rad); /* to the right */
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_attitude(&flown.flight, &attitude));
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_position(&flown.flight, &position));
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_assess(&flown.flight, position.time_us, false, &now));
+        TEST_ASSERT_EQUAL(1, now.unplaced);
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_sectors(&flown.flight, 20000u, sector_cm));
+        TEST_ASSERT_EQUAL_UINT16(GOE_FLIGHT_SECTOR_UNKNOWN, sector_cm[sector]);
+        if (kind % 2 == 0) {
+            TEST_ASSERT_EQUAL_UINT16(20001u, sector_cm[(sector + 4) % GOE_FLIGHT_SECTORS]);
+        }
+    }
 }
 
 /* Boxes side by side in an image, each with its own id; the image's width has space for all of them. */
@@ -491,7 +523,7 @@ static void a_false_detection_is_forgotten_for_good(void) {
             const goe_flight_assessment_t now = assess_later(from_us, tenths);
             TEST_ASSERT_TRUE(tenths < 120 || now.unplaced == 0);
         }
-        TEST_ASSERT_FALSE(flown.flight.crowded);
+        TEST_ASSERT_FALSE(flown.flight.waiting.crowded);
     }
 }
 
@@ -605,6 +637,7 @@ int main(void) {
     RUN_TEST(a_dead_detector_is_not_a_clear_sky);
     RUN_TEST(a_detection_without_a_position_is_not_a_clear_sky);
     RUN_TEST(a_detection_that_waits_is_not_a_clear_sky);
+    RUN_TEST(a_turn_leaves_the_bearing_of_a_detection);
     RUN_TEST(a_full_table_is_not_a_clear_sky);
     RUN_TEST(a_detection_that_cannot_be_used_is_not_a_clear_sky);
     RUN_TEST(a_false_detection_is_forgotten_for_good);

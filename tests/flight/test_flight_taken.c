@@ -251,48 +251,47 @@ static void overlap_is_the_share_of_the_union(void) {
     TEST_ASSERT_TRUE(some > TRIALS / 10);
 }
 
-static bool seen(goe_flight_candidate_t *table, uint32_t id, uint32_t time_us, uint8_t camera, int left_px,
-                 int images) {
-    const goe_flight_candidate_t candidate = {
-        id, time_us, {(int16_t)left_px, 0, (int16_t)(left_px + 10), 10}, camera, 0};
+static bool seen(goe_flight_waiting_t *table, uint32_t id, uint32_t time_us, uint8_t camera, int left_px, int images) {
+    const goe_flight_candidate_t candidate = {id,     time_us, {(int16_t)left_px, 0, (int16_t)(left_px + 10), 10},
+                                              camera, 0,       {0, 0}};
     return goe_flight_candidate_confirm(table, &candidate, images);
 }
 
 /* [flight.confirm_images, GOE_FLIGHT_CANDIDATES] */
 static void images_of_one_candidate_lie_at_most_a_second_apart(void) {
-    goe_flight_candidate_t table[GOE_FLIGHT_CANDIDATES];
+    goe_flight_waiting_t table;
     const uint32_t start_us = 0xFFFFFFFFu - 500000u; /* the clock wraps on the way */
     for (int late = 0; late < 2; late++) {
-        memset(table, 0, sizeof table);
-        TEST_ASSERT_FALSE(seen(table, 5u, start_us, 0, 0, 2));
-        TEST_ASSERT_EQUAL(!late, seen(table, 5u, start_us + (late ? 1000001u : 1000000u), 0, 0, 2));
+        memset(&table, 0, sizeof table);
+        TEST_ASSERT_FALSE(seen(&table, 5u, start_us, 0, 0, 2));
+        TEST_ASSERT_EQUAL(!late, seen(&table, 5u, start_us + (late ? 1000001u : 1000000u), 0, 0, 2));
     }
-    memset(table, 0, sizeof table);
-    TEST_ASSERT_FALSE(seen(table, 5u, start_us, 0, 0, 2));
-    TEST_ASSERT_FALSE(seen(table, 5u, start_us, 0, 0, 2));        /* twice in one image */
-    TEST_ASSERT_FALSE(seen(table, 6u, start_us + 100u, 0, 0, 2)); /* another id, another camera */
-    TEST_ASSERT_FALSE(seen(table, 5u, start_us + 100u, 1, 0, 2));
+    memset(&table, 0, sizeof table);
+    TEST_ASSERT_FALSE(seen(&table, 5u, start_us, 0, 0, 2));
+    TEST_ASSERT_FALSE(seen(&table, 5u, start_us, 0, 0, 2));        /* twice in one image */
+    TEST_ASSERT_FALSE(seen(&table, 6u, start_us + 100u, 0, 0, 2)); /* another id, another camera */
+    TEST_ASSERT_FALSE(seen(&table, 5u, start_us + 100u, 1, 0, 2));
     TEST_ASSERT_FALSE(
-        seen(table, 0u, start_us + 100u, 0, 0, 2)); /* without an id the place decides: 3 of 10 in common */
-    TEST_ASSERT_FALSE(seen(table, 0u, start_us + 200u, 0, 6, 2));
-    TEST_ASSERT_TRUE(seen(table, 0u, start_us + 300u, 0, 4, 2));
-    TEST_ASSERT_TRUE(seen(table, 5u, start_us + 300u, 0, 90, 2));  /* an id may be anywhere */
-    TEST_ASSERT_FALSE(seen(table, 5u, start_us + 400u, 0, 90, 2)); /* confirmed: it is no candidate any more */
-    TEST_ASSERT_TRUE(seen(table, 9u, start_us + 400u, 0, 90, 1));
+        seen(&table, 0u, start_us + 100u, 0, 0, 2)); /* without an id the place decides: 3 of 10 in common */
+    TEST_ASSERT_FALSE(seen(&table, 0u, start_us + 200u, 0, 6, 2));
+    TEST_ASSERT_TRUE(seen(&table, 0u, start_us + 300u, 0, 4, 2));
+    TEST_ASSERT_TRUE(seen(&table, 5u, start_us + 300u, 0, 90, 2));  /* an id may be anywhere */
+    TEST_ASSERT_FALSE(seen(&table, 5u, start_us + 400u, 0, 90, 2)); /* confirmed: it is no candidate any more */
+    TEST_ASSERT_TRUE(seen(&table, 9u, start_us + 400u, 0, 90, 1));
 }
 
 /* A full table forgets the one undetected for the longest. */
 static void a_full_table_forgets_the_oldest(void) {
     for (int oldest = 0; oldest < GOE_FLIGHT_CANDIDATES; oldest++) {
-        goe_flight_candidate_t table[GOE_FLIGHT_CANDIDATES];
-        memset(table, 0, sizeof table);
+        goe_flight_waiting_t table;
+        memset(&table, 0, sizeof table);
         for (int i = 0; i < GOE_FLIGHT_CANDIDATES; i++) {
             const uint32_t time_us = i == oldest ? 100000u : 200000u + 10000u * (uint32_t)((i * 5) % 6);
-            TEST_ASSERT_FALSE(seen(table, 10u + (uint32_t)i, time_us, 0, 0, 3));
+            TEST_ASSERT_FALSE(seen(&table, 10u + (uint32_t)i, time_us, 0, 0, 3));
         }
-        TEST_ASSERT_FALSE(seen(table, 50u, 300000u, 0, 0, 3));
+        TEST_ASSERT_FALSE(seen(&table, 50u, 300000u, 0, 0, 3));
         for (int i = 0; i < GOE_FLIGHT_CANDIDATES; i++) {
-            TEST_ASSERT_EQUAL_UINT32(i == oldest ? 50u : 10u + (uint32_t)i, table[i].id);
+            TEST_ASSERT_EQUAL_UINT32(i == oldest ? 50u : 10u + (uint32_t)i, table.place[i].id);
         }
     }
 }
@@ -318,7 +317,7 @@ static void any_points_make_their_box(void) {
                 high[axis] = fmax(high[axis], (double)(axis == 0 ? points[i]->u_px : points[i]->v_px));
             }
         }
-        const bool found = goe_flight_slot_box_of(&d, &flight->camera[0], box_px);
+        const bool found = goe_flight_slot_box_of(&d, box_px);
         TEST_ASSERT_EQUAL(low[0] < 1.0e8, found);
         for (int axis = 0; axis < 2 && found; axis++) {
             const double lacking = fmax(BOX_MIN_PX - (high[axis] - low[axis]), 0.0);
