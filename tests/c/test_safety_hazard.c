@@ -123,18 +123,19 @@ static void any_bits_of_a_plan_are_refused_or_answered(void) {
     for (int i = 0; i < calls(); i++) {
         goe_intent_t intent;
         goe_hazard_t hazard;
-        uint32_t bits[6];
-        for (int j = 0; j < 6; j++) {
+        uint32_t bits[7];
+        for (int j = 0; j < 7; j++) {
             bits[j] = below(3u) ? check_random_bits(&any) : 0x3F800000u;
         }
         memcpy(intent.velocity_ned_m_s, bits, 3u * sizeof bits[0]);
         memcpy(&intent.margin_m, &bits[3], sizeof bits[3]);
         memcpy(&intent.clearance_m, &bits[4], sizeof bits[4]);
         memcpy(&intent.since_image_s, &bits[5], sizeof bits[5]);
+        memcpy(&intent.velocity_sd_m_s, &bits[6], sizeof bits[6]);
         give_any_answer();
         memset(&hazard, 0xFF, sizeof hazard);
         bool finite = true;
-        for (int j = 0; j < 6; j++) {
+        for (int j = 0; j < 7; j++) {
             finite = finite && (bits[j] & 0x7F800000u) != 0x7F800000u;
         }
         const goe_status_t status = goe_hazard(&estimator, &intent, &hazard);
