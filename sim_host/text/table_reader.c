@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "nearest_name.h"
+#include "usual_names.h"
 
 #define OTHERS_MAX 200 /* of the list of missing columns */
 #define BUFFER_BYTES (256u * 1024u)
@@ -163,7 +164,26 @@ static const char *mistyped(const table_reader_t *reader, const char *name) {
     nearest_name_t nearest = nearest_name_of(name, strlen(name));
     for (size_t i = 0; i < reader->columns; i++) {
         if (reader->fields[i].column == TABLE_STRANGER) {
+            const char *const ours = usual_name(reader->headers[i]);
+            if (ours != NULL && strcmp(ours, name) == 0) {
+                return reader->headers[i];
+            }
             nearest_name_try(&nearest, reader->headers[i]);
+        }
+    }
+    return nearest.name;
+}
+
+/* The column that an ignored one probably means, of those that are absent; null: none. */
+static const char *meant_by(const table_reader_t *reader, const char *name) {
+    const char *const ours = usual_name(name);
+    nearest_name_t nearest = nearest_name_of(name, strlen(name));
+    for (size_t i = 0; i < reader->wanted_count; i++) {
+        if (!table_reader_has(reader, i)) {
+            if (ours != NULL && strcmp(ours, reader->wanted[i].name) == 0) {
+                return reader->wanted[i].name;
+            }
+            nearest_name_try(&nearest, reader->wanted[i].name);
         }
     }
     return nearest.name;
@@ -171,16 +191,10 @@ static const char *mistyped(const table_reader_t *reader, const char *name) {
 
 const char *table_reader_misspelt(const table_reader_t *reader, size_t *next, const char **meant) {
     for (; *next < reader->columns; (*next)++) {
-        const char *name = reader->headers[*next];
-        nearest_name_t nearest = nearest_name_of(name, strlen(name));
-        for (size_t i = 0; i < reader->wanted_count && reader->fields[*next].column == TABLE_STRANGER; i++) {
-            if (!table_reader_has(reader, i)) {
-                nearest_name_try(&nearest, reader->wanted[i].name);
-            }
-        }
-        if (nearest.name != NULL) {
+        const char *const name = reader->headers[*next];
+        *meant = reader->fields[*next].column == TABLE_STRANGER ? meant_by(reader, name) : NULL;
+        if (*meant != NULL) {
             (*next)++;
-            *meant = nearest.name;
             return name;
         }
     }

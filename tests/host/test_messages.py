@@ -171,6 +171,18 @@ def test_a_required_column_misspelt(tmp_path: Path, capsys: pytest.CaptureFixtur
     assert said(folder) == (2, f"{folder / 'frames.csv'}:1: e_m: missing column; is 'e_me' meant to be it?\n")
 
 
+@pytest.mark.parametrize(
+    ("name", "other"), [("t_s", "timestamp"), ("t_s", "TimeUS"), ("qw", "q0"), ("qw", "q[0]"), ("d_m", "down")]
+)
+def test_a_column_by_the_name_of_another_program(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, other: str
+) -> None:
+    folder = write(tmp_path / "log", renamed(name, other)(rows()))
+    place = f"{folder / 'frames.csv'}:1: {name}:"
+    assert python_said(folder, capsys) == f"{place} column is missing; is '{other}' meant to be it?"
+    assert said(folder) == (2, f"{place} missing column; is '{other}' meant to be it?\n")
+
+
 def test_all_missing_columns_are_named_at_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = write(tmp_path / "log", renamed("n_m", "p0")(renamed("qz", "p1")(renamed("qw", "p2")(rows()))))
     place = f"{folder / 'frames.csv'}:1: n_m:"
@@ -186,15 +198,20 @@ def test_a_header_of_one_column_is_missing_all_others(tmp_path: Path, capsys: py
 
 
 def test_an_optional_column_misspelt(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    sides = {"box_left": 1, "box_top_px": 2, "box_rigth_px": 3, "box_bottom_px": 4, "colour": 5}
+    sides = {"box_left": 1, "y1": 2, "box_rigth_px": 3, "box_bottom_px": 4, "colour": 5, "x1": 6}
     folder = write(tmp_path / "log", change(lambda row: sides)(rows()))
-    warnings = said(folder)[1].splitlines()[:2]
+    warnings = said(folder)[1].splitlines()[:4]
     assert (
         python_said(folder, capsys).splitlines()
         == warnings
         == [
             f"warning: {folder / 'frames.csv'}:1: {name}: unknown column, ignored; did you mean {meant}?"
-            for name, meant in (("box_left", "box_left_px"), ("box_rigth_px", "box_right_px"))
+            for name, meant in (
+                ("box_left", "box_left_px"),
+                ("y1", "box_top_px"),
+                ("box_rigth_px", "box_right_px"),
+                ("x1", "box_left_px"),
+            )
         ]
     )
 

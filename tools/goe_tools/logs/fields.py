@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import IO
 
 from ..renamed import names as renamed_names
+from ..renamed import usual
 from .progress import Progress
 
 INTEGER_MIN, INTEGER_MAX = -(2**63), 2**63 - 1  # range of the programs' reader
@@ -102,7 +103,8 @@ def _missing(header: list[str], absent: list[str], known: Sequence[str]) -> str:
     old = [before for before in header if renamed_names().get(before) == name]
     if old:
         return f"unknown column {old[0]}: now {name}{others}"
-    instead = _nearest(name, [other for other in header if other not in known])
+    strange = [other for other in header if other not in known]
+    instead = next((other for other in strange if usual().get(other) == name), "") or _nearest(name, strange)
     meant = f"; is '{instead}' meant to be it?" if instead else ""
     return f"column is missing{meant}{others}"
 
@@ -241,6 +243,7 @@ def warn_of_misspelt(header: list[str], path: Path, line: int, known: Sequence[s
     """Warns about an ignored column whose name resembles a known column that is absent."""
     absent = [name for name in known if name not in header]
     for name in header:
-        meant = _nearest(name, absent) if name not in known else ""
-        if meant:
+        ours = usual().get(name, "")
+        meant = ours if ours in absent else _nearest(name, absent)
+        if meant and name not in known:
             warn(path, f"{name}: unknown column, ignored; did you mean {meant}?", line)
