@@ -94,7 +94,8 @@ def test_bad_usage(change: list[str], said: str, tmp_path: Path, capsys: pytest.
 
 @pytest.mark.parametrize(
     "words_",
-    [["--set", "point_noise_px=1"], ["--set", "detector.point_noise_px=x"], ["--margin", "-1"], ["--theme", "red"]],
+    [["--set", "point_noise_px=1"], ["--set", "detector.point_noise_px=x"], ["--margin", "-1"], ["--theme", "red"],
+     ["--png", "x.svg"], ["--svg", "x.html"]],
 )
 def test_bad_flags(words_: list[str], tmp_path: Path) -> None:
     with pytest.raises(SystemExit) as stopped:

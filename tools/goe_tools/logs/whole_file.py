@@ -2,13 +2,26 @@
 
 from __future__ import annotations
 
+import argparse
 import os
 import tempfile
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 from .fields import LogError
+
+
+def kept_as(suffix: str) -> Callable[[str], Path]:
+    """Type of an argparse option: a file to write, whose name must not end like that of another kind of file."""
+
+    def parse(text: str) -> Path:
+        path = Path(text)
+        if path.suffix.lower() not in ("", suffix):
+            raise argparse.ArgumentTypeError(f"'{text}' must end in {suffix}")
+        return path
+
+    return parse
 
 
 def refuse_inputs(out: Path, inputs: Iterable[Path | None]) -> None:

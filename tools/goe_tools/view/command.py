@@ -8,7 +8,7 @@ from pathlib import Path
 from .. import renamed
 from ..logs.numbers import between
 from ..logs.obslog import LogError, ObservationLog, read_log, read_truth
-from ..logs.whole_file import log_files, write_whole
+from ..logs.whole_file import kept_as, log_files, write_whole
 from .answers import SETTING_GROUPS, Options
 from .story import MOST_ROWS, Story, story_of
 
@@ -76,8 +76,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="PAGE",
         help=f"page to write (default {DEFAULT_PAGE}, unless --png or --svg is given)",
     )
-    add("--png", type=Path, metavar="FILE", help="picture of one moment: map, distance and size over time")
-    add("--svg", type=Path, metavar="FILE", help="the same; follows the reader's color scheme")
+    add("--png", type=kept_as(".png"), metavar="FILE", help="picture of one moment: map, distance and size over time")
+    add("--svg", type=kept_as(".svg"), metavar="FILE", help="the same; follows the reader's color scheme")
     add("--theme", choices=("light", "dark"), default="light", help="of the PNG (default light)")
     add("--at", type=between(-1e12, 1e12), metavar="S", help="time shown first, and in the picture (default: midway)")
     add(
