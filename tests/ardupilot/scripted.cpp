@@ -351,6 +351,9 @@ void AP_Logger::WriteStreaming(const char *name, const char *labels, const char 
             case 'f':
                 value = va_arg(arguments, double);
                 break;
+            case 'b':
+                value = double(va_arg(arguments, int));
+                break;
             default:
                 value = double(va_arg(arguments, unsigned));
                 break;

@@ -746,7 +746,7 @@ static void test_a_range_finder_counts_along_the_vertical(void) {
 static void test_the_log(void) {
     FlownVehicle vehicle;
     vehicle.fly(6.0);
-    for (const char *name : {"GOEO", "GOEH", "GOES"}) {
+    for (const char *name : {"GOEO", "GOEH", "GOEA", "GOES"}) {
         const std::vector<ScriptedRecord> &records = scripted.log[name];
         TEST_ASSERT_FALSE_MESSAGE(records.empty(), name);
         const ScriptedRecord &record = records.back();
@@ -771,6 +771,15 @@ static void test_the_log(void) {
     const auto &hazard = scripted.log["GOEH"].back().value;
     CHECK_CLOSE(0.0, obstacle.hazard.dcpa_m, hazard.at("DCPA"));
     TEST_ASSERT_EQUAL(0, hazard.at("I"));
+    const auto &first = scripted.log["GOEA"].front().value;
+    TEST_ASSERT_EQUAL(0, first.at("Ob"));
+    TEST_ASSERT_EQUAL(-1, first.at("Wst"));
+    const auto &assessment = scripted.log["GOEA"].back().value;
+    TEST_ASSERT_EQUAL(0, assessment.at("Wst"));
+    TEST_ASSERT_EQUAL(1, assessment.at("Ob"));
+    TEST_ASSERT_EQUAL(0, assessment.at("Unp"));
+    TEST_ASSERT_EQUAL(12, int(assessment.at("Fl")) & 12);
+    TEST_ASSERT_INT_WITHIN(2, 60, scripted.log["GOEA"].size()); // also before the first detection
     const auto &status = scripted.log["GOES"].back().value;
     TEST_ASSERT_INT_WITHIN(12, vehicle.flight().counters.taken, status.at("Tkn"));
     TEST_ASSERT_EQUAL(3, status.at("Al"));

@@ -104,7 +104,7 @@ def test_every_parameter_is_read() -> None:
 
 def test_log_labels_are_documented() -> None:
     messages = re.findall(r"((?:// @.*\n)+)[^\"]*\"(GOE\w)\", \"([\w,]+)\"", LOGGING)
-    assert [name for _, name, _ in messages] == ["GOEO", "GOEH", "GOES"]
+    assert [name for _, name, _ in messages] == ["GOEO", "GOEH", "GOEA", "GOES"]
     for comment, name, labels in messages:
         assert re.search(r"// @LoggerMessage: (\w+)", comment).group(1) == name  # type: ignore[union-attr]
         assert re.findall(r"// @Field: (\w+):", comment) == labels.split(",")

@@ -179,6 +179,7 @@ class AP_GOE
     // AP_GOE_Logging.cpp
     void log_obstacle(int slot, const goe_flight_obstacle_t &obstacle) const;
     void log_hazard(int slot, const goe_flight_obstacle_t &obstacle) const;
+    void log_assessment() const;
     void log_status(const goe_mavlink_status_t &status) const;
 
     static AP_GOE *_singleton;

@@ -53,8 +53,6 @@ void AP_GOE::log_obstacle(int slot, const goe_flight_obstacle_t &obstacle) const
 // @Field: Clr: height over its top then; 0: the top is not known
 // @Field: CSD: one sigma of it
 // @Field: CPrb: probability that margin and clearance are both violated
-// @Field: Act: action of the worst obstacle: 1 left, 2 right, 3 climb, 4 go around, 5 hold
-// @Field: Wst: 1: this is the worst obstacle
 void AP_GOE::log_hazard(int slot, const goe_flight_obstacle_t &obstacle) const
 {
 #if HAL_LOGGING_ENABLED
@@ -62,12 +60,32 @@ void AP_GOE::log_hazard(int slot, const goe_flight_obstacle_t &obstacle) const
         return;
     }
     const goe_hazard_t &hazard = obstacle.hazard;
-    AP::logger().WriteStreaming("GOEH", "TimeUS,I,TCPA,TSD,DCPA,DSD,Clr,CSD,CPrb,Act,Wst", "s#ssmmmm---", "F-000000---",
-                                "QBfffffffBB", AP_HAL::micros64(), unsigned(slot), double(hazard.tcpa_s),
+    AP::logger().WriteStreaming("GOEH", "TimeUS,I,TCPA,TSD,DCPA,DSD,Clr,CSD,CPrb", "s#ssmmmm-", "F-000000-",
+                                "QBfffffff", AP_HAL::micros64(), unsigned(slot), double(hazard.tcpa_s),
                                 double(hazard.tcpa_sd_s), double(hazard.dcpa_m), double(hazard.dcpa_sd_m),
                                 double(hazard.clearance_m), double(hazard.clearance_sd_m),
-                                double(hazard.conflict_probability), unsigned(_state->shown.assessment.action),
-                                unsigned(slot == _state->shown.assessment.worst));
+                                double(hazard.conflict_probability));
+#endif
+}
+
+// @LoggerMessage: GOEA
+// @Description: Assessment of all obstacles, ten times a second, also with nothing in view
+// @Field: TimeUS: Time since system startup
+// @Field: Act: action: 0 none, 1 left, 2 right, 3 climb, 4 go around, 5 hold
+// @Field: Wst: slot of the worst obstacle; -1: no known hazard
+// @Field: Avd: slot of the obstacle that the action avoids; -1: none
+// @Field: Ob: obstacles with a position
+// @Field: Unp: detected obstacles without a position, at least so many; no order avoids them
+// @Field: Fl: 1 the action may come too late, 2 the worst obstacle is suspect, 4 images arrive, 8 the pose arrives
+void AP_GOE::log_assessment() const
+{
+#if HAL_LOGGING_ENABLED
+    const goe_flight_assessment_t &now = _state->shown.assessment;
+    const unsigned flags = (now.late ? 1U : 0U) | (now.suspect ? 2U : 0U) | (now.detector_alive ? 4U : 0U) |
+                           (now.pose_alive ? 8U : 0U);
+    AP::logger().WriteStreaming("GOEA", "TimeUS,Act,Wst,Avd,Ob,Unp,Fl", "s------", "F------", "QBbbBBB",
+                                AP_HAL::micros64(), unsigned(now.action), int(now.worst), int(now.avoided),
+                                unsigned(now.obstacles), unsigned(now.unplaced), flags);
 #endif
 }
 

@@ -20,6 +20,7 @@ bool AP_GOE::has_position(const Found &found, int slot) const
 
 void AP_GOE::log_obstacles() const
 {
+    log_assessment();
     for (int slot = 0; slot < GOE_FLIGHT_SLOTS; slot++) {
         if (has_position(_state->shown, slot)) {
             log_obstacle(slot, _state->shown.obstacle[slot]);
