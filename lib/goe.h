@@ -29,7 +29,7 @@
  *     }
  *
  * Order of calls: goe_settings_default, goe_init; then for every image goe_update, followed by goe_decide or goe_hazard. Call
- * goe_reset before another obstacle. Included are goe_limits.h (parts, limits), goe_settings.h, goe_hazard.h (closest
+ * goe_reset before another obstacle. goe.h includes goe_limits.h (compile-time options), goe_settings.h, goe_hazard.h (closest
  * approach, decision, covariance) and goe_diagnostics.h (self-check).
  * DESIGN.md explains methods and limits; GLOSSARY.md defines terms.
  *
@@ -48,9 +48,9 @@
  *                     /             /                               clockwise from above, -90 < b <= 90 degrees
  *                    /             / side              width W:     the FRONT edge, more across Z than along
  *                   /  front      /  (length L)        length L:    the SIDE edge
- *                  /_____________/                     reference point:
- *                        ^   near corner                 disc       the center
- *                        |                               line, box  the middle of the front edge
+ *                  /_____________/                     reference point of each model (goe_model_t):
+ *                        ^   near corner                 disc, prism  the center
+ *                        |                               line, box    the middle of the front edge
  *            reference point (X0, Z0)
  *                        .          Z forward
  *                          .        ^
@@ -61,16 +61,17 @@
  *   Example: the aircraft is at north 0, east 0, heading north; a chimney of 6 m diameter is at north 200, east -30. Then
  *   Z0 = 200 m, X0 = -30 m, width = 6 m. After 50 m of flight, Z = 150 m.
  *
- * Memory      The caller owns goe_estimator_t, which contains all state: at most 2.9 KiB at the default window. [A9] The
- *             library uses no heap, no static variables and no recursion. [A10] Each obstacle has its own estimator and decision.
+ * Memory      The caller owns goe_estimator_t, which contains all state: at most 2.9 KiB with the default compile-time
+ *             options. [A9] The library uses no heap, no static variables and no recursion. [A10] Each obstacle has its own
+ *             estimator and decision.
  * Threads     A function accesses only its arguments' memory. Threads may share an estimator under the caller's lock. [A11]
  * Arithmetic  The library uses float, sqrtf, memcpy and memset only. [A12] With -ffp-contract=off all IEEE 754 targets
  *             compute the same bits. [A13]
  * Failure     A call with a negative status changes only counters and the age that goe_decide() uses. The exceptions are each
  *             status that says "image taken", and GOE_CORRUPTED of goe_update(). [A21] Every output is finite. [A16] A quantity
  *             without its bit in goe_estimate_t.valid means nothing. Non-finite input is refused, also under -ffast-math. [A17]
- * Cost        Each function states the most that it costs on a Cortex-M4F with gcc -O2, a window of 8 and one camera. Both
- *             figures are proved: instructions (not cycles) and bytes of stack. [A23]
+ * Cost        Each function states its highest cost on a Cortex-M4F with gcc -O2, one camera and 8 images in the window method
+ *             (GOE_WINDOW_MAX). Both figures are proved: instructions (not cycles) and bytes of stack. [A23]
  */
 #ifndef GOE_H
 #define GOE_H
@@ -104,7 +105,7 @@ typedef enum {
     /* faults of a feature; the image is taken */
     GOE_BEHIND_CAMERA = -1, /* a ray points backward or sideways: its third component in T is <= 0.05 of its norm */
     GOE_LENS_FAILED = -2,   /* a pixel is too far from the axis: the inversion of the lens model does not converge */
-    GOE_SWAPPED = -3,       /* left is less than 1e-4 focal lengths to the left of right, or base corners are out of order */
+    GOE_SWAPPED = -3,       /* points or box sides are out of order, or (window) left is within 1e-4 focal lengths of right */
     GOE_EDGE_ON = -4,       /* no length: the camera views the front edge from its end or from behind */
     GOE_NO_EDGE = -5,       /* model line: no edge reaches both window.edge_min_px and orientation_min_px */
     GOE_BAD_HEIGHT = -6,    /* window: no obstacle height, because the camera's height is <= 0. Counted, never returned */
@@ -118,7 +119,7 @@ typedef enum {
     GOE_BAD_TIME = -12,     /* the time is unknown, repeated or runs backward. After a false jump ahead call goe_reset */
     GOE_BAD_ATTITUDE = -13, /* the quaternion's norm differs from 1 by more than 1 % */
     /* faults of a box; the image is taken */
-    GOE_BOX_INCOMPLETE = -14, /* fewer than two sides are in box.sides, uncut by the border and in order (left < right) */
+    GOE_BOX_INCOMPLETE = -14, /* fewer than two sides are in box.sides and not at the image border */
     GOE_NO_HEIGHT = -15,      /* filter: height_m is exactly 0 with a box; goe treats it as unknown, sigma 1000 m */
     /* faults of a call */
     GOE_BAD_SETTINGS = -32,    /* goe_init: the setting bad_field is outside its range */
@@ -129,11 +130,11 @@ typedef enum {
 } goe_status_t;
 
 /* goe_estimator_t.fault_counts[-status] counts the faults GOE_BEHIND_CAMERA to GOE_NO_HEIGHT. fault_counts[0] counts the
- * tracks that a reset of unknown size ended. Counters saturate. */
+ * tracks that ended because the autopilot's filter jumped by an unknown amount. Counters saturate. */
 #define GOE_FAULT_COUNTS 16
 
 /* Whether goe_update() took the image: bit 35 + status, set for -15, -14 and -9 to 4. Of a refused image goe stores only
- * the time: supply its reset's delta again. */
+ * the time. If its reset_count changed, set reset_delta_ned_m again in the next image. */
 #define GOE_IMAGE_TAKEN(status) ((((uint64_t)0xFFFC300000 >> (((unsigned)(status) + 35u) & 63u)) & 1u) != 0u)
 
 /* ----------------------------------------------------------------------------------------------------------- image -- */
@@ -161,7 +162,7 @@ typedef struct {
     bool visible;
 } goe_pixel_t;
 
-/* A detector's upright bounding box in raw pixels. Do not supply the smoothed boxes of a tracker: they lag. */
+/* A detector's upright bounding box in raw pixels. Do not supply a tracker's smoothed boxes: they lag. */
 typedef struct {
     float left_px, top_px, right_px, bottom_px; /* read only with its bit in sides; each +-1e5; left < right, top < bottom */
     uint8_t sides; /* mask of GOE_SIDE_...; 0: no box. Set the bits of sides that are not cut, hidden or unreliable */
@@ -221,7 +222,7 @@ typedef enum {
     GOE_REASON_MOVES,      /* the obstacle moves, or inputs contradict each other. Without GOE_HAS_VELOCITY the reported position is wrong */
     GOE_REASON_BASE,       /* the points supplied as base corners are other points; the filter no longer uses them */
     GOE_REASON_SHAPE,      /* the settings require a disc, but the silhouette is that of another shape */
-    GOE_REASON_LATE,       /* poses are late or early by latency_s, which the filter corrects; also without suspect */
+    GOE_REASON_LATE,       /* poses are late or early by latency_s. The filter corrects this; suspect may be false */
     GOE_REASON_NOISE       /* errors exceed the settings, or the obstacle has another shape */
 } goe_reason_t;
 
@@ -248,8 +249,8 @@ typedef struct {
     float center_north_m, center_east_m; /* middle of the base in the NED frame of the latest pose ... */
     float center_ne_m2;                  /* ... and the covariance of north and east */
     float velocity_north_m_s, velocity_east_m_s; /* velocity of a moving obstacle */
-    float latency_s;  /* filter: delay of the poses relative to the images, which the filter corrects */
-    float residual;   /* window: RMS residual of the fit (5); filter: 0 */
+    float latency_s;  /* filter: delay of the poses relative to the images (corrected) */
+    float residual;   /* window: RMS residual of the least-squares fit; filter: 0 */
     float baseline_m; /* window: spread of the camera's path; filter: distance of the camera from the track's start */
     float nis;        /* filter: normalized innovation squared of the latest image ... */
     int nis_rows;     /* ... and its expected value */
@@ -278,9 +279,9 @@ GOE_NODISCARD goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator
  *   estimate  always written; a null pointer returns GOE_BAD_ARGUMENT. It is all zero with GOE_BAD_ARGUMENT,
  *             GOE_NOT_INITIALIZED and GOE_CORRUPTED. With any other negative status it is the last estimate, marked stale
  * Returns GOE_OK, a positive status, GOE_BEHIND_CAMERA to GOE_NO_HEIGHT (except GOE_BAD_HEIGHT), GOE_BAD_ARGUMENT,
- * GOE_NOT_INITIALIZED, GOE_CORRUPTED. Faults of images are counted. If a feature and the solution fail, the solution's is returned.
+ * GOE_NOT_INITIALIZED, GOE_CORRUPTED. Faults of images are counted. The solution's status has priority over a feature's.
  * Cost: at most 48000 instructions, 1408 bytes of stack; 70000 with lens distortion; window: 5500.
- * The figure of the window method is valid without lens distortion only. */
+ * The window method's figure excludes lens distortion. */
 goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, goe_estimate_t *estimate);
 
 /* Ends the track; keeps settings and counters. Call it before another obstacle, or when features are over 80 degrees from Z.

@@ -63,7 +63,7 @@
     X(filter.huber_sigma, REAL, "sigma", 0.5f, 100.0f, 2.5f, "a point with a larger innovation counts less") \
     X(filter.nis_ratio_max, REAL, "", 0.01f, 1.0e3f, 1.9f, "NIS ratio above which an estimate is suspect") \
     X(filter.range_sd_rel_max, REAL, "", 0.01f, 10.0f, 0.25f, "largest sigma of a reported range, as a fraction of the range") \
-    X(filter.top_is_highest, TRUTH, "", 0, 1, 0, "point top is the highest in the image, also from above")
+    X(filter.top_is_highest, TRUTH, "", 0, 1, 0, "point top is the roof's highest point in the image, even if the camera is above the roof")
 #else
 #define GOE_SETTINGS_FILTER(X)
 #endif
@@ -78,7 +78,7 @@
     X(window.line_points, COUNT, "images", 1, 1000, 8, "model auto: line points before the line replaces the disc") \
     X(window.edge_min_px, REAL, "px", 0.0f, 1.0e4f, 10.0f, "length of the shortest edge that counts") \
     X(window.orientation_min_px, REAL, "px", 0.0f, 1.0e4f, 2.0f, "least vertical distance of an edge's ends that gives an orientation") \
-    X(window.side_min_px, REAL, "px", 0.1f, 1.0e4f, 10.0f, "a side with an end nearer to x' = 0 gives no length") \
+    X(window.side_min_px, REAL, "px", 0.1f, 1.0e4f, 10.0f, "a side with an end nearer to the side's vanishing point gives no length") \
     X(window.orientation_memory, COUNT, "images", 1, 1000, 20, "memory of the orientation's low-pass") \
     X(window.min_baseline_m, REAL, "m", 1.0e-3f, 1.0e4f, 0.1f, "smallest camera motion over the window that gives a solution")
 #else

@@ -10,8 +10,8 @@
 # Two steps run at a time. A line for each appears when it has ended, with its own time and that of the processors. Every step's full
 # output is kept in .cache/test/. Ctrl-C ends all that runs. GOE_KITTI_DIR names a folder of recorded flights to compare goe_replay
 # with the references on; UNITY_DIR the sources of the Unity test framework, where they are not to be fetched. CI=true: a missing
-# tool is a failure. GOE_LONG=1: also what a release needs: every target, compiler, level and part, the proof, the
-# analyzer of clang-tidy, and the Python tests marked release.
+# tool is a failure. GOE_LONG=1: also what a release needs: every target, compiler, level and part, the quick part of
+# the proof, the analyzer of clang-tidy, and the Python tests marked release.
 set -uo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 cd "$root" || exit 1

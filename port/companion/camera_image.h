@@ -8,7 +8,7 @@
 
 typedef struct {
     goe_flight_frame_t frame; /* count and detection are set by image_queue */
-    unsigned detections;      /* of those here */
+    unsigned detections;      /* number of detections in the array */
     goe_flight_detection_t detection[CAMERA_IMAGE_DETECTIONS];
 } camera_image_t;
 

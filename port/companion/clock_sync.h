@@ -1,8 +1,8 @@
-/* The autopilot's clock against the companion's. SPDX-License-Identifier: MIT
+/* Offset of the autopilot's clock from the companion's. SPDX-License-Identifier: MIT
  *
- * Two-way: TIMESYNC requests, the answer gives the autopilot's time; half of the round trip is taken as the way there, and the
- * fastest exchange of the last 10 to 20 s is used. One-way, until an answer came: poses cannot arrive before they were
- * sent, so the least of (arrival - sending). */
+ * Two-way: the answer to a TIMESYNC request contains the autopilot's time. The offset assumes that the request took half of the round
+ * trip, and comes from the exchange with the shortest round trip of the last 10 to 20 s. One-way, until the first answer: the offset
+ * comes from the message with the least (arrival - sending), because a message cannot arrive before it was sent. */
 #ifndef CLOCK_SYNC_H
 #define CLOCK_SYNC_H
 
@@ -10,27 +10,30 @@
 #include <stdint.h>
 
 typedef struct {
-    int64_t offset_us, before_us; /* autopilot's minus own, of the best exchange of this bucket and of the one before */
-    int64_t round_us, round_before_us; /* round trips of these; one-way: 0 */
-    int64_t bucket_us;                 /* own time when this bucket began */
-    int strange;                       /* exchanges in a row that contradict it */
+    int64_t offset_us, before_us; /* autopilot's minus own time, from the best exchange of this and the last interval */
+    int64_t round_us, round_before_us; /* round trips of these exchanges; one-way: 0 */
+    int64_t bucket_us;                 /* own time at the start of this interval */
+    int strange;                       /* exchanges in a row that contradict the offset */
     bool has, has_before;
     bool two_way; /* by TIMESYNC */
 } clock_sync_t;
 
 void clock_sync_reset(clock_sync_t *sync);
 
-/* An answer to a request that was sent at question_us and came back at now_us, own clock, from autopilot_us of its clock.
- * Returns false if the autopilot's clock has jumped: three answers in a row contradict the known offset, which is forgotten. */
+/* Processes an answer to a request.
+ *   question_us, now_us  own times of the request and of the arrival of its answer
+ *   autopilot_us         the autopilot's time in the answer
+ * Returns false if the autopilot's clock has jumped: three answers in a row contradict the known offset, which is then deleted. */
 bool clock_sync_answer(clock_sync_t *sync, int64_t question_us, int64_t now_us, int64_t autopilot_us);
 
-/* A message of the autopilot's time arrived. Nothing once there was an answer. */
+/* Processes the time of any message of the autopilot. Does nothing after the first answer. */
 void clock_sync_one_way(clock_sync_t *sync, int64_t now_us, int64_t autopilot_us);
 
-/* Nothing is known before the first of either. */
+/* Returns whether the offset is known: after the first answer or message. */
 bool clock_sync_known(const clock_sync_t *sync);
 
-/* Autopilot's time of an own one, and its one sigma; one_way_sd_us: replaces the link's delay where that is unknown. */
+/* Convert an own time to the autopilot's time, and return its one sigma.
+ *   one_way_sd_us  one sigma of the link's delay, used without an answer */
 int64_t clock_sync_autopilot_us(const clock_sync_t *sync, int64_t own_us);
 double clock_sync_sd_us(const clock_sync_t *sync, double one_way_sd_us);
 

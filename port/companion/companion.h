@@ -22,48 +22,48 @@
 #include "wire.h"
 
 typedef struct {
-    unsigned long images;    /* that were taken */
-    unsigned long late;      /* that came too late, or found no pose */
-    unsigned long unread;    /* lines or messages that could not be understood */
-    unsigned long clockless; /* that came before the autopilot's clock was known */
+    unsigned long images;    /* accepted images */
+    unsigned long late;      /* frames that came too late or had no pose */
+    unsigned long unread;    /* invalid lines and messages */
+    unsigned long clockless; /* lines and images that came before the autopilot's clock was known */
 } companion_counts_t;
 
-/* What the latest second had. */
+/* Rates and delays of the latest second. */
 typedef struct {
-    unsigned long attitudes, positions, images; /* counts at its start ... */
-    double pose_hz, image_hz;                   /* ... and the rates that it had; of attitude and position the lesser */
+    unsigned long attitudes, positions, images; /* counts at the start of the second */
+    double pose_hz, image_hz; /* rates of the second; pose_hz: the lower one of attitude and position */
     delay_count_t delay, delay_shown;
-    uint32_t capture_us[GOE_CAMERAS_MAX]; /* of the latest image */
+    uint32_t capture_us[GOE_CAMERAS_MAX]; /* capture time of each camera's latest image */
 } companion_rates_t;
 
 typedef struct {
     companion_config_t config;
     goe_flight_t flight;
     goe_flight_assessment_t assessment;
-    link_t *autopilot_link, *detections_link; /* the latter null: detections come over MAVLink alone */
+    link_t *autopilot_link, *detections_link; /* detections_link is null if detections come over MAVLink only */
     wire_t wire;
     signing_t signing;
     autopilot_t autopilot;
     line_reader_t lines;
     image_queue_t queue;
-    camera_image_t image; /* that is being read */
+    camera_image_t image; /* image that is being read */
     orders_t orders;
     health_t health;
     screen_t screen;
-    goe_flight_action_t advised; /* that was shown while reactions are off */
+    goe_flight_action_t advised; /* action that was shown last while reactions are off */
     flight_record_t record;
     companion_counts_t counts;
     companion_rates_t rates;
     unsigned self_check;
-    bool detector_alive, pose_alive; /* as reported last ... */
-    unsigned links_lost;             /* ... and how often the links were lost by then */
-    unsigned long restarts;          /* of the autopilot, as counted here */
+    bool detector_alive, pose_alive; /* values that were reported last */
+    unsigned links_lost;             /* number of lost links that was reported last */
+    unsigned long restarts;          /* number of the autopilot's restarts that was processed last */
     int64_t assessed_us, reported_us, second_us, begun_us;
     bool deafness_reported;
-    int64_t clock_difference_us; /* UNIX time minus monotonic time, as it was last */
+    int64_t clock_difference_us; /* latest difference of UNIX time and monotonic time */
 } companion_t;
 
-/* Opens links and log. Null on failure: fault says why. */
+/* Opens links and log. Null on failure: fault gives the reason. */
 companion_t *companion_new(const companion_config_t *config, char *fault, size_t fault_size);
 
 /* Waits for input, at most until the next due work, and handles it. Returns true once a second: time for a status line. */

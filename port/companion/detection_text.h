@@ -8,7 +8,7 @@
 #include "camera_image.h"
 #include "companion_config.h"
 
-#define DETECTION_LINE_MAX 65536 /* bytes of a line; a longer one is no line of a detector */
+#define DETECTION_LINE_MAX 65536 /* most bytes of a line; a longer line is invalid */
 
 /* The clocks at the line's arrival, us. */
 typedef struct {
@@ -20,8 +20,8 @@ typedef struct {
     char text[160]; /* the fault of a line */
 } detection_fault_t;
 
-/* False, with the fault, if the line cannot be understood. A detection of a class that is not wanted is left out. The image is
- * in the autopilot's clock. */
+/* Reads a line. Detections of classes that detections.classes does not list are left out. The times of the image are by the autopilot's
+ * clock. Returns false, with the fault, if the line is invalid. */
 bool detection_text_read(const char *line, size_t length, const companion_config_t *config, const detection_now_t *now,
                          camera_image_t *image, detection_fault_t *fault);
 

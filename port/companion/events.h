@@ -1,13 +1,14 @@
-/* What happened, a line each on standard error. SPDX-License-Identifier: MIT
+/* Reports of events, one line each on standard error. SPDX-License-Identifier: MIT
  *
- * A terminal that is stopped, or a pipe that nobody reads, costs the lines and holds nothing up. */
+ * If the terminal is stopped or nobody reads the pipe, lines are lost, and the program continues without delay. */
 #ifndef EVENTS_H
 #define EVENTS_H
 
-/* Reports a change, with the time (UTC). Of one kind of text (`format`) at most one line a second; the next one says how many were left out. */
+/* Reports an event with its UTC time. For each `format` it writes at most one line a second; the next line gives the number of dropped
+ * lines. */
 void event(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/* The status line: renewed in place on a terminal, else a line. */
+/* Shows the status line: a terminal's line is replaced, elsewhere a new line is written. */
 void events_show_line(const char *line, int on_terminal);
 
 #endif

@@ -1,4 +1,4 @@
-/* The log: camera.ini and frames.csv, what goe_replay reads. SPDX-License-Identifier: MIT */
+/* The log: camera.ini and frames.csv, which goe_replay reads, and orders.csv. SPDX-License-Identifier: MIT */
 #ifndef FLIGHT_RECORD_H
 #define FLIGHT_RECORD_H
 
@@ -14,20 +14,20 @@
 typedef struct {
     FILE *stream; /* null: there is no log, or it has ended */
     order_log_t orders;
-    order_left_t left; /* what the log before this one leaves of an order */
+    order_left_t left; /* active order in the previous log */
     unsigned long rows;
     int64_t latest_us,
         shift_us; /* time of the latest row; offset that keeps times increasing when the autopilot restarts */
     double written_mb, size_max_mb;
-    bool failed; /* ended, as the disk did not take it */
+    bool failed; /* a write failed and ended the log */
 } flight_record_t;
 
-/* Makes the folder, with a copy of the camera's file. An old log there is not overwritten: then it is the first of folder-2,
- * folder-3, ... without one, and of the latest of them is read what it leaves. A folder that cannot be written is a failure. Nothing is
- * done without a folder's name. */
+/* Creates the folder of the log, with a copy of the camera's file. If record.folder already has a log, the new log goes to the first of
+ * folder-2, folder-3, ... without a log, and `left` comes from the log before it. Does nothing if record.folder is empty. Returns false
+ * if the files cannot be created. */
 bool flight_record_open(flight_record_t *record, const companion_config_t *config, char *fault, size_t fault_size);
 
-/* The detections of a frame that was taken, with the pose at its exposure. */
+/* Adds the detections of an accepted frame, with the pose at its exposure. */
 void flight_record_put(flight_record_t *record, const goe_flight_t *flight, const goe_flight_frame_t *frame,
                        const autopilot_t *autopilot);
 

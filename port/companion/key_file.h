@@ -9,10 +9,10 @@
 
 #define KEY_BYTES 32
 
-/* Reads 64 hexadecimal digits, and nothing else but blanks at the end. False on failure: *error gives the reason. */
+/* Reads a file with 64 hexadecimal digits; only blanks may follow. False on failure: *error gives the reason. */
 bool key_file_read(const char *path, uint8_t key[KEY_BYTES], input_error_t *error);
 
-/* Whether others than its owner may read it. */
+/* Returns whether users other than the owner may read the file. */
 bool key_file_is_open_to_others(const char *path);
 
 #endif

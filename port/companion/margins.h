@@ -1,12 +1,12 @@
-/* Margins that follow the doubt about where the aircraft is. SPDX-License-Identifier: MIT */
+/* Margins, which widen while the navigation is suspect. SPDX-License-Identifier: MIT */
 #ifndef MARGINS_H
 #define MARGINS_H
 
 #include "companion_config.h"
 #include "goe_flight.h"
 
-/* Margin and clearance of the configuration, times flight.suspect_factor while there is doubt. All that the flight layer knows stays.
- * False: the margins stay as they were. */
+/* Sets margin and clearance of the configuration, multiplied by flight.suspect_factor if in_doubt. The flight layer keeps its obstacles.
+ * Returns false if the margins could not be changed. */
 bool margins_set(goe_flight_t *flight, const companion_config_t *config, bool in_doubt);
 
 #endif

@@ -15,7 +15,7 @@
 enum { UNIX_US, BOOT_US, ACTIVE, ACTION, MODE_BEFORE, COURSE_N, COURSE_E, OBSTACLE_N, OBSTACLE_E, RADIUS, NUMBERS };
 
 static const char header[] =
-    "unix_us,boot_us,stands,action,mode_before,course_n,course_e,obstacle_n_m,obstacle_e_m,radius_m,event,action_name,"
+    "unix_us,boot_us,active,action,mode_before,course_n,course_e,obstacle_n_m,obstacle_e_m,radius_m,event,action_name,"
     "mode,slot,id,tcpa_s,dcpa_m,target_lat_e7,target_lon_e7,target_alt_m,why\n";
 
 bool order_log_open(order_log_t *log, const char *folder) {

@@ -8,21 +8,21 @@
 #include "goe_mavlink_map.h"
 #include "wire.h"
 
-/* From the exposure to the arrival, since it was begun. */
+/* Delays from the exposure to the arrival, since the previous GOE_STATUS. */
 typedef struct {
     double sum_ms, most_ms;
     unsigned images;
     unsigned long all_images; /* since the start */
 } delay_count_t;
 
-/* Own place and time for the messages. */
+/* Position and time of the aircraft for the messages. */
 goe_mavlink_own_t reports_own(const autopilot_t *autopilot, int64_t now_us, int64_t unix_us);
 
-/* Obstacles and hazards, and the standard messages that the configuration names. */
+/* Sends obstacles and hazards, and the standard messages that the configuration names. */
 void reports_send_obstacles(wire_t *wire, const companion_config_t *config, const goe_flight_t *flight,
                             const goe_flight_assessment_t *assessment, const goe_mavlink_own_t *own);
 
-/* Heartbeat and GOE_STATUS. */
+/* Sends a heartbeat and GOE_STATUS. */
 void reports_send_status(wire_t *wire, const goe_flight_t *flight, const goe_flight_assessment_t *assessment,
                          const goe_mavlink_own_t *own, const delay_count_t *delay, unsigned self_check);
 

@@ -1,12 +1,13 @@
-/* What the pilot reads: STATUSTEXT. SPDX-License-Identifier: MIT
+/* Texts for the pilot, sent as STATUSTEXT. SPDX-License-Identifier: MIT
  *
- * Of each kind of text the latest waits for its turn, the most severe first: what a kind shows last is how things are. */
+ * For each kind of text only the latest one waits to be sent, and the most severe one is sent first. The latest text of a kind thus always
+ * gives the present state. */
 #ifndef SCREEN_H
 #define SCREEN_H
 
 #include "wire.h"
 
-#define SCREEN_TEXT_MAX 50 /* of STATUSTEXT, without chunks */
+#define SCREEN_TEXT_MAX 50 /* characters of a STATUSTEXT without chunks */
 
 typedef enum {
     SCREEN_ORDER,
@@ -21,20 +22,20 @@ typedef struct {
     char text[SCREEN_TEXT_MAX];
     uint8_t severity; /* MAV_SEVERITY_... */
     bool waits;
-    int64_t shown_us; /* own time when the latest of this kind went out; 0: none did */
+    int64_t shown_us; /* own time when the latest text of this kind was sent; 0: none */
 } screen_line_t;
 
 typedef struct {
     bool on;
     screen_line_t line[SCREEN_KINDS];
-    int64_t shown_us; /* of any kind */
+    int64_t shown_us; /* own time when the latest text of any kind was sent */
 } screen_t;
 
-/* A text of this kind; one that still waits is given up for it. Null or a screen that is off: nothing is shown. */
+/* Adds a text of this kind, which replaces a waiting text of this kind. Does nothing if the screen is null or off. */
 void screen_show(screen_t *screen, screen_kind_t kind, uint8_t severity, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
-/* Sends due texts: two a second at most, and of a kind one in two seconds. */
+/* Sends a due text: at most two texts a second, and one of each kind in two seconds. */
 void screen_go_on(screen_t *screen, wire_t *wire, int64_t now_us);
 
 #endif

@@ -1,13 +1,13 @@
-/* What an operator reads. SPDX-License-Identifier: MIT */
+/* Status line and summary for the operator. SPDX-License-Identifier: MIT */
 #ifndef STATUS_LINE_H
 #define STATUS_LINE_H
 
 #include "companion.h"
 
-/* Once a second: renewed in place on a terminal, else a line of its own every ten seconds. */
+/* Shows the status; to be called once a second. A terminal's line is replaced; elsewhere a new line is written every ten seconds. */
 void status_line_show(const companion_t *companion);
 
-/* All that came and was lost, at the end. */
+/* Prints the numbers of received and lost messages, at the end. */
 void status_line_summary(const companion_t *companion);
 
 #endif

@@ -4,27 +4,28 @@
 
 #include "goe_flight.h"
 
-/* Share of the union of two boxes (left, top, right, bottom) that both cover, 0 to 1. */
+/* Intersection of two boxes (left, top, right, bottom) as a fraction of their union, 0 to 1. */
 float goe_flight_candidate_overlap(const int16_t a[4], const int16_t b[4]);
 
-/* One more image of this detection, by its id or, without one, its box. Returns true once it was detected in `images` of them: it is
- * no candidate any more. The table is fixed: when it is full, the candidate undetected for the longest is forgotten, and the table is
- * crowded. */
+/* Counts an image with this detection, which is identified by its id or, without an id, by its box. Returns true if `images` images
+ * have shown it: it is then confirmed and leaves the table. The table has a fixed size. If it is full, the new candidate replaces the one
+ * that has been undetected for the longest time, and the table is marked as crowded. */
 bool goe_flight_candidate_confirm(goe_flight_waiting_t *waiting, const goe_flight_candidate_t *seen, int images);
 
-/* A confirmed detection found no slot, or lost it: it waits again, and its images count from the next one. */
+/* Returns a confirmed detection that found no slot, or lost its slot, to the table. Its images count again from the next one. */
 void goe_flight_candidate_return(goe_flight_waiting_t *waiting, const goe_flight_candidate_t *seen);
 
-/* A detection of this time can have no place: it may be anywhere in the view. */
+/* Marks the table as crowded: a detection of this time has no place in the table, and may be anywhere in the view. */
 void goe_flight_candidate_crowd(goe_flight_waiting_t *waiting, uint32_t time_us);
 
-/* An image of a camera has come: what it did not detect for a second does not wait any more. */
+/* To be called for each image of a camera: removes candidates of this camera that have been undetected for a second. */
 void goe_flight_candidate_expire(goe_flight_waiting_t *waiting, uint8_t camera, uint32_t time_us);
 
-/* The same of all cameras after ten seconds, without an image: times of half an hour ago would look like future ones. */
+/* Removes the candidates of all cameras that have been undetected for ten seconds, even without an image. Otherwise times of half an hour
+ * ago would look like future times. */
 void goe_flight_candidate_bury(goe_flight_waiting_t *waiting, uint32_t now_us);
 
-/* At least so many wait; 0: none. */
+/* Least number of waiting detections; 0: none. */
 int goe_flight_candidate_count(const goe_flight_waiting_t *waiting);
 
 #endif

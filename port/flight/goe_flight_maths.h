@@ -10,7 +10,7 @@
 #define GOE_FLIGHT_RAD_PER_DEG 0.0174532925f
 #define GOE_FLIGHT_S_PER_US 1.0e-6f
 
-/* Bits of |x|: they order as the magnitudes do, and no compiler flag takes their meaning away. */
+/* Bits of |x|. They have the same order as the magnitudes, and may be compared under -ffast-math even if x is NaN or infinite. */
 static inline uint32_t goe_flight_magnitude(float x) {
     uint32_t bits;
     memcpy(&bits, &x, sizeof bits);
@@ -32,7 +32,7 @@ static inline float goe_flight_clamped(float x, float least, float most) {
     return x > least ? goe_flight_smaller(x, most) : least;
 }
 
-/* What became of `count` numbers: all finite and within the limit. */
+/* Return whether all `count` numbers are finite, or within the limit. */
 bool goe_flight_all_finite(const float *numbers, int count);
 bool goe_flight_all_within(const float *numbers, int count, float limit);
 
@@ -47,10 +47,10 @@ static inline float goe_flight_between_s(uint32_t a, uint32_t b) {
     return (float)span_us * GOE_FLIGHT_S_PER_US;
 }
 
-/* Whether a truth value of another type's is set; one that is neither 0 nor 1 counts as set. */
+/* Returns whether the caller's bool is set; a byte that is neither 0 nor 1 counts as set. */
 static inline bool goe_flight_is_set(const bool *truth) { return *(const unsigned char *)truth != 0u; }
 
-/* Saturating count. */
+/* Increments a counter that saturates. */
 static inline void goe_flight_count(uint16_t *counter) {
     *counter = *counter < UINT16_MAX ? (uint16_t)(*counter + 1) : *counter;
 }
@@ -61,13 +61,13 @@ float goe_flight_atan2_deg(float y, float x);
 /* Sine and cosine of |deg| <= 1e4. Error at most 1e-6. An angle beyond 1e6, or not finite, counts as 0; below as well. */
 void goe_flight_sincos_deg(float angle_deg, float *sine, float *cosine);
 
-/* deg, |deg| <= 1e4, in [0, 360). */
+/* The angle in [0, 360), for |deg| <= 1e4. */
 float goe_flight_positive_deg(float angle_deg);
 
-/* Body to NED, row by row, of a quaternion of norm 1. */
+/* Rotation matrix from body to NED, row by row, of a quaternion of norm 1. */
 void goe_flight_rotation(const float q[4], float r[9]);
 
-/* turned = r v, and by the transposed; turned may not overlap v. */
+/* turned = r v, and turned = r^T v; turned must not overlap v. */
 void goe_flight_turn(const float r[9], const float v[3], float turned[3]);
 void goe_flight_turn_back(const float r[9], const float v[3], float turned[3]);
 

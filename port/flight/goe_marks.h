@@ -1,4 +1,4 @@
-/* Resets of the autopilot's filter, by its counters or times. SPDX-License-Identifier: MIT */
+/* Detects resets of the autopilot's filter by its reset counters or reset times. SPDX-License-Identifier: MIT */
 #ifndef GOE_FLIGHT_MARKS_H
 #define GOE_FLIGHT_MARKS_H
 
@@ -6,10 +6,11 @@
 
 typedef enum { GOE_FLIGHT_MARKS_SAME, GOE_FLIGHT_MARKS_JUMP, GOE_FLIGHT_MARKS_UNKNOWN } goe_flight_marks_change_t;
 
-/* An attitude's mark: the same, or an unknown reset. */
+/* Compares the mark of an attitude: unchanged, or an unknown reset. */
 goe_flight_marks_change_t goe_flight_marks_attitude(goe_flight_marks_t *marks, uint32_t mark);
 
-/* A position's marks. A jump is added to the running sum and returned separately. */
+/* Compares the marks of a position. A known jump is added to the sum of jumps, and returned in jump_ned_m.
+ *   counters  the marks are counters (PX4), not times (ArduPilot) */
 goe_flight_marks_change_t goe_flight_marks_position(goe_flight_marks_t *marks, const goe_flight_position_t *sample,
                                                     bool counters, float jump_ned_m[3]);
 

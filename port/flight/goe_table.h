@@ -1,18 +1,19 @@
-/* Which detection belongs to which slot, and which slot is given up. SPDX-License-Identifier: MIT */
+/* Assigns detections to slots, and ends tracks. SPDX-License-Identifier: MIT */
 #ifndef GOE_FLIGHT_TABLE_H
 #define GOE_FLIGHT_TABLE_H
 
 #include "goe_flight.h"
 #include "goe_slot.h"
 
-/* All detections of a frame, each to its slot; with the last ones of an image the other slots are updated as undetected. Returns
- * whether the frame shows that the detector works: a readable detection, or an image without any. */
+/* Passes each detection of a frame to its slot. After the last detection of an image, the other slots are updated as undetected. Returns
+ * whether the frame shows that the detector is alive: it has a readable detection, or the image has none. */
 bool goe_flight_table_take(goe_flight_t *flight, const goe_flight_slot_view_t *view, const goe_flight_frame_t *frame);
 
-/* Gives up tracks undetected for too long, except obstacles ahead on the course or of an order. */
+/* Ends tracks that have been undetected for track_timeout_s; during an order, for 30 s or track_timeout_s, whichever is longer. Tracks of
+ * hazards ahead on the course continue. */
 void goe_flight_table_age(goe_flight_t *flight, uint32_t now_us);
 
-/* Slots whose latest image is older than any that may still come are moved on to this view. */
+/* Updates, as undetected, the slots whose latest image is older than this view. Images older than this view no longer arrive. */
 void goe_flight_table_follow(goe_flight_t *flight, const goe_flight_slot_view_t *view);
 
 #endif

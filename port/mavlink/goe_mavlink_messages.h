@@ -1,5 +1,5 @@
-/* GOE_MAVLINK_INFO(message, name, id, crc_extra, length_min, length): every message of goe_mavlink_message_t, in its order. What
- * mavgen makes of goe.xml and of the standard definitions must be the same: tests/python/test_mavlink.py.
+/* GOE_MAVLINK_INFO(message, name, id, crc_extra, length_min, length): every message of goe_mavlink_message_t, in its order.
+ * tests/python/test_mavlink.py checks that mavgen generates the same values from goe.xml and the standard definitions.
  * SPDX-License-Identifier: MIT */
 GOE_MAVLINK_INFO(FEATURES, "GOE_FEATURES", 42700, 27, 37, 61)
 GOE_MAVLINK_INFO(OBSTACLE, "GOE_OBSTACLE", 42701, 189, 87, 87)

@@ -8,7 +8,7 @@
 static int check_arithmetic(void) {
     const unsigned found = goe_self_check();
     if (found != 0u) {
-        printk("goe: goe_self_check() says 0x%02x: results differ in their last bits from those of other targets\n",
+        printk("goe: goe_self_check() returned 0x%02x: results are not bit-identical to those of other targets\n",
                found);
     }
     return 0;

@@ -125,8 +125,8 @@ bool several_campaign(int flights, uint64_t first, uint64_t step, bool lists, bo
     puts("");
     puts("| goal | missed by | |");
     puts("|---|---|---|");
-    *met = print_goal("no collision where a search finds a way", all.collided, all.possible, 0.0);
-    *met = print_goal("5 m to every wall where a search finds a way", all.missed, all.possible, 0.0) && *met;
+    *met = print_goal("no collision where a search finds a path", all.collided, all.possible, 0.0);
+    *met = print_goal("5 m to every wall where a search finds a path", all.missed, all.possible, 0.0) && *met;
     *met = print_goal("at most one change of side", all.changed, all.flights, 0.0) && *met;
     *met = print_goal("at most 2 % orders between two at twice the margin", by_kind[SEVERAL_BETWEEN].ordered,
                       by_kind[SEVERAL_BETWEEN].flights, FALSE_SHARE_MAX) &&

@@ -126,7 +126,7 @@ static void test_a_reset_of_the_heading_ends_all(void) {
     vehicle.step();
     TEST_ASSERT_EQUAL(1, vehicle.flight().counters.lost);
     vehicle.fly(0.2);
-    TEST_ASSERT_TRUE(scripted.has_said("all obstacles given up"));
+    TEST_ASSERT_TRUE(scripted.has_said("all tracks ended"));
     TEST_ASSERT_EQUAL(1, vehicle.seen().obstacles); /* kept as suspect, until an image locates it again */
     TEST_ASSERT_TRUE(vehicle.seen().suspect);
 }
@@ -340,7 +340,7 @@ static void test_parameters_wait_in_flight_until_nothing_is_followed(void) {
     vehicle.fly(1.0);
     vehicle.compares = false;
     vehicle.fly(13.0); // forgotten by then
-    TEST_ASSERT_TRUE(scripted.has_said("parameters taken"));
+    TEST_ASSERT_TRUE(scripted.has_said("new parameters in use"));
     CHECK_CLOSE(0.0, 25.0, vehicle.flight().settings.margin_m);
 }
 

@@ -247,13 +247,13 @@ def test_the_log_has_the_orders(fleet: Fleet) -> None:
     log = fleet[KILLED].log
     rows = log_rows(log)
     assert [row["event"] for row in rows][:3] == ["order", "reposition", "acknowledged"]
-    assert {row["stands"] for row in rows} == {"1"} and rows[0]["action_name"] in ("left", "right")
+    assert {row["active"] for row in rows} == {"1"} and rows[0]["action_name"] in ("left", "right")
     assert {int(row["mode_before"]) for row in rows} == {MODES[PX4]}
     assert float(rows[0]["obstacle_n_m"]) == pytest.approx(MAST.north_m, abs=25.0)
     times = [int(row["unix_us"]) for row in rows]
     assert times == sorted(times) and times[0] > 1_700_000_000 * 1_000_000
     after = log_rows(log.with_name(log.name + "-2"))
-    assert after[-1]["stands"] == "0" and {"end", "resume"} & {row["event"] for row in after}
+    assert after[-1]["active"] == "0" and {"end", "resume"} & {row["event"] for row in after}
 
 
 @pytest.mark.parametrize("name", [PAST, NO_TRAFFIC])

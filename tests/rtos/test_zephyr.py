@@ -166,7 +166,7 @@ def test_golden_bits(tmp_path: Path) -> None:
 @pytest.mark.release
 def test_wrong_arithmetic_is_reported_at_start(tmp_path: Path) -> None:
     text = run(build(SAMPLE, tmp_path, flags="-O1 -ffast-math"))
-    assert re.match(r"goe: goe_self_check\(\) says 0x(?!00)..: ", text)
+    assert re.match(r"goe: goe_self_check\(\) returned 0x(?!00)..: ", text)
 
 
 # ---------------------------------------------------------------------------------------------------------- the sample

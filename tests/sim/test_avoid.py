@@ -189,8 +189,8 @@ def test_one_or_two_obstacles_are_passed_by_5_m(several: str) -> None:
 @pytest.mark.parametrize(
     ("goal", "share"),
     [
-        ("no collision where a search finds a way", 0.0),
-        ("5 m to every wall where a search finds a way", 0.0),
+        ("no collision where a search finds a path", 0.0),
+        ("5 m to every wall where a search finds a path", 0.0),
         ("at most one change of side", 0.0),
         ("at most 2 % orders between two at twice the margin", 0.02),
     ],

@@ -1,4 +1,4 @@
-/* Life of AP_GOE: start, changes of parameters, assessment, texts for the operator. SPDX-License-Identifier: MIT */
+/* AP_GOE in the main thread: start, changes of parameters, assessment, texts for the operator. SPDX-License-Identifier: MIT */
 #include "AP_GOE_config.h"
 
 #if AP_GOE_ENABLED
@@ -28,7 +28,7 @@ AP_GOE::AP_GOE()
 
 // ------------------------------------------------------------------------------------------------------------- start
 
-// it overflows on purpose, which the simulator's traps would take for a fault
+// the check overflows on purpose; the simulator's traps would treat this as a fault
 static unsigned check_arithmetic()
 {
 #if CONFIG_HAL_BOARD == HAL_BOARD_SITL
@@ -47,8 +47,8 @@ bool AP_GOE::start()
     _tried = true;
     _self_check = check_arithmetic();
     if (_self_check != 0) {
-        // estimates stay good; they are not those of the host to the last bit
-        GCS_SEND_TEXT(MAV_SEVERITY_INFO, "GOE: arithmetic differs (0x%02x)", _self_check);
+        // the estimates are valid, but not bit-identical to those of other targets
+        GCS_SEND_TEXT(MAV_SEVERITY_INFO, "GOE: arithmetic not bit-identical (0x%02x)", _self_check);
     }
     State *const state = NEW_NOTHROW State;
     if (state == nullptr) {
@@ -56,7 +56,7 @@ bool AP_GOE::start()
         return false;
     }
     memset(state, 0, sizeof(*state));
-    // it waits until update() wakes it
+    // the thread waits until update() wakes it
     if (!hal.scheduler->thread_create(FUNCTOR_BIND_MEMBER(&AP_GOE::thread_main, void), "goe", AP_GOE_STACK,
                                       AP_HAL::Scheduler::PRIORITY_IO, -1)) {
         delete state;
@@ -80,8 +80,8 @@ bool AP_GOE::follows_something() const
     return false;
 }
 
-/* The flight layer takes settings only at its start, which forgets everything: in flight they wait until nothing is followed.
- * Bad ones are refused, and the latest good ones go on. */
+/* New settings restart the flight layer, which ends all tracks. While the vehicle is armed, they therefore wait until no obstacle
+ * is tracked. Invalid settings are refused, and the latest valid ones stay in use. */
 void AP_GOE::follow_params()
 {
     Settings now;
@@ -92,7 +92,7 @@ void AP_GOE::follow_params()
     }
     if (!is_first && AP::arming().is_armed() && follows_something()) {
         if (!_reported_waiting) {
-            GCS_SEND_TEXT(MAV_SEVERITY_INFO, "GOE: parameters wait until nothing is followed");
+            GCS_SEND_TEXT(MAV_SEVERITY_INFO, "GOE: parameters wait until nothing is tracked");
             _reported_waiting = true;
         }
         return;
@@ -156,7 +156,7 @@ void AP_GOE::report_settings()
     const Found &now = _state->shown;
     if (now.taken_settings != _reported_taken) {
         if (_reported_taken != 0) {
-            GCS_SEND_TEXT(MAV_SEVERITY_INFO, "GOE: parameters taken");
+            GCS_SEND_TEXT(MAV_SEVERITY_INFO, "GOE: new parameters in use");
         }
         _reported_taken = now.taken_settings;
         _reported_lost = 0;
@@ -169,11 +169,11 @@ void AP_GOE::report_settings()
     if (now.corruptions != _reported_corruptions) {
         _reported_corruptions = now.corruptions;
         _reported_lost = 0;
-        GCS_SEND_TEXT(MAV_SEVERITY_WARNING, "GOE: memory was corrupted, begun again");
+        GCS_SEND_TEXT(MAV_SEVERITY_WARNING, "GOE: memory was corrupted, restarted");
     }
 }
 
-// A circle that the aircraft cannot fly is none: what it flies instead is wider, and that is what the layer must know.
+// The aircraft flies a wider circle than WP_LOITER_RAD if its turn is wider. The layer uses that radius.
 void AP_GOE::report_loiter(float used_m)
 {
     const float set_m = fabsf(_loiter_m.get());
@@ -198,7 +198,7 @@ void AP_GOE::report_changes()
     if (now.action != _reported_action) {
         _reported_action = now.action;
         if (now.action == GOE_FLIGHT_NONE) {
-            GCS_SEND_TEXT(MAV_SEVERITY_INFO, "GOE: no action any more");
+            GCS_SEND_TEXT(MAV_SEVERITY_INFO, "GOE: action ended");
         } else {
             GCS_SEND_TEXT(MAV_SEVERITY_WARNING, "GOE: obstacle in %.1f s (%s%s)", double(now.hazard.tcpa_s),
                           goe_flight_action_text(now.action), now.late ? ", late" : "");
@@ -207,7 +207,7 @@ void AP_GOE::report_changes()
     const uint16_t lost = _state->shown.counters.lost;
     if (lost != _reported_lost) {
         _reported_lost = lost;
-        GCS_SEND_TEXT(MAV_SEVERITY_INFO, "GOE: pose jumped, all obstacles given up");
+        GCS_SEND_TEXT(MAV_SEVERITY_INFO, "GOE: pose reset, all tracks ended");
     }
 }
 

@@ -1,4 +1,4 @@
-/* What AP_GOE writes into the log. SPDX-License-Identifier: MIT */
+/* Log messages of AP_GOE. SPDX-License-Identifier: MIT */
 #include "AP_GOE_config.h"
 
 #if AP_GOE_ENABLED
@@ -9,23 +9,23 @@
 #include <AP_Logger/AP_Logger.h>
 
 // @LoggerMessage: GOEO
-// @Description: Obstacles that are followed, ten times a second
+// @Description: Tracked obstacles with a position, ten times a second
 // @Field: TimeUS: Time since system startup
-// @Field: I: place in the table
-// @Field: Id: the detector's number of it; 0: it has none
-// @Field: N: middle of its base, north of the EKF's origin
-// @Field: E: middle of its base, east of the EKF's origin
-// @Field: D: its foot, below the EKF's origin
-// @Field: R: radius of the circle about the middle that holds its outline
+// @Field: I: slot of the obstacle in the table
+// @Field: Id: the detector's id of the obstacle; 0: no id
+// @Field: N: middle of the base, north of the EKF's origin
+// @Field: E: middle of the base, east of the EKF's origin
+// @Field: D: ground at the obstacle, down from the EKF's origin
+// @Field: R: radius of the circle around the middle that contains the outline
 // @Field: W: width; 0: not known
-// @Field: H: height above its foot; 0: not known
+// @Field: H: height of the top above the ground; 0: not known
 // @Field: HSD: one sigma of the height
 // @Field: NN: variance of the middle, north
 // @Field: NE: covariance of the middle, north and east
 // @Field: EE: variance of the middle, east
-// @Field: Age: time since it was measured
-// @Field: Mdl: assumed shape: 2 disc, 3 line, 4 box, 5 something upright
-// @Field: Fl: 1 suspect, 2 receding, 4 in view
+// @Field: Age: time since the obstacle was last measured
+// @Field: Mdl: assumed shape: 2 disc, 3 line, 4 box, 5 prism
+// @Field: Fl: bits: 1 suspect, 2 receding, 4 in view
 void AP_GOE::log_obstacle(int slot, const goe_flight_obstacle_t &obstacle) const
 {
 #if HAL_LOGGING_ENABLED
@@ -43,16 +43,16 @@ void AP_GOE::log_obstacle(int slot, const goe_flight_obstacle_t &obstacle) const
 }
 
 // @LoggerMessage: GOEH
-// @Description: What an obstacle means for the present course, ten times a second
+// @Description: Hazard of an obstacle on the present course, ten times a second
 // @Field: TimeUS: Time since system startup
-// @Field: I: place in the table
-// @Field: TCPA: time to the closest approach
-// @Field: TSD: one sigma of it
-// @Field: DCPA: horizontal distance to the outline then
-// @Field: DSD: one sigma of it
-// @Field: Clr: height over its top then; 0: the top is not known
-// @Field: CSD: one sigma of it
-// @Field: CPrb: probability that margin and clearance are both violated
+// @Field: I: slot of the obstacle in the table
+// @Field: TCPA: time to the closest point of approach
+// @Field: TSD: one sigma of TCPA
+// @Field: DCPA: horizontal distance to the outline at the closest point of approach
+// @Field: DSD: one sigma of DCPA
+// @Field: Clr: vertical distance over the top at the closest point of approach; 0: the top is not known
+// @Field: CSD: one sigma of Clr
+// @Field: CPrb: probability that both margin and clearance are violated
 void AP_GOE::log_hazard(int slot, const goe_flight_obstacle_t &obstacle) const
 {
 #if HAL_LOGGING_ENABLED
@@ -75,14 +75,14 @@ void AP_GOE::log_hazard(int slot, const goe_flight_obstacle_t &obstacle) const
 // @Field: Wst: slot of the worst obstacle; -1: no known hazard
 // @Field: Avd: slot of the obstacle that the action avoids; -1: none
 // @Field: Ob: obstacles with a position
-// @Field: Unp: detected obstacles without a position, at least so many; no order avoids them
-// @Field: Fl: 1 the action may come too late, 2 the worst obstacle is suspect, 4 images arrive, 8 the pose arrives
+// @Field: Unp: least number of detected obstacles without a position; no action avoids them
+// @Field: Fl: bits: 1 the action needs more time than is left, 2 the worst obstacle is suspect, 4 images arrive, 8 the pose arrives
 void AP_GOE::log_assessment() const
 {
 #if HAL_LOGGING_ENABLED
     const goe_flight_assessment_t &now = _state->shown.assessment;
-    const unsigned flags = (now.late ? 1U : 0U) | (now.suspect ? 2U : 0U) | (now.detector_alive ? 4U : 0U) |
-                           (now.pose_alive ? 8U : 0U);
+    const unsigned flags =
+        (now.late ? 1U : 0U) | (now.suspect ? 2U : 0U) | (now.detector_alive ? 4U : 0U) | (now.pose_alive ? 8U : 0U);
     AP::logger().WriteStreaming("GOEA", "TimeUS,Act,Wst,Avd,Ob,Unp,Fl", "s------", "F------", "QBbbBBB",
                                 AP_HAL::micros64(), unsigned(now.action), int(now.worst), int(now.avoided),
                                 unsigned(now.obstacles), unsigned(now.unplaced), flags);
@@ -92,21 +92,21 @@ void AP_GOE::log_assessment() const
 // @LoggerMessage: GOES
 // @Description: State of the obstacle estimation, once a second, also with nothing in view
 // @Field: TimeUS: Time since system startup
-// @Field: Tkn: images taken
-// @Field: Late: images that came too late
-// @Field: Erl: images that had to wait for a pose
-// @Field: Ref: samples, images or detections that were refused
-// @Field: Weak: detections of too low a score
-// @Field: Ren: obstacles that took over a new number
-// @Field: Evi: obstacles given up for a new one
-// @Field: Ful: detections that found no place in the table
-// @Field: Rst: known jumps of the position
-// @Field: Lst: unknown resets, all obstacles given up
+// @Field: Tkn: accepted messages of images
+// @Field: Late: messages of images that arrived too late
+// @Field: Erl: attempts to use a message before its pose arrived
+// @Field: Ref: samples, messages or detections that were refused
+// @Field: Weak: detections with too low a score
+// @Field: Ren: tracks that took over a new id
+// @Field: Evi: tracks that ended because a new obstacle took their slot
+// @Field: Ful: confirmed detections that found no slot
+// @Field: Rst: known jumps of the position estimate
+// @Field: Lst: unknown resets and restarts; each of them ended all tracks
 // @Field: Dly: mean delay from exposure to arrival
 // @Field: DM: longest delay from exposure to arrival
 // @Field: Ob: obstacles with a position
-// @Field: Al: 1 images come, 2 the pose does
-// @Field: SC: self check of the arithmetic; 0: right to the last bit
+// @Field: Al: bits: 1 images arrive, 2 the pose arrives
+// @Field: SC: result of goe_self_check(); 0: the arithmetic is bit-identical to that of other targets
 void AP_GOE::log_status(const goe_mavlink_status_t &status) const
 {
 #if HAL_LOGGING_ENABLED

@@ -1,5 +1,5 @@
-/* Parameters of AP_GOE. Ranges and defaults are those of goe_settings_list.h and goe_flight_settings_list.h, but for
- * OA_SIGMA and the drift of AP_GOE_config.h. SPDX-License-Identifier: MIT */
+/* Parameters of AP_GOE. Ranges and defaults are those of goe_settings_list.h and goe_flight_settings_list.h. Exceptions are
+ * OA_SIGMA and the drift in AP_GOE_config.h. SPDX-License-Identifier: MIT */
 #include "AP_GOE_config.h"
 
 #if AP_GOE_ENABLED
@@ -9,22 +9,22 @@
 const AP_Param::GroupInfo AP_GOE::var_info[] = {
 
     // @Param: ENABLE
-    // @DisplayName: Obstacles from a camera
-    // @Description: Takes the detections of a camera and finds where obstacles are and how big they are
+    // @DisplayName: Obstacle estimation from a camera
+    // @Description: Enables the estimation of obstacles' positions and sizes from the detections of a camera
     // @Values: 0:Disabled,1:Enabled
     // @User: Standard
     // @RebootRequired: True
     AP_GROUPINFO_FLAGS("ENABLE", 1, AP_GOE, _enable, 0, AP_PARAM_FLAG_ENABLE),
 
     // @Param: WIDTH
-    // @DisplayName: Width of the camera's image
+    // @DisplayName: Camera image width
     // @Description: Width of the raw image in pixels. Must be set
     // @Range: 0 32767
     // @User: Standard
     AP_GROUPINFO("WIDTH", 2, AP_GOE, _width, 0),
 
     // @Param: HEIGHT
-    // @DisplayName: Height of the camera's image
+    // @DisplayName: Camera image height
     // @Description: Height of the raw image in pixels. Must be set
     // @Range: 0 32767
     // @User: Standard
@@ -32,110 +32,110 @@ const AP_Param::GroupInfo AP_GOE::var_info[] = {
 
     // @Param: FX
     // @DisplayName: Focal length
-    // @Description: Focal length along the image's width in pixels, from a calibration. Must be set. No image shows that it is wrong
+    // @Description: Focal length along the image's width in pixels, from a calibration. Must be set. No image reveals a wrong value
     // @Range: 1 100000
     // @User: Standard
     AP_GROUPINFO("FX", 4, AP_GOE, _fx, 0.0f),
 
     // @Param: FY
     // @DisplayName: Focal length, vertical
-    // @Description: Focal length along the image's height in pixels. 0: as FX
+    // @Description: Focal length along the image's height in pixels. 0: the value of GOE_FX
     // @Range: 0 100000
     // @User: Advanced
     AP_GROUPINFO("FY", 5, AP_GOE, _fy, 0.0f),
 
     // @Param: CX
     // @DisplayName: Principal point
-    // @Description: Where the optical axis meets the image, pixels from its left side. 0: the middle
+    // @Description: Position of the principal point in pixels from the left side of the image. 0: the middle of the image
     // @Range: -100000 100000
     // @User: Advanced
     AP_GROUPINFO("CX", 6, AP_GOE, _cx, 0.0f),
 
     // @Param: CY
     // @DisplayName: Principal point, vertical
-    // @Description: Where the optical axis meets the image, pixels from its top. 0: the middle
+    // @Description: Position of the principal point in pixels from the top of the image. 0: the middle of the image
     // @Range: -100000 100000
     // @User: Advanced
     AP_GROUPINFO("CY", 7, AP_GOE, _cy, 0.0f),
 
     // @Param: K1
     // @DisplayName: Lens distortion, radial, first
-    // @Description: First radial coefficient of the lens, order and meaning as in OpenCV
+    // @Description: First radial coefficient of the lens distortion, in OpenCV's order and meaning
     // @Range: -100 100
     // @User: Advanced
     AP_GROUPINFO("K1", 8, AP_GOE, _k1, 0.0f),
 
     // @Param: K2
     // @DisplayName: Lens distortion, radial, second
-    // @Description: Second radial coefficient of the lens
+    // @Description: Second radial coefficient of the lens distortion
     // @Range: -100 100
     // @User: Advanced
     AP_GROUPINFO("K2", 9, AP_GOE, _k2, 0.0f),
 
     // @Param: P1
     // @DisplayName: Lens distortion, tangential, first
-    // @Description: First tangential coefficient of the lens
+    // @Description: First tangential coefficient of the lens distortion
     // @Range: -100 100
     // @User: Advanced
     AP_GROUPINFO("P1", 10, AP_GOE, _p1, 0.0f),
 
     // @Param: P2
     // @DisplayName: Lens distortion, tangential, second
-    // @Description: Second tangential coefficient of the lens
+    // @Description: Second tangential coefficient of the lens distortion
     // @Range: -100 100
     // @User: Advanced
     AP_GROUPINFO("P2", 11, AP_GOE, _p2, 0.0f),
 
     // @Param: K3
     // @DisplayName: Lens distortion, radial, third
-    // @Description: Third radial coefficient of the lens
+    // @Description: Third radial coefficient of the lens distortion
     // @Range: -100 100
     // @User: Advanced
     AP_GROUPINFO("K3", 12, AP_GOE, _k3, 0.0f),
 
     // @Param: YAW
-    // @DisplayName: Camera's yaw
-    // @Description: Mounting of the camera about body down, from forward; one that looks left has a negative yaw
+    // @DisplayName: Camera yaw
+    // @Description: Yaw angle of the camera's mounting. 0: the camera looks forward. Negative: it looks left
     // @Units: deg
     // @Range: -360 360
     // @User: Standard
     AP_GROUPINFO("YAW", 13, AP_GOE, _yaw, 0.0f),
 
     // @Param: PITCH
-    // @DisplayName: Camera's pitch
-    // @Description: Mounting of the camera after its yaw, positive up
+    // @DisplayName: Camera pitch
+    // @Description: Pitch angle of the camera's mounting, applied after the yaw. Positive: the camera looks up
     // @Units: deg
     // @Range: -360 360
     // @User: Standard
     AP_GROUPINFO("PITCH", 14, AP_GOE, _pitch, 0.0f),
 
     // @Param: ROLL
-    // @DisplayName: Camera's roll
-    // @Description: Mounting of the camera about its own axis, after yaw and pitch
+    // @DisplayName: Camera roll
+    // @Description: Roll angle of the camera's mounting about its optical axis, applied after yaw and pitch. Positive: the camera leans to the right
     // @Units: deg
     // @Range: -360 360
     // @User: Standard
     AP_GROUPINFO("ROLL", 15, AP_GOE, _roll, 0.0f),
 
     // @Param: POS_X
-    // @DisplayName: Camera's place, forward
-    // @Description: Camera relative to the point that INS_POS1_X and the like count from, body forward
+    // @DisplayName: Camera X position
+    // @Description: X position of the camera in body frame. Positive X is forward of the origin. The origin is the same as for INS_POS1_X
     // @Units: m
     // @Range: -10000 10000
     // @User: Advanced
     AP_GROUPINFO("POS_X", 16, AP_GOE, _pos_x, 0.0f),
 
     // @Param: POS_Y
-    // @DisplayName: Camera's place, right
-    // @Description: Camera relative to the point that INS_POS1_X and the like count from, body right
+    // @DisplayName: Camera Y position
+    // @Description: Y position of the camera in body frame. Positive Y is to the right of the origin. The origin is the same as for INS_POS1_Y
     // @Units: m
     // @Range: -10000 10000
     // @User: Advanced
     AP_GROUPINFO("POS_Y", 17, AP_GOE, _pos_y, 0.0f),
 
     // @Param: POS_Z
-    // @DisplayName: Camera's place, down
-    // @Description: Camera relative to the point that INS_POS1_X and the like count from, body down
+    // @DisplayName: Camera Z position
+    // @Description: Z position of the camera in body frame. Positive Z is down from the origin. The origin is the same as for INS_POS1_Z
     // @Units: m
     // @Range: -10000 10000
     // @User: Advanced
@@ -143,15 +143,15 @@ const AP_Param::GroupInfo AP_GOE::var_info[] = {
 
     // @Param: DELAY
     // @DisplayName: Least delay of the link
-    // @Description: Least time from sending to arrival, for images whose time is not of this clock
+    // @Description: Least time from the sending of an image's message to its arrival. It applies to images whose time is not by the autopilot's clock
     // @Units: s
     // @Range: 0 0.5
     // @User: Standard
     AP_GROUPINFO("DELAY", 19, AP_GOE, _delay, 0.005f),
 
     // @Param: HOME_SD
-    // @DisplayName: Home's uncertainty as ground
-    // @Description: One sigma of the height above home as a height above the obstacle's ground
+    // @DisplayName: Error of the height above home
+    // @Description: One sigma of the error of the height above home as a height above the ground
     // @Units: m
     // @Range: 0.001 1000
     // @User: Standard
@@ -159,7 +159,7 @@ const AP_Param::GroupInfo AP_GOE::var_info[] = {
 
     // @Param: MARGIN
     // @DisplayName: Margin
-    // @Description: Horizontal distance to an obstacle's outline that is wanted; for warnings, not for the database
+    // @Description: Wanted horizontal distance to an obstacle's outline. It affects hazards and actions, not the avoidance database
     // @Units: m
     // @Range: 0 1000
     // @User: Standard
@@ -167,7 +167,7 @@ const AP_Param::GroupInfo AP_GOE::var_info[] = {
 
     // @Param: CLEAR
     // @DisplayName: Clearance
-    // @Description: Height over an obstacle's top that is wanted; for warnings, not for the database
+    // @Description: Wanted vertical distance over an obstacle's top. It affects hazards and actions, not the avoidance database
     // @Units: m
     // @Range: 0 1000
     // @User: Standard
@@ -175,7 +175,7 @@ const AP_Param::GroupInfo AP_GOE::var_info[] = {
 
     // @Param: GND_SD
     // @DisplayName: Unevenness of the ground
-    // @Description: How far the obstacle's ground may lie off that below the vehicle, one sigma
+    // @Description: One sigma of the difference in height between the ground at the obstacle and the ground below the vehicle
     // @Units: m
     // @Range: 0 1000
     // @User: Standard
@@ -183,14 +183,14 @@ const AP_Param::GroupInfo AP_GOE::var_info[] = {
 
     // @Param: OA_SIGMA
     // @DisplayName: Sigmas in the database
-    // @Description: So many sigmas of the obstacle's place are added to its radius in the avoidance database, twice as many while the estimate is suspect. At first sight a sigma is 10 to 35 m, near by one. 0: the measured radius, which is not safe
+    // @Description: Number of sigmas of the obstacle's position that are added to its radius in the avoidance database. While the estimate is suspect, twice as many are added. One sigma is 10 to 35 m after the first detection, and 1 m close to the obstacle. 0: the estimated radius without an addition, which is not safe
     // @Range: 0 5
     // @User: Standard
     AP_GROUPINFO("OA_SIGMA", 47, AP_GOE, _oa_sigma, 2.0f),
 
     // @Param: REPORT_HZ
     // @DisplayName: Rate of messages
-    // @Description: How often GOE_OBSTACLE and GOE_HAZARD are sent for each obstacle; with 0 neither these nor GOE_STATUS
+    // @Description: Rate at which GOE_OBSTACLE and GOE_HAZARD are sent for each obstacle. 0: these messages and GOE_STATUS are not sent
     // @Units: Hz
     // @Range: 0 10
     // @User: Standard
@@ -198,8 +198,8 @@ const AP_Param::GroupInfo AP_GOE::var_info[] = {
 
     // @Param: OPTIONS
     // @DisplayName: Options
-    // @Description: With bit 0 arming waits for images and pose. That no obstacle is in view never keeps from arming
-    // @Bitmask: 0:Arm only with a camera that is alive
+    // @Description: With bit 0, arming requires images and a pose. Images without obstacles do not prevent arming
+    // @Bitmask: 0:Arming requires images and a pose
     // @User: Standard
     AP_GROUPINFO("OPTIONS", 49, AP_GOE, _options, 1),
 
@@ -217,7 +217,7 @@ bool AP_GOE::Foreign::find(const char *name, float its_scale)
     return param != nullptr;
 }
 
-// Once: the search goes through all names of the vehicle. Newer names first.
+// Called once, because the search goes through all names of the vehicle. Newer names come first.
 void AP_GOE::find_vehicle()
 {
     if (!_roll_limit_deg.find("ROLL_LIMIT_DEG", 1.0f)) {
@@ -230,8 +230,8 @@ void AP_GOE::find_vehicle()
     }
 }
 
-/* Limits from the vehicle's own parameters. A circle smaller than a turn at cruise speed and that bank is not flown: the layer gets
- * the one that is. */
+/* Limits from the vehicle's own parameters. The vehicle cannot fly a circle smaller than its turn at cruise speed and this bank, so
+ * the layer gets the larger of both radii. */
 void AP_GOE::read_vehicle(goe_flight_settings_t &layer) const
 {
     if (is_positive(_roll_limit_deg.get())) {
@@ -249,7 +249,7 @@ void AP_GOE::read_vehicle(goe_flight_settings_t &layer) const
     }
 }
 
-/* As the ground station shows it. A setting that no parameter makes is named as it is. */
+/* Name of the parameter, as the ground station shows it. For a setting without a parameter: the setting's own name. */
 const char *AP_GOE::parameter_of(const char *field)
 {
     static const struct {

@@ -129,7 +129,7 @@ pub struct FilterSettings {
     pub nis_ratio_max: f32,
     /// Sigma over range up to which a position is reported; 0.01 to 10; default 0.25.
     pub range_sd_rel_max: f32,
-    /// `top` is the highest point in the image also from above the roof; default false.
+    /// `top` is the roof's highest point in the image, even if the camera is above the roof; default false.
     pub top_is_highest: bool,
 }
 

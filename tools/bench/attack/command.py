@@ -19,9 +19,9 @@ HEADS = {
     "moving obstacles": ("motion", "moves within 4 s/8 s/ever", "velocity in 2 sigma"),
     "conventions": ("error", "detected within 3 s"),
 }
-ANSWERS = ("attack", "in 2 sigma", "5 sigma off", "suspect", "flagged late or inconsistent", "answers")
+ANSWERS = ("attack", "in 2 sigma", "5 sigma off", "suspect", "flagged late or inconsistent", "estimates")
 WARNINGS = (
-    "features, errors", "true share by predicted", "off by", "time/miss/clearance in 2 sigma", "unwarned", "false",
+    "features, errors", "true share by predicted", "off by", "TCPA/DCPA/clearance in 2 sigma", "unwarned", "false",
 )  # fmt: skip
 
 

@@ -19,8 +19,8 @@ TABLES = MarkedBlock("ledger")
 README_PRESETS = ("m4f-gcc-os", "m4f-gcc-o2", "m0plus-gcc-os")
 TARGET_HEAD = [
     "| target | compiler | code + constants, bytes | stack of `goe_update`, bytes (painted) | "
-    "instructions per `goe_update`: min / mean / max | ... with lens distortion: max | "
-    "... method window: min / mean / max |",
+    "instructions per `goe_update`: min / mean / max | instructions with lens distortion: max | "
+    "instructions, window method: min / mean / max |",
     "|---|---|---|---|---|---|---|",
 ]
 

@@ -156,7 +156,7 @@ class FilterSettings(_Group):
     range_sd_rel_max: float = real("filter.range_sd_rel_max")
     """Sigma over range up to which a position is reported."""
     top_is_highest: bool = bool(whole("filter.top_is_highest"))
-    """``top`` is the highest point in the image, also from above the roof."""
+    """``top`` is the roof's highest point in the image, even if the camera is above the roof."""
 
 
 @dataclass

@@ -39,13 +39,13 @@ Goe::~Goe() {
 
 bool Goe::init() {
     if (_self_check != 0) {
-        PX4_ERR("arithmetic is not that of the tests: self check 0x%02x", _self_check);
+        PX4_ERR("arithmetic is not bit-identical to other targets: self-check 0x%02x", _self_check);
     }
     (void)_vehicle_status_sub.update(&_vehicle_status);
     read_parameters();
     use_parameters();
     if (!_attitude_sub.registerCallback() || !_tunnel_sub.registerCallback()) {
-        PX4_ERR("no callback");
+        PX4_ERR("callback registration failed");
         return false;
     }
     ScheduleOnInterval(CYCLE_US);
@@ -81,7 +81,7 @@ void Goe::use_parameters() {
     _waiting = false;
     _images.forget();
     if (_bad_field != nullptr) {
-        mavlink_log_critical(&_mavlink_log_pub, "goe: not set right: %s", goe_text_parameter(_bad_field));
+        mavlink_log_critical(&_mavlink_log_pub, "goe: bad parameter %s", goe_text_parameter(_bad_field));
     }
 }
 
@@ -321,7 +321,7 @@ void Goe::assess(uint64_t now_us) {
     _assessed_us = now_us;
     _phase = goe_px4::phase(_setpoint, _ground, _landing, now_us);
     if (goe_flight_assess(&_flight, goe_px4::time_us(now_us), _phase, &assessment) == GOE_FLIGHT_CORRUPTED) {
-        mavlink_log_critical(&_mavlink_log_pub, "goe: memory was corrupted, begun again");
+        mavlink_log_critical(&_mavlink_log_pub, "goe: memory was corrupted, restarted");
         _in_use = goe_flight_init(&_flight, sizeof _flight, &_used.estimator, &_used.flight, nullptr) == GOE_FLIGHT_OK;
     }
     follow_orders(assessment, now_us);
@@ -371,7 +371,7 @@ void Goe::leave() {
 int Goe::task_spawn(int argc, char *argv[]) {
     Goe *const instance = new Goe();
     if (instance == nullptr) {
-        PX4_ERR("no memory");
+        PX4_ERR("alloc failed");
         return PX4_ERROR;
     }
 #ifdef GOE_MODULE_DESCRIPTOR
@@ -416,9 +416,9 @@ int Goe::print_usage(const char *reason) {
     }
     PRINT_MODULE_DESCRIPTION(
         "### Description\n"
-        "Finds obstacles on the ground in the boxes of a camera's detector: where they are, how big,\n"
-        "whether the present course comes too near to them, and what to do about it.\n"
-        "The camera must be set: GOE_CAM_W, GOE_CAM_H, GOE_CAM_FX.\n");
+        "Estimates the position and size of obstacles on the ground from the boxes of a camera's detector.\n"
+        "Reports whether the present course leads too near to them, and the order that avoids them.\n"
+        "Set the camera's parameters first: GOE_CAM_W, GOE_CAM_H, GOE_CAM_FX.\n");
     PRINT_MODULE_USAGE_NAME("goe", "estimator");
     PRINT_MODULE_USAGE_COMMAND("start");
     PRINT_MODULE_USAGE_DEFAULT_COMMANDS();

@@ -1,4 +1,4 @@
-/* What `goe status` says. SPDX-License-Identifier: MIT */
+/* Text of `goe status`. SPDX-License-Identifier: MIT */
 #include "GoeText.hpp"
 
 #include <math.h>
@@ -39,20 +39,23 @@ float place_sd_m(const goe_obstacle_s &obstacle) {
 void report_settings(const GoeOverview &o, char *line) {
     const goe_status_s &s = o.status;
     if (!s.settings_in_use) {
-        snprintf(line, GOE_TEXT_LINE, "settings   NOT IN USE, nothing is done: %s is out of range or not set",
+        snprintf(line, GOE_TEXT_LINE, "settings   NOT IN USE, the module does nothing: %s is out of range or not set",
                  o.bad_field != nullptr ? goe_text_parameter(o.bad_field) : "a parameter");
     } else if (o.bad_field != nullptr) {
-        snprintf(line, GOE_TEXT_LINE, "settings   the old ones: %s was set out of range",
+        snprintf(line, GOE_TEXT_LINE, "settings   previous ones in use: %s is out of range",
                  goe_text_parameter(o.bad_field));
     } else {
         snprintf(line, GOE_TEXT_LINE, "settings   in use%s",
-                 s.settings_waiting ? "; changed ones wait until no obstacle is followed, or for disarming" : "");
+                 s.settings_waiting
+                     ? "; changes wait until no obstacle is tracked and no order is active, or until disarming"
+                     : "");
     }
 }
 
 void report_detector(const goe_status_s &s, char *line) {
     if (is_known(s.delay_mean)) {
-        snprintf(line, GOE_TEXT_LINE, "detector   %s, %.1f images/s, %.0f ms from exposure to here (at most %.0f)",
+        snprintf(line, GOE_TEXT_LINE,
+                 "detector   %s, %.1f images/s, %.0f ms from exposure to processing (at most %.0f)",
                  yes(s.detector_alive), number(s.image_rate), number(s.delay_mean), number(s.delay_max));
     } else {
         snprintf(line, GOE_TEXT_LINE, "detector   %s, no image in the last second", yes(s.detector_alive));
@@ -61,14 +64,14 @@ void report_detector(const goe_status_s &s, char *line) {
 
 void report_images(const goe_status_s &s, char *line) {
     snprintf(line, GOE_TEXT_LINE,
-             "images     %u taken, %u too late, %u waited in vain, %u refused, %u detections too weak", s.taken,
-             s.late_images, s.overdue, s.refused, s.weak);
+             "images     %u accepted, %u too late, %u dropped (no pose or queue full), %u refused, %u with a low score",
+             s.taken, s.late_images, s.overdue, s.refused, s.weak);
 }
 
 void report_tracks(const goe_status_s &s, char *line) {
     const bool nothing = s.obstacles == 0;
     snprintf(line, GOE_TEXT_LINE,
-             "obstacles  %s%u of %d, %u without a position; tracks ended by resets: %u, no room for %u",
+             "obstacles  %s%u of %d, %u without a position; resets that ended tracks: %u, detections without slot: %u",
              nothing && !(s.detector_alive && s.pose_alive && s.unplaced == 0) ? "NOT KNOWN, " : "", s.obstacles,
              GOE_FLIGHT_SLOTS, s.unplaced, s.lost, s.full);
 }
@@ -88,9 +91,9 @@ const char *phase_text(uint8_t phase) {
 
 void report_order(const GoeOverview &o, char *line) {
     const goe_status_s &s = o.status;
-    const char *const who = s.overruled ? ", overruled" : s.flown ? ", given to PX4" : ", reported only";
+    const char *const who = s.overruled ? ", overruled" : s.flown ? ", sent to PX4" : ", reported only";
     if (s.action == goe_status_s::ACTION_NONE) {
-        snprintf(line, GOE_TEXT_LINE, "order      none%s%s", o.react == 0 ? "; GOE_REACT is 0: none is ever flown" : "",
+        snprintf(line, GOE_TEXT_LINE, "order      none%s%s", o.react == 0 ? "; GOE_REACT is 0: PX4 flies no order" : "",
                  phase_text(o.phase));
     } else {
         snprintf(line, GOE_TEXT_LINE, "order      %s%s%s, needs %.1f s",
@@ -121,19 +124,21 @@ void report_hazard(const goe_obstacle_s &obstacle, char *line) {
                  obstacle.clearance < 0.f ? "below" : "over");
     }
     if (!is_known(obstacle.dcpa)) {
-        snprintf(line, GOE_TEXT_LINE, "     its hazard is not known");
+        snprintf(line, GOE_TEXT_LINE, "     hazard not known");
     } else if (obstacle.receding) {
         snprintf(line, GOE_TEXT_LINE, "     passed: its distance grows");
     } else {
-        snprintf(line, GOE_TEXT_LINE, "     in %.1f +- %.1f s %.0f m past it%s; %.0f %% to violate the margins%s",
+        snprintf(line, GOE_TEXT_LINE,
+                 "     closest approach in %.1f +- %.1f s: distance %.0f m%s; conflict probability %.0f %%%s",
                  number(obstacle.tcpa), number(obstacle.tcpa_sd), number(obstacle.dcpa), over,
                  number(PER_CENT * obstacle.conflict_probability), obstacle.worst ? ", worst" : "");
     }
 }
 
 void report_arithmetic(const goe_status_s &s, char *line) {
-    snprintf(line, GOE_TEXT_LINE, "arithmetic %s (self check 0x%02x)",
-             s.self_check == 0 ? "right, the bits of any host" : "NOT that of the tests", s.self_check);
+    snprintf(line, GOE_TEXT_LINE, "arithmetic %s (self-check 0x%02x)",
+             s.self_check == 0 ? "correct, bit-identical to other targets" : "NOT bit-identical to other targets",
+             s.self_check);
 }
 
 void report_state(const GoeOverview &o, unsigned number_of_line, char *line) {
@@ -145,7 +150,7 @@ void report_state(const GoeOverview &o, unsigned number_of_line, char *line) {
             report_settings(o, line);
             break;
         case 2:
-            snprintf(line, GOE_TEXT_LINE, "pose       %s%s, jumps of PX4's filter taken along: %u",
+            snprintf(line, GOE_TEXT_LINE, "pose       %s%s, corrected jumps of PX4's filter: %u",
                      yes(o.status.pose_alive), o.status.dead_reckoning ? ", by dead reckoning" : "", o.status.resets);
             break;
         case 3:

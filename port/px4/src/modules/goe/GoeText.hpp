@@ -1,4 +1,4 @@
-/* What `goe status` says. SPDX-License-Identifier: MIT */
+/* Text of `goe status`. SPDX-License-Identifier: MIT */
 #pragma once
 
 #include <stddef.h>
@@ -18,7 +18,7 @@ struct GoeOverview {
     uint8_t phase;         /* GOE_FLIGHT_FLYING, ... */
 };
 
-/* The parameter behind a setting's name, of those that must be set; else the setting's name itself. */
+/* Name of the parameter that sets a setting; the setting's name itself if no parameter does. */
 const char *goe_text_parameter(const char *setting);
 
 constexpr size_t GOE_TEXT_LINE = 128;
