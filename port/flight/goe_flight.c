@@ -11,6 +11,7 @@
 #include "goe_history.h"
 #include "goe_lookout.h"
 #include "goe_marks.h"
+#include "goe_parts.h"
 #include "goe_reaction.h"
 #include "goe_table.h"
 
@@ -28,6 +29,8 @@
 #define NOBODY (-1)
 /* Of an obstacle, as goe_flight.h lists it. */
 #define REPORTED (GOE_HAS_POSITION | GOE_HAS_HEIGHT | GOE_HAS_WIDTH | GOE_HAS_LENGTH | GOE_HAS_ORIENTATION)
+
+#define OUTLINED (GOE_HAS_POSITION | GOE_HAS_WIDTH) /* of an obstacle with an outline at a place */
 
 /* ---------------------------------------------------------------------------------------------------------- settings -- */
 
@@ -111,6 +114,7 @@ static void forget(goe_flight_t *flight) {
     memset(&flight->marks, 0, sizeof flight->marks);
     memset(&flight->clock, 0, sizeof flight->clock);
     memset(&flight->waiting, 0, sizeof flight->waiting);
+    memset(flight->parts, 0, sizeof flight->parts);
     memset(flight->velocity_ned_m_s, 0, sizeof flight->velocity_ned_m_s);
     goe_flight_reaction_clear(&flight->reaction);
     flight->had_frame = 0;
@@ -208,6 +212,23 @@ static goe_flight_status_t refuse_time(goe_flight_t *flight) {
     return refuse(flight, GOE_FLIGHT_BAD_TIME);
 }
 
+static bool camera_alive(const goe_flight_t *flight, int number, uint32_t now_us) {
+    return ((flight->had_frame >> number) & 1u) != 0u &&
+           goe_flight_between_s(now_us, flight->frame_us[number]) <= flight->settings.detector_timeout_s;
+}
+
+/* An input that was dead stays dead until it gives a sign again: times of half an hour ago would look like future times. */
+static void bury(goe_flight_t *flight, uint32_t now_us) {
+    for (int i = 0; i < GOE_CAMERAS_MAX; i++) {
+        goe_flight_parts_t *parts = &flight->parts[i];
+        if (!camera_alive(flight, i, now_us)) {
+            flight->had_frame = (uint8_t)(flight->had_frame & ~(1u << i));
+        }
+        parts->viewed =
+            parts->viewed && goe_flight_between_s(now_us, parts->viewed_us) <= flight->settings.detector_timeout_s;
+    }
+}
+
 /* The newest time there is, and the same without wrapping. */
 static void advance(goe_flight_t *flight, uint32_t time_us) {
     const int32_t on_us = goe_flight_between_us(time_us, (uint32_t)flight->base_us);
@@ -215,6 +236,7 @@ static void advance(goe_flight_t *flight, uint32_t time_us) {
     if (first || on_us > 0) {
         flight->base_us += first ? (int64_t)(time_us - (uint32_t)flight->base_us) : on_us;
     }
+    bury(flight, (uint32_t)flight->base_us);
 }
 
 static void lose_everything(goe_flight_t *flight) {
@@ -222,6 +244,7 @@ static void lose_everything(goe_flight_t *flight) {
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         goe_flight_slot_lose(&flight->slot[i]);
     }
+    goe_flight_candidate_crowd(&flight->waiting, (uint32_t)flight->base_us); /* bearings may have jumped */
     goe_flight_count(&flight->counters.lost);
 }
 
@@ -530,26 +553,12 @@ static bool pose_alive(const goe_flight_t *flight, uint32_t now_us) {
            goe_flight_between_s(now_us, position->time_us) <= POSE_ALIVE_S;
 }
 
-static bool camera_alive(const goe_flight_t *flight, int number, uint32_t now_us) {
-    return ((flight->had_frame >> number) & 1u) != 0u &&
-           goe_flight_between_s(now_us, flight->frame_us[number]) <= flight->settings.detector_timeout_s;
-}
-
 static bool detector_alive(const goe_flight_t *flight, uint32_t now_us) {
     bool alive = true;
     for (int i = 0; i < GOE_CAMERAS_MAX; i++) {
         alive = alive && (camera_alive(flight, i, now_us) || !has_camera(flight, i));
     }
     return alive;
-}
-
-/* An input that was dead stays dead until it gives a sign again: times of half an hour ago would look like future times. */
-static void bury(goe_flight_t *flight, uint32_t now_us) {
-    for (int i = 0; i < GOE_CAMERAS_MAX; i++) {
-        if (!camera_alive(flight, i, now_us)) {
-            flight->had_frame = (uint8_t)(flight->had_frame & ~(1u << i));
-        }
-    }
 }
 
 static void copy_hazard(const goe_flight_slot_t *slot, goe_hazard_t *hazard) {
@@ -731,29 +740,31 @@ static bool is_passed_over(const goe_flight_t *flight, const goe_flight_slot_t *
                goe_flight_lookout_doubt(flight, slot) * flight->settings.clearance_m;
 }
 
-/* What the cameras see whose detectors are alive. */
+/* What the latest complete images show of cameras whose detectors are alive. */
 static void open_sectors(const goe_flight_t *flight, uint32_t max_cm, uint16_t sector_cm[GOE_FLIGHT_SECTORS]) {
-    const goe_flight_history_attitude_t *attitude = goe_flight_history_newest_attitude(&flight->history);
-    const uint32_t now_us = flight->assessed_us;
+    const uint32_t newest_us = (uint32_t)flight->base_us;
+    const bool later = goe_flight_between_us(flight->assessed_us, newest_us) > 0;
+    const uint32_t now_us = later ? flight->assessed_us : newest_us;
     const bool alive = pose_alive(flight, now_us) && !flight->waiting.crowded;
     for (int i = 0; i < GOE_FLIGHT_SECTORS; i++) {
         sector_cm[i] = GOE_FLIGHT_SECTOR_UNKNOWN;
     }
     for (int i = 0; i < GOE_CAMERAS_MAX; i++) {
-        float from_deg;
-        float width_deg;
-        if (alive && camera_alive(flight, i, now_us) &&
-            goe_flight_geometry_view(&flight->camera[i], attitude->q, &from_deg, &width_deg)) {
-            goe_flight_geometry_open_sectors(sector_cm, max_cm, from_deg, width_deg);
+        const goe_flight_parts_t *parts = &flight->parts[i];
+        const bool viewed = parts->viewed != 0u &&
+                            goe_flight_between_s(now_us, parts->viewed_us) <= flight->settings.detector_timeout_s;
+        if (alive && viewed && camera_alive(flight, i, now_us)) {
+            goe_flight_geometry_open_sectors(sector_cm, max_cm, &flight->camera[i], parts->q, parts->above_m);
         }
     }
 }
 
-/* Where an obstacle was detected that has no position. */
+/* Where an obstacle was detected that has no position, or one whose width is not known. */
 static void close_sectors(const goe_flight_t *flight, uint16_t sector_cm[GOE_FLIGHT_SECTORS]) {
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
-        if (goe_flight_slot_is_unplaced(&flight->slot[i])) {
-            goe_flight_geometry_close_sectors(sector_cm, &flight->slot[i].bearings);
+        const goe_flight_slot_t *slot = &flight->slot[i];
+        if (slot->used && (slot->valid & OUTLINED) != OUTLINED) {
+            goe_flight_geometry_close_sectors(sector_cm, &slot->bearings);
         }
     }
     for (int i = 0; i < GOE_FLIGHT_CANDIDATES; i++) {

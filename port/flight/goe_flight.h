@@ -27,10 +27,10 @@
  *             frame and an assessment return GOE_FLIGHT_CORRUPTED. [F3] An estimator that returns GOE_CORRUPTED starts again; if its
  *             settings are lost, it takes those of another slot. Until it has a position again, the slot keeps its position, hazard
  *             and warning, marked suspect. [F4] The rest (poses, clocks, positions, the active order) is not sealed.
- * Cost        On a Cortex-M4F (gcc), in instructions: a sample at most 1,250; a frame 45,900 for each obstacle in it; an assessment
+ * Cost        On a Cortex-M4F (gcc), in instructions: a sample at most 1,270; a frame 46,000 for each obstacle in it; an assessment
  *             28,700 with one obstacle and 23,200 for each further one with a position. While there is a hazard or an order, an
  *             assessment also examines paths: at most 3 times (4 + 4 GOE_FLIGHT_SLOTS), each against every obstacle.
- *             goe_flight_obstacle() 980; goe_flight_sectors() 7,000 with one obstacle; goe_flight_init() 12,700 for each
+ *             goe_flight_obstacle() 980; goe_flight_sectors() 9,300 with one obstacle; goe_flight_init() 12,700 for each
  *             slot. No loop runs longer than GOE_FLIGHT_SECTORS.
  * Failure     A call that returns a negative status, or GOE_FLIGHT_TOO_NEW, changes nothing except counters, with two exceptions:
  *             after a failed goe_flight_init() *flight cannot be used, and the 16th GOE_FLIGHT_BAD_TIME in a row calls
@@ -350,6 +350,15 @@ typedef struct { /* goe_candidate.c */
     goe_flag_t crowded; /* a detection had no place, or no known one, last at crowded_us */
 } goe_flight_waiting_t;
 
+typedef struct { /* goe_parts.c: the images of a camera */
+    uint32_t begun_us; /* exposure of the image whose detections come */
+    uint32_t taken;    /* slots that it has updated, as bits */
+    uint8_t given;     /* its detections so far */
+    goe_flag_t viewed; /* an image was complete, and is not older than detector_timeout_s: */
+    uint32_t viewed_us; /* newest sample when it was; */
+    float q[4], above_m; /* attitude, and height above the ground, at its exposure */
+} goe_flight_parts_t;
+
 typedef struct { /* goe_slot.c */
     goe_estimator_t estimator;
     goe_hazard_t hazard; /* from the latest assessment; goe_lookout.c */
@@ -413,6 +422,7 @@ typedef struct {
     goe_flag_t origin_known;
     int32_t origin_lat_e7, origin_lon_e7;
     goe_flight_waiting_t waiting;
+    goe_flight_parts_t parts[GOE_CAMERAS_MAX];
     goe_flight_slot_t slot[GOE_FLIGHT_SLOTS];
 } goe_flight_t;
 
@@ -462,10 +472,12 @@ goe_flight_status_t goe_flight_timesync(goe_flight_t *flight, uint32_t offset_us
 /* Takes the detections of an image:
  *   - A detection that is not finite or out of range is ignored and counted.
  *   - A detection with a known id updates the slot with that id.
- *   - A detection with a new id takes over a track that has no detection in this image and whose predicted position is in its box.
+ *   - A detection with a new id takes over the track whose predicted position fits its box best, if no other detection of the call
+ *     fits better. That track has no detection in this image so far. Before the image's last call it had none in the image
+ *     before, either: a later call may contain its own id.
  *   - Any other detection waits until it is confirmed.
- * After the last detection of an image, the other tracks of its camera are updated as undetected. An obstacle visible to two
- * cameras at once may have two slots until both have its position.
+ * Calls whose exposures are at most 5 ms apart are one image. After its last detection, the other tracks of its camera are
+ * updated as undetected. An obstacle visible to two cameras at once may have two slots until both have its position.
  * Returns GOE_FLIGHT_OK, _TOO_NEW, _TOO_OLD, _NO_POSE, _OUT_OF_RANGE (time base, camera, count), _BAD_ARGUMENT, _NOT_INITIALIZED,
  * _CORRUPTED. */
 goe_flight_status_t goe_flight_frame(goe_flight_t *flight, const goe_flight_frame_t *frame);
@@ -485,9 +497,11 @@ goe_flight_status_t goe_flight_obstacle(const goe_flight_t *flight, int slot, go
 
 /* Finds the distance of the nearest obstacle in each sector; sector i is centered on the bearing 5 i degrees. Values in cm:
  *   - at most max_cm: the distance of an obstacle with a position; while unplaced is not 0 there may be a nearer one
- *   - max_cm + 1: the sector is in the camera's view and has no obstacle, nor a detection without a position,
- *     a slot or a confirmation
+ *   - max_cm + 1: nothing was detected in the sector up to max_cm: no obstacle, and no detection that has no position or width,
+ *     no slot or no confirmation. The latest complete image of a live camera shows the flat ground at max_cm there, at the
+ *     attitude of its exposure; so it also shows any nearer obstacle that is as high as the aircraft
  *   - GOE_FLIGHT_SECTOR_UNKNOWN: all other sectors
+ * Time is that of the latest assessment or of the newest sample, whichever is later.
  * Obstacles whose top the aircraft passes by more than the clearance, at two sigma, are ignored. For PX4's
  * obstacle_distance use increment 5 and the frame GLOBAL.
  *   max_cm  1 to 65000

@@ -10,9 +10,13 @@
 #define E7_MAX 9.0e8f     /* 90 degrees */
 #define POLE_COSINE_MIN 0.017f
 #define TURN_E7 3600000000
-#define LEVEL_MIN 0.2f /* of the optical axis: its horizontal part */
-#define STEEP 100.0f   /* tangent of a right angle, for bearings: straight down or up may be in between */
+#define AHEAD_MIN 0.02f /* of a direction, along the optical axis */
+#define STEEP 100.0f    /* tangent of a right angle, for bearings: straight down or up may be in between */
 #define SECTOR_DEG 5.0f
+#define SECTOR_COS 0.99619470f /* of that */
+#define SECTOR_SIN 0.08715574f
+#define HALF_COS 0.99904822f /* of half of it */
+#define HALF_SIN 0.04361939f
 #define CM_PER_M 100.0f
 #define TOUCH_MIN 1u /* cm: 0 means something else to some readers */
 
@@ -125,25 +129,45 @@ static float apart_deg(float from_deg, float to_deg) {
     return goe_flight_positive_deg(to_deg - from_deg + 180.0f) - 180.0f;
 }
 
-bool goe_flight_geometry_view(const goe_flight_camera_t *camera, const float q[4], float *from_deg, float *width_deg) {
+/* Of a direction, north, east, down: depth along the optical axis, and pixel times depth. No lens distortion. */
+static void find_projection(const goe_flight_camera_t *camera, const float q[4], float depth[3], float pixel[2][3]) {
     float body_to_ned[9];
-    float axis[3];
+    float axis[3][3];
     goe_flight_rotation(q, body_to_ned);
-    look_through(camera, body_to_ned, camera->center_px[0], camera->center_px[1], axis);
-    const float left_deg = goe_flight_atan2_deg(camera->center_px[0], camera->focal_px[0]);
-    const float right_deg = goe_flight_atan2_deg(camera->size_px[0] - camera->center_px[0], camera->focal_px[0]);
-    *from_deg = goe_flight_positive_deg(goe_flight_atan2_deg(axis[1], axis[0]) - left_deg);
-    *width_deg = left_deg + right_deg;
-    return axis[0] * axis[0] + axis[1] * axis[1] > LEVEL_MIN * LEVEL_MIN && *width_deg > 0.0f;
+    for (int i = 0; i < 3; i++) {
+        const float *r = camera->body_from_camera;
+        const float column[3] = {r[i], r[3 + i], r[6 + i]};
+        goe_flight_turn(body_to_ned, column, axis[i]);
+    }
+    for (int i = 0; i < 3; i++) {
+        depth[i] = axis[2][i];
+        pixel[0][i] = camera->focal_px[0] * axis[0][i] + camera->center_px[0] * axis[2][i];
+        pixel[1][i] = camera->focal_px[1] * axis[1][i] + camera->center_px[1] * axis[2][i];
+    }
 }
 
-void goe_flight_geometry_open_sectors(uint16_t sector_cm[GOE_FLIGHT_SECTORS], uint32_t max_cm, float from_deg,
-                                      float width_deg) {
-    for (int i = 0; i < GOE_FLIGHT_SECTORS; i++) {
-        const float begin_deg = ((float)i - 0.5f) * SECTOR_DEG;
-        if (goe_flight_positive_deg(begin_deg - from_deg) + SECTOR_DEG <= width_deg) {
+static float dot(const float a[3], const float b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+void goe_flight_geometry_open_sectors(uint16_t sector_cm[GOE_FLIGHT_SECTORS], uint32_t max_cm,
+                                      const goe_flight_camera_t *camera, const float q[4], float above_m) {
+    float depth[3];
+    float pixel[2][3];
+    float edge[3] = {HALF_COS, -HALF_SIN, above_m * CM_PER_M / (float)max_cm}; /* of sector 0, to its left */
+    bool left = false;
+    find_projection(camera, q, depth, pixel);
+    for (int i = -1; i < GOE_FLIGHT_SECTORS; i++) {
+        const float ahead = dot(depth, edge);
+        const float u = dot(pixel[0], edge);
+        const float v = dot(pixel[1], edge);
+        const bool visible = ahead > AHEAD_MIN && u >= 0.0f && u <= camera->size_px[0] * ahead && v >= 0.0f &&
+                             v <= camera->size_px[1] * ahead;
+        if (left && visible) {
             sector_cm[i] = (uint16_t)(max_cm + 1u);
         }
+        left = visible;
+        const float north = SECTOR_COS * edge[0] - SECTOR_SIN * edge[1];
+        edge[1] = SECTOR_SIN * edge[0] + SECTOR_COS * edge[1];
+        edge[0] = north;
     }
 }
 

@@ -4,6 +4,7 @@
 #include "goe_candidate.h"
 #include "goe_flight_maths.h"
 #include "goe_flight_seal.h"
+#include "goe_parts.h"
 
 #define COORDINATE_MAX_PX 1.0e5f
 #define PIXEL_SD_MAX_PX 100.0f
@@ -71,21 +72,35 @@ static int slot_of(const goe_flight_t *flight, uint8_t camera, uint32_t id) {
     return NOBODY;
 }
 
-/* The slot, not in this image, whose obstacle this box shows best. */
-static int claimant(const goe_flight_t *flight, const goe_flight_slot_view_t *view, uint32_t taken,
-                    const int16_t box_px[4]) {
+/* The slot whose obstacle this box shows best, of those that may be taken over, as bits. */
+static int claimant(const goe_flight_t *flight, const goe_flight_slot_view_t *view, uint32_t lost,
+                    const int16_t box_px[4], float *claim) {
     int best = NOBODY;
-    float most = 0.0f;
+    *claim = 0.0f;
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
-        const goe_flight_slot_t *slot = &flight->slot[i];
-        const bool lost = slot->used && ((taken >> i) & 1u) == 0u;
-        const float claim = lost ? goe_flight_slot_claims(slot, flight->camera, view, box_px) : 0.0f;
-        if (claim > most) {
-            most = claim;
+        const float other =
+            ((lost >> i) & 1u) != 0u ? goe_flight_slot_claims(&flight->slot[i], flight->camera, view, box_px) : 0.0f;
+        if (other > *claim) {
+            *claim = other;
             best = i;
         }
     }
     return best;
+}
+
+/* Slots without a detection in this image; before it is complete, those alone that had none in the image before either: their own
+ * detection may still come. */
+static uint32_t lost_slots(const goe_flight_t *flight, const goe_flight_slot_view_t *view, uint32_t taken,
+                           bool complete) {
+    uint32_t bits = 0u;
+    for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+        const goe_flight_slot_t *slot = &flight->slot[i];
+        const bool may_come = !complete && slot->camera == view->camera && slot->in_view;
+        if (slot->used && !may_come) {
+            bits |= 1u << i;
+        }
+    }
+    return bits & ~taken;
 }
 
 /* The less, the sooner it is given up. */
@@ -167,16 +182,30 @@ static void give_known(goe_flight_t *flight, const goe_flight_slot_view_t *view,
     }
 }
 
+/* Whether another detection that waits shows the obstacle of a slot better. */
+static bool is_outdone(const goe_flight_t *flight, const goe_flight_slot_view_t *view, const goe_flight_frame_t *frame,
+                       uint32_t waiting, int slot, float claim) {
+    for (int k = 0; k < frame->count; k++) {
+        int16_t box_px[4];
+        if (((waiting >> k) & 1u) != 0u && goe_flight_slot_box_of(&frame->detection[k], box_px) &&
+            goe_flight_slot_claims(&flight->slot[slot], flight->camera, view, box_px) > claim) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static void give_renumbered(goe_flight_t *flight, const goe_flight_slot_view_t *view, const goe_flight_frame_t *frame,
-                            uint32_t *waiting, uint32_t *taken) {
+                            bool complete, uint32_t *waiting, uint32_t *taken) {
     for (int k = 0; k < frame->count; k++) {
         const goe_flight_detection_t *detection = &frame->detection[k];
         int16_t box_px[4];
+        float claim;
         if (((*waiting >> k) & 1u) == 0u || !goe_flight_slot_box_of(detection, box_px)) {
             continue;
         }
-        const int i = claimant(flight, view, *taken, box_px);
-        if (i != NOBODY) {
+        const int i = claimant(flight, view, lost_slots(flight, view, *taken, complete), box_px, &claim);
+        if (i != NOBODY && !is_outdone(flight, view, frame, *waiting, i, claim)) {
             if (detection->id != flight->slot[i].id) {
                 goe_flight_count(&flight->counters.renumbered);
             }
@@ -234,15 +263,17 @@ static void give_nothing(goe_flight_t *flight, const goe_flight_slot_view_t *vie
 }
 
 bool goe_flight_table_take(goe_flight_t *flight, const goe_flight_slot_view_t *view, const goe_flight_frame_t *frame) {
+    goe_flight_parts_t *parts = &flight->parts[view->camera];
     bool readable;
     goe_flight_candidate_expire(&flight->waiting, view->camera, view->time_us);
+    const bool complete = goe_flight_parts_add(parts, view, frame);
     uint32_t waiting = usable(flight, view, frame, &readable);
-    uint32_t taken = 0u;
-    give_known(flight, view, frame, &waiting, &taken);
-    give_renumbered(flight, view, frame, &waiting, &taken);
-    give_new(flight, view, frame, waiting, &taken);
-    if (frame->count >= frame->number) {
-        give_nothing(flight, view, taken);
+    give_known(flight, view, frame, &waiting, &parts->taken);
+    give_renumbered(flight, view, frame, complete, &waiting, &parts->taken);
+    give_new(flight, view, frame, waiting, &parts->taken);
+    if (complete) {
+        give_nothing(flight, view, parts->taken);
+        goe_flight_parts_keep(parts, view, (uint32_t)flight->base_us);
     }
     return readable;
 }

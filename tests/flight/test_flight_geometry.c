@@ -173,12 +173,7 @@ static void the_nearest_counts_and_distant_ones_do_not(void) {
     const float beyond_m[2] = {-400.0f, 0.0f};
     const float inside_m[2] = {1.0f, 0.0f};
     close_sectors();
-    goe_flight_geometry_open_sectors(sector_cm, MAX_CM, 300.0f, 120.0f);
-    TEST_ASSERT_EQUAL_UINT16(MAX_CM + 1u, sector_cm[0]);
-    TEST_ASSERT_EQUAL_UINT16(MAX_CM + 1u, sector_cm[61]); /* 302.5 to 307.5 degrees */
-    TEST_ASSERT_EQUAL_UINT16(GOE_FLIGHT_SECTOR_UNKNOWN, sector_cm[60]);
-    TEST_ASSERT_EQUAL_UINT16(MAX_CM + 1u, sector_cm[11]);
-    TEST_ASSERT_EQUAL_UINT16(GOE_FLIGHT_SECTOR_UNKNOWN, sector_cm[12]);
+    sector_cm[0] = MAX_CM + 1u;
     goe_flight_geometry_enter_circle(sector_cm, MAX_CM, far_m, 2.0f);
     goe_flight_geometry_enter_circle(sector_cm, MAX_CM, near_m, 2.0f);
     goe_flight_geometry_enter_circle(sector_cm, MAX_CM, far_m, 2.0f);
@@ -191,11 +186,10 @@ static void the_nearest_counts_and_distant_ones_do_not(void) {
     }
 }
 
-static void the_view_turns_with_the_aircraft(void) {
+/* A camera of a right angle, and its bearing, level: the sectors within 45 degrees of it are clear, and no others. */
+static void the_view_turns_with_the_camera(void) {
     goe_camera_t settings;
     goe_flight_camera_t camera;
-    float from_deg;
-    float width_deg;
     memset(&settings, 0, sizeof settings);
     settings.fx_px = settings.fy_px = 500.0f;
     settings.cx_px = settings.cy_px = 500.0f;
@@ -206,18 +200,18 @@ static void the_view_turns_with_the_aircraft(void) {
     for (int k = 0; k < 36; k++) {
         const double half = 0.5 * 10.0 * k / DEG_PER_RAD;
         const float q[4] = {(float)cos(half), 0.0f, 0.0f, (float)sin(half)};
-        TEST_ASSERT_TRUE(goe_flight_geometry_view(&camera, q, &from_deg, &width_deg));
-        CHECK_CLOSE(1e-3, 90.0, width_deg);
-        CHECK_CLOSE(1e-3, 0.0, remainder((double)from_deg - (10.0 * k - 30.0 - 45.0), 360.0));
+        close_sectors();
+        goe_flight_geometry_open_sectors(sector_cm, MAX_CM, &camera, q, 20.0f);
+        for (int i = 0; i < GOE_FLIGHT_SECTORS; i++) {
+            const bool inside = fabs(remainder(5.0 * i - (10.0 * k - 30.0), 360.0)) < 45.0 - 2.4;
+            TEST_ASSERT_EQUAL_UINT16(inside ? MAX_CM + 1u : GOE_FLIGHT_SECTOR_UNKNOWN, sector_cm[i]);
+        }
     }
-    const float up[4] = {0.70710678f, 0.0f, 0.70710678f, 0.0f};
-    settings.mount_yaw_deg = 0.0f;
-    goe_flight_geometry_camera(&camera, &settings);
-    TEST_ASSERT_FALSE(goe_flight_geometry_view(&camera, up, &from_deg, &width_deg));
     const float ahead[4] = {1.0f, 0.0f, 0.0f, 0.0f};
-    TEST_ASSERT_TRUE(goe_flight_geometry_view(&camera, ahead, &from_deg, &width_deg));
     camera.size_px[0] = 0.0f; /* sees nothing */
-    TEST_ASSERT_FALSE(goe_flight_geometry_view(&camera, ahead, &from_deg, &width_deg));
+    close_sectors();
+    goe_flight_geometry_open_sectors(sector_cm, MAX_CM, &camera, ahead, 20.0f);
+    TEST_ASSERT_EQUAL_UINT16(GOE_FLIGHT_SECTOR_UNKNOWN, sector_cm[66]);
 }
 
 /* A ray through a pixel, by the definitions of goe.h, in doubles: its bearing. */
@@ -242,27 +236,87 @@ static double bearing_through(const goe_flight_camera_t *camera, const float q[4
     return DEG_PER_RAD * atan2(ne[1], ne[0]);
 }
 
+/* A camera of any mounting, and an attitude of any heading and a bank of up to 50 degrees. */
+static void any_camera(goe_flight_camera_t *camera, float q[4]) {
+    goe_camera_t settings;
+    memset(&settings, 0, sizeof settings);
+    memset(camera, 0, sizeof *camera);
+    settings.fx_px = settings.fy_px = (float)check_random_between(&any, 300.0, 1500.0);
+    settings.width_px = settings.height_px = 1000.0f;
+    settings.cx_px = settings.cy_px = 500.0f;
+    settings.mount_yaw_deg = (float)check_random_between(&any, -180.0, 180.0);
+    settings.mount_pitch_deg = (float)check_random_between(&any, -90.0, 30.0);
+    settings.mount_roll_deg = (float)check_random_between(&any, -30.0, 30.0);
+    goe_flight_geometry_camera(camera, &settings);
+    const double roll = 0.5 / DEG_PER_RAD * check_random_between(&any, -50.0, 50.0);
+    const double yaw = 0.5 / DEG_PER_RAD * check_random_between(&any, -180.0, 180.0);
+    q[0] = (float)(cos(yaw) * cos(roll));
+    q[1] = (float)(cos(yaw) * sin(roll));
+    q[2] = (float)(sin(yaw) * sin(roll));
+    q[3] = (float)(sin(yaw) * cos(roll));
+}
+
+/* Whether a direction, north, east, down, is in the image, by the definitions of goe.h, in doubles. */
+static bool is_shown(const goe_flight_camera_t *camera, const float q[4], const double direction[3]) {
+    const double w = (double)q[0];
+    const double v[3] = {-(double)q[1], -(double)q[2], -(double)q[3]}; /* the inverse */
+    double body[3];
+    double seen[3] = {0.0, 0.0, 0.0};
+    for (int i = 0; i < 3; i++) { /* d + 2 v x (v x d + w d) */
+        const int j = (i + 1) % 3;
+        const int k = (i + 2) % 3;
+        const double along_j = v[k] * direction[i] - v[i] * direction[k] + w * direction[j];
+        const double along_k = v[i] * direction[j] - v[j] * direction[i] + w * direction[k];
+        body[i] = direction[i] + 2.0 * (v[j] * along_k - v[k] * along_j);
+    }
+    for (int i = 0; i < 9; i++) {
+        seen[i % 3] += (double)camera->body_from_camera[i] * body[i / 3];
+    }
+    const double u = (double)camera->center_px[0] + (double)camera->focal_px[0] * seen[0] / seen[2];
+    const double at = (double)camera->center_px[1] + (double)camera->focal_px[1] * seen[1] / seen[2];
+    return seen[2] > 0.0 && u > -1.0 && u < (double)camera->size_px[0] + 1.0 && at > -1.0 &&
+           at < (double)camera->size_px[1] + 1.0;
+}
+
+/* GIVEN any camera, attitude and height THEN every obstacle on flat ground in a clear sector, as high as the aircraft and nearer than the
+ * sectors reach, is in the image; and a level camera without a bank clears sectors. */
+static void a_clear_sector_shows_any_obstacle_in_it(void) {
+    int clear = 0;
+    for (int k = 0; k < 2000; k++) {
+        goe_flight_camera_t camera;
+        float q[4];
+        any_camera(&camera, q);
+        const double above_m = check_random_between(&any, 0.0, 120.0);
+        close_sectors();
+        goe_flight_geometry_open_sectors(sector_cm, MAX_CM, &camera, q, (float)above_m);
+        for (int i = 0; i < GOE_FLIGHT_SECTORS; i++) {
+            if (sector_cm[i] != MAX_CM + 1u) {
+                continue;
+            }
+            clear++;
+            const double bearing = (5.0 * i + check_random_between(&any, -2.5, 2.5)) / DEG_PER_RAD;
+            const double distance_m = MAX_CM / 100.0 * check_random_between(&any, 0.05, 1.0);
+            bool shown = false;
+            for (int part = 0; part <= 1000 && !shown; part++) {
+                const double direction[3] = {distance_m * cos(bearing), distance_m * sin(bearing),
+                                             above_m * part / 1000.0};
+                shown = is_shown(&camera, q, direction);
+            }
+            TEST_ASSERT_TRUE(shown);
+        }
+    }
+    TEST_ASSERT_TRUE(clear > 2000);
+}
+
 /* Each pixel of a part of the image, in any camera at any attitude, lies within its bearings; and one of them lies at their end. */
 static void bearings_contain_every_pixel_and_no_more(void) {
     int some = 0;
     for (int k = 0; k < 1000; k++) {
         goe_flight_camera_t camera;
         goe_flight_bearings_t bearings;
-        goe_camera_t settings;
         double most = 0.0;
-        memset(&settings, 0, sizeof settings);
-        memset(&camera, 0, sizeof camera);
-        settings.fx_px = settings.fy_px = (float)check_random_between(&any, 300.0, 1500.0);
-        settings.width_px = settings.height_px = 1000.0f;
-        settings.cx_px = settings.cy_px = 500.0f;
-        settings.mount_yaw_deg = (float)check_random_between(&any, -180.0, 180.0);
-        settings.mount_pitch_deg = (float)check_random_between(&any, -90.0, 30.0);
-        settings.mount_roll_deg = (float)check_random_between(&any, -30.0, 30.0);
-        goe_flight_geometry_camera(&camera, &settings);
-        const double roll = 0.5 / DEG_PER_RAD * check_random_between(&any, -50.0, 50.0);
-        const double yaw = 0.5 / DEG_PER_RAD * check_random_between(&any, -180.0, 180.0);
-        const float q[4] = {(float)(cos(yaw) * cos(roll)), (float)(cos(yaw) * sin(roll)), (float)(sin(yaw) * sin(roll)),
-                            (float)(sin(yaw) * cos(roll))};
+        float q[4];
+        any_camera(&camera, q);
         float extent[4];
         for (int axis = 0; axis < 2; axis++) {
             extent[axis] = (float)check_random_between(&any, 0.0, 1000.0);
@@ -297,7 +351,8 @@ int main(void) {
     RUN_TEST(the_date_line_is_no_edge);
     RUN_TEST(a_circle_enters_the_sectors_that_it_touches);
     RUN_TEST(the_nearest_counts_and_distant_ones_do_not);
-    RUN_TEST(the_view_turns_with_the_aircraft);
+    RUN_TEST(the_view_turns_with_the_camera);
+    RUN_TEST(a_clear_sector_shows_any_obstacle_in_it);
     RUN_TEST(bearings_contain_every_pixel_and_no_more);
     return UNITY_END();
 }

@@ -16,6 +16,7 @@ FLOORS = [
     {"goe_marks", "goe_clock", "goe_history", "goe_candidate", "goe_flight_seal"},
     {"goe_geometry"},
     {"goe_slot"},
+    {"goe_parts"},
     {"goe_table", "goe_lookout"},
     {"goe_clear"},
     {"goe_reaction"},
