@@ -759,11 +759,11 @@ static void open_sectors(const goe_flight_t *flight, uint32_t max_cm, uint16_t s
     }
 }
 
-/* Where an obstacle was detected that has no position, or one whose width is not known. */
+/* Where an obstacle was detected that has no position or an old one, or whose width is not known. */
 static void close_sectors(const goe_flight_t *flight, uint16_t sector_cm[GOE_FLIGHT_SECTORS]) {
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         const goe_flight_slot_t *slot = &flight->slot[i];
-        if (slot->used && (slot->valid & OUTLINED) != OUTLINED) {
+        if (slot->used && ((slot->valid & OUTLINED) != OUTLINED || slot->unlocated)) {
             goe_flight_geometry_close_sectors(sector_cm, &slot->bearings);
         }
     }

@@ -27,10 +27,10 @@
  *             frame and an assessment return GOE_FLIGHT_CORRUPTED. [F3] An estimator that returns GOE_CORRUPTED starts again; if its
  *             settings are lost, it takes those of another slot. Until it has a position again, the slot keeps its position, hazard
  *             and warning, marked suspect. [F4] The rest (poses, clocks, positions, the active order) is not sealed.
- * Cost        On a Cortex-M4F (gcc), in instructions: a sample at most 1,270; a frame 46,000 for each obstacle in it; an assessment
+ * Cost        On a Cortex-M4F (gcc), in instructions: a sample at most 1,270; a frame 46,600 for each obstacle in it; an assessment
  *             28,700 with one obstacle and 23,200 for each further one with a position. While there is a hazard or an order, an
  *             assessment also examines paths: at most 3 times (4 + 4 GOE_FLIGHT_SLOTS), each against every obstacle.
- *             goe_flight_obstacle() 980; goe_flight_sectors() 9,300 with one obstacle; goe_flight_init() 12,700 for each
+ *             goe_flight_obstacle() 980; goe_flight_sectors() 9,400 with one obstacle; goe_flight_init() 12,700 for each
  *             slot. No loop runs longer than GOE_FLIGHT_SECTORS.
  * Failure     A call that returns a negative status, or GOE_FLIGHT_TOO_NEW, changes nothing except counters, with two exceptions:
  *             after a failed goe_flight_init() *flight cannot be used, and the 16th GOE_FLIGHT_BAD_TIME in a row calls
@@ -243,8 +243,9 @@ typedef struct {
                               pose are alive and unplaced is 0 */
     int8_t avoided;        /* slot of the obstacle that the action avoids; -1: none, or its track has ended */
     uint8_t obstacles;     /* number of obstacles with a position */
-    uint8_t unplaced;      /* at least so many detected obstacles have no position, also those that wait for confirmation or
-                              for a slot; 0: none. No order avoids them */
+    uint8_t unplaced;      /* at least so many detected obstacles have no position, or one that does not follow their
+                              detections (it is outside the box, or older than 0.15 s); also those that wait for
+                              confirmation or for a slot; 0: none. No order avoids what these detections show */
     float needed_s;        /* time that the action needs; without an action, time that the best action would need; 0
                               without a worst obstacle */
     float target_ned_m[3]; /* 0 if GOE_FLIGHT_NONE. The height of CLIMB and GO_AROUND clears the highest known top on
@@ -375,6 +376,7 @@ typedef struct { /* goe_slot.c */
     uint8_t camera; /* that detected it last */
     goe_flag_t used, fresh_track, suspect, in_view, assessed;
     goe_flag_t remembered; /* position and hazard are from before the estimator was lost */
+    goe_flag_t unlocated;  /* its latest detections did not change its position */
 } goe_flight_slot_t;
 
 typedef struct { /* goe_reaction.c: the active order */
@@ -497,8 +499,8 @@ goe_flight_status_t goe_flight_obstacle(const goe_flight_t *flight, int slot, go
 
 /* Finds the distance of the nearest obstacle in each sector; sector i is centered on the bearing 5 i degrees. Values in cm:
  *   - at most max_cm: the distance of an obstacle with a position; while unplaced is not 0 there may be a nearer one
- *   - max_cm + 1: nothing was detected in the sector up to max_cm: no obstacle, and no detection that has no position or width,
- *     no slot or no confirmation. The latest complete image of a live camera shows the flat ground at max_cm there, at the
+ *   - max_cm + 1: nothing was detected in the sector up to max_cm: no obstacle whose estimated outline is nearer, no detection
+ *     of an obstacle without a width, and none of those that unplaced counts. The latest complete image of a live camera shows the flat ground at max_cm there, at the
  *     attitude of its exposure; so it also shows any nearer obstacle that is as high as the aircraft
  *   - GOE_FLIGHT_SECTOR_UNKNOWN: all other sectors
  * Time is that of the latest assessment or of the newest sample, whichever is later.

@@ -12,6 +12,8 @@
 #define ALIKE 3.0f /* a box this many times as wide or high as the latest one is of another thing */
 #define PIXEL_MAX 32000.0f
 #define SIZE_MIN_PX 8.0f
+#define LOCATED_S                                                                                                      \
+    0.15f /* detections for so long without a new position show something else; shorter: images too soon */
 
 /* ------------------------------------------------------------------------------------------------------------- track -- */
 
@@ -28,7 +30,7 @@ void goe_flight_slot_begin(goe_flight_slot_t *slot, uint32_t id, uint32_t time_u
 void goe_flight_slot_lose(goe_flight_slot_t *slot) { slot->fresh_track = slot->suspect = slot->remembered = true; }
 
 bool goe_flight_slot_is_unplaced(const goe_flight_slot_t *slot) {
-    return slot->used && (slot->valid & GOE_HAS_POSITION) == 0u;
+    return slot->used && ((slot->valid & GOE_HAS_POSITION) == 0u || slot->unlocated);
 }
 
 float goe_flight_slot_radius_m(const goe_flight_slot_t *slot) {
@@ -154,6 +156,42 @@ static void note(goe_flight_slot_t *slot, const float camera_ned_m[3], const goe
     note_outline(slot, estimate);
 }
 
+/* At half the top's height, or half the own one where the top is not known. */
+static bool predict(const goe_flight_slot_t *slot, const goe_flight_camera_t *camera,
+                    const goe_flight_history_pose_t *pose, float pixel[2]) {
+    const float own_m = slot->ground_down_m - pose->ned_m[2];
+    const float above_m = 0.5f * ((slot->valid & GOE_HAS_HEIGHT) ? slot->top_m : goe_flight_larger(own_m, 0.0f));
+    const float point[3] = {slot->center_ne_m[0], slot->center_ne_m[1], slot->ground_down_m - above_m};
+    return goe_flight_geometry_project(camera, pose, point, pixel);
+}
+
+/* Whether a box shows the slot's position; the position may lie outside a box that the image border cuts. */
+static bool shows_position(const goe_flight_slot_t *slot, const goe_flight_camera_t *camera,
+                           const goe_flight_history_pose_t *pose, const int16_t box_px[4]) {
+    const float left = (float)box_px[0];
+    const float right = (float)box_px[2];
+    float pixel[2];
+    if (left <= camera->border_px || right >= camera->size_px[0] - camera->border_px) {
+        return true;
+    }
+    const bool ahead = predict(slot, camera, pose, pixel);
+    return ahead && goe_flight_within(pixel[0] - 0.5f * (left + right), (0.5f + AROUND) * (right - left) + SIZE_MIN_PX);
+}
+
+/* Whether the latest detections show something else than the obstacle at its position: they do not move it, or are not where it is. It
+ * stays so until the position is new. */
+static void note_located(goe_flight_slot_t *slot, const goe_flight_camera_t *camera, const goe_flight_slot_view_t *view,
+                         const goe_flight_detection_t *seen) {
+    const bool old = slot->age_s + goe_flight_between_s(view->time_us, slot->taken_us) > LOCATED_S;
+    int16_t box_px[4];
+    if (!seen) {
+        return;
+    }
+    const bool elsewhere = (slot->valid & GOE_HAS_POSITION) != 0u && goe_flight_slot_box_of(seen, box_px) &&
+                           !shows_position(slot, camera, &view->pose, box_px);
+    slot->unlocated = old || elsewhere;
+}
+
 void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t cameras[GOE_CAMERAS_MAX],
                           const goe_flight_slot_view_t *view, const float jumps_ned_m[3],
                           const goe_flight_detection_t *seen) {
@@ -205,6 +243,7 @@ void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t cam
             (void)goe_flight_slot_box_of(seen, slot->box_px);
         }
     }
+    note_located(slot, camera, view, seen);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ claims -- */
@@ -262,15 +301,6 @@ void goe_flight_slot_bearings_of(const goe_flight_detection_t *detection, const 
         extent[3] = (box->sides & GOE_SIDE_BOTTOM) != 0u ? box->bottom_px : camera->size_px[1];
     }
     goe_flight_geometry_bearings(camera, q, extent, bearings);
-}
-
-/* At half the top's height, or half the own one where the top is not known. */
-static bool predict(const goe_flight_slot_t *slot, const goe_flight_camera_t *camera,
-                    const goe_flight_history_pose_t *pose, float pixel[2]) {
-    const float own_m = slot->ground_down_m - pose->ned_m[2];
-    const float above_m = 0.5f * ((slot->valid & GOE_HAS_HEIGHT) ? slot->top_m : goe_flight_larger(own_m, 0.0f));
-    const float point[3] = {slot->center_ne_m[0], slot->center_ne_m[1], slot->ground_down_m - above_m};
-    return goe_flight_geometry_project(camera, pose, point, pixel);
 }
 
 static bool matches(const int16_t a[4], const int16_t b[4]) {

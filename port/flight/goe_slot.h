@@ -25,7 +25,7 @@ void goe_flight_slot_lose(goe_flight_slot_t *slot);
 /* Radius of the circle around the center that contains the outline. An unknown width or length counts as 0. */
 float goe_flight_slot_radius_m(const goe_flight_slot_t *slot);
 
-/* Returns whether the slot is in use and its obstacle has no position yet. */
+/* Whether its obstacle was detected, and has no position yet, or one that does not follow its detections. */
 bool goe_flight_slot_is_unplaced(const goe_flight_slot_t *slot);
 
 /* Shifts the slot's obstacle by a jump of the autopilot's position. */

@@ -95,7 +95,7 @@ static uint32_t lost_slots(const goe_flight_t *flight, const goe_flight_slot_vie
     uint32_t bits = 0u;
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         const goe_flight_slot_t *slot = &flight->slot[i];
-        const bool may_come = !complete && slot->camera == view->camera && slot->in_view;
+        const bool may_come = !complete && slot->id != 0u && slot->camera == view->camera && slot->in_view;
         if (slot->used && !may_come) {
             bits |= 1u << i;
         }

@@ -211,6 +211,56 @@ static void an_obstacle_without_a_width_closes_its_box(void) {
     TEST_ASSERT_TRUE(closed >= 2 && clear_sectors() > 2);
 }
 
+/* GIVEN a track WHEN its id shows another obstacle elsewhere THEN that one is unplaced and its bearing is not clear, until the track has its
+ * position. */
+static void a_detection_that_is_elsewhere_is_unplaced(void) {
+    (void)flown_fly(&flown, 3.0);
+    TEST_ASSERT_EQUAL(0, look().unplaced);
+    int unplaced = 0;
+    for (int images = 1; images <= 20; images++) {
+        fly_without_frames(FLOWN_IMAGE_EVERY);
+        goe_flight_detection_t other = flown_detection(&flown, flown.sample - 1);
+        other.box.left_px += 400.0f;
+        other.box.right_px += 400.0f;
+        const goe_flight_frame_t frame = flown_frame(&flown, flown.sample - 1, &other, 1);
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(&flown.flight, &frame));
+        const int missing = look().unplaced;
+        unplaced += missing;
+        const goe_flight_camera_t *camera = &flown.flight.camera[0];
+        const double u = 0.5 * ((double)other.box.left_px + (double)other.box.right_px);
+        const double box_deg = DEG_PER_RAD * atan2(u - (double)camera->center_px[0], (double)camera->focal_px[0]);
+        const float *at = flown.flight.slot[0].center_ne_m;
+        goe_flight_attitude_t attitude;
+        goe_flight_position_t own;
+        flown_samples(&flown, flown.sample - 1, &attitude, &own);
+        const double deg = DEG_PER_RAD * atan2((double)at[1] - (double)own.position_ned_m[1],
+                                               (double)at[0] - (double)own.position_ned_m[0]);
+        TEST_ASSERT_TRUE(missing > 0 || fabs(deg - box_deg) < 5.0);
+        const int sector = (int)((box_deg + 360.0) / 5.0 + 0.5) % GOE_FLIGHT_SECTORS;
+        TEST_ASSERT_NOT_EQUAL(CLEAR_CM, sector_cm[sector]);
+    }
+    TEST_ASSERT_TRUE(unplaced >= 4);
+}
+
+/* GIVEN two obstacles without ids, each in a call of its own THEN there are two tracks, as with one call. */
+static void without_ids_parts_are_as_good_as_one_call(void) {
+    const float middle_px = flown.flight.camera[0].center_px[0];
+    flown.id = 0u;
+    for (int images = 0; images < 30; images++) {
+        fly_without_frames(FLOWN_IMAGE_EVERY);
+        goe_flight_detection_t pair[2] = {flown_detection(&flown, flown.sample - 1),
+                                          flown_detection(&flown, flown.sample - 1)};
+        pair[1].box.left_px = 2.0f * middle_px - pair[0].box.right_px; /* the same on the other side of the course */
+        pair[1].box.right_px = 2.0f * middle_px - pair[0].box.left_px;
+        give_pair(pair, flown.sample - 1, true);
+    }
+    int used = 0;
+    for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+        used += flown.flight.slot[i].used ? 1 : 0;
+    }
+    TEST_ASSERT_EQUAL(2, used);
+}
+
 /* GIVEN a clear view WHEN the heading jumps by a reset THEN nothing is clear for a second: no bearing from before is right. */
 static void a_reset_of_the_heading_clears_nothing(void) {
     goe_flight_attitude_t attitude;
@@ -237,6 +287,8 @@ int main(void) {
     RUN_TEST(a_view_ends_without_an_assessment);
     RUN_TEST(clear_is_what_an_image_showed);
     RUN_TEST(an_obstacle_without_a_width_closes_its_box);
+    RUN_TEST(a_detection_that_is_elsewhere_is_unplaced);
+    RUN_TEST(without_ids_parts_are_as_good_as_one_call);
     RUN_TEST(a_reset_of_the_heading_clears_nothing);
     return UNITY_END();
 }
