@@ -79,10 +79,10 @@ typedef struct {
 /* Settings of the window method, Section 4 of the paper. */
 typedef struct {
     int points;               /* images in the fit and in the sliding means; 3 to GOE_WINDOW_MAX; default 8 (at most GOE_WINDOW_MAX) */
-    int line_points;          /* model auto: line points before the line replaces the disc; 1 to 1000; default 8 */
+    int line_points;          /* model auto: least number of line points before the line replaces the disc; 1 to 1000; default 8 */
     float edge_min_px;        /* length of the shortest edge that counts; 0 to 1e4 px; default 10 */
     float orientation_min_px; /* least vertical distance of an edge's ends that gives an orientation; 0 to 1e4 px; default 2 */
-    float side_min_px;        /* a side with an end nearer to the side's vanishing point gives no length; 0.1 to 1e4 px; default 10 */
+    float side_min_px;        /* least x distance of a side's ends to its vanishing point that gives a length; 0.1 to 1e4 px; default 10 */
     int orientation_memory;   /* memory of the orientation's low-pass; 1 to 1000; default 20 */
     float min_baseline_m;     /* smallest camera motion over the window that gives a solution; 1e-3 to 1e4 m; default 0.1 */
 } goe_window_settings_t;
@@ -94,7 +94,7 @@ typedef struct {
     float huber_sigma;      /* a point with a larger innovation counts less; 0.5 to 100 sigma; default 2.5 */
     float nis_ratio_max;    /* NIS ratio above which an estimate is suspect; 0.01 to 1e3; default 1.9 */
     float range_sd_rel_max; /* largest sigma of a reported range, as a fraction of the range; 0.01 to 10; default 0.25 */
-    bool top_is_highest;    /* point top is the roof's highest point in the image, even if the camera is above the roof; default false */
+    bool top_is_highest;    /* 1: point top is the roof's highest point in the image; 0: it is the roof's nearest point; default false */
 } goe_filter_settings_t;
 
 typedef struct {

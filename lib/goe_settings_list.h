@@ -15,8 +15,8 @@
 #define GOE_SETTINGS_CAMERA(X) \
     X(camera.fx_px, REAL, "px", 1.0f, 1.0e5f, 0.0f, "focal length along x") \
     X(camera.fy_px, REAL, "px", 1.0f, 1.0e5f, 0.0f, "focal length along y") \
-    X(camera.cx_px, REAL, "px", -1.0e5f, 1.0e5f, 0.0f, "principal point, x") \
-    X(camera.cy_px, REAL, "px", -1.0e5f, 1.0e5f, 0.0f, "principal point, y") \
+    X(camera.cx_px, REAL, "px", -1.0e5f, 1.0e5f, -1.0e6f, "principal point, x") \
+    X(camera.cy_px, REAL, "px", -1.0e5f, 1.0e5f, -1.0e6f, "principal point, y") \
     X(camera.k1, REAL, "", -100.0f, 100.0f, 0.0f, "radial lens distortion, in OpenCV's order and meaning") \
     X(camera.k2, REAL, "", -100.0f, 100.0f, 0.0f, "radial lens distortion") \
     X(camera.p1, REAL, "", -100.0f, 100.0f, 0.0f, "tangential lens distortion") \
@@ -63,7 +63,7 @@
     X(filter.huber_sigma, REAL, "sigma", 0.5f, 100.0f, 2.5f, "a point with a larger innovation counts less") \
     X(filter.nis_ratio_max, REAL, "", 0.01f, 1.0e3f, 1.9f, "NIS ratio above which an estimate is suspect") \
     X(filter.range_sd_rel_max, REAL, "", 0.01f, 10.0f, 0.25f, "largest sigma of a reported range, as a fraction of the range") \
-    X(filter.top_is_highest, TRUTH, "", 0, 1, 0, "point top is the roof's highest point in the image, even if the camera is above the roof")
+    X(filter.top_is_highest, TRUTH, "", 0, 1, 0, "1: point top is the roof's highest point in the image; 0: it is the roof's nearest point")
 #else
 #define GOE_SETTINGS_FILTER(X)
 #endif
@@ -75,10 +75,10 @@
 #if GOE_WITH_WINDOW
 #define GOE_SETTINGS_WINDOW(X) \
     X(window.points, COUNT, "images", 3, GOE_WINDOW_MAX, GOE_WINDOW_DEFAULT, "images in the fit and in the sliding means") \
-    X(window.line_points, COUNT, "images", 1, 1000, 8, "model auto: line points before the line replaces the disc") \
+    X(window.line_points, COUNT, "images", 1, 1000, 8, "model auto: least number of line points before the line replaces the disc") \
     X(window.edge_min_px, REAL, "px", 0.0f, 1.0e4f, 10.0f, "length of the shortest edge that counts") \
     X(window.orientation_min_px, REAL, "px", 0.0f, 1.0e4f, 2.0f, "least vertical distance of an edge's ends that gives an orientation") \
-    X(window.side_min_px, REAL, "px", 0.1f, 1.0e4f, 10.0f, "a side with an end nearer to the side's vanishing point gives no length") \
+    X(window.side_min_px, REAL, "px", 0.1f, 1.0e4f, 10.0f, "least x distance of a side's ends to its vanishing point that gives a length") \
     X(window.orientation_memory, COUNT, "images", 1, 1000, 20, "memory of the orientation's low-pass") \
     X(window.min_baseline_m, REAL, "m", 1.0e-3f, 1.0e4f, 0.1f, "smallest camera motion over the window that gives a solution")
 #else

@@ -215,6 +215,7 @@ static bool value_accepted(const camera_key_t *key, float value) {
     goe_settings_default(&trial);
     trial.camera.fx_px = 1.0f;
     trial.camera.fy_px = 1.0f;
+    trial.camera.cx_px = trial.camera.cy_px = 0.0f;
     trial.heading_auto = false;
     store(&trial, 0, key, value);
     return goe_init(&estimator, sizeof estimator, &trial, NULL) == GOE_OK;

@@ -14,6 +14,7 @@ void setUp(void) {
     goe_settings_default(&settings);
     settings.camera.fx_px = 900.0f;
     settings.camera.fy_px = 900.0f;
+    settings.camera.cx_px = settings.camera.cy_px = 0.0f;
 }
 void tearDown(void) {}
 
@@ -37,8 +38,8 @@ typedef struct {
 static const number_t numbers[] = {
     NUMBER(camera.fx_px, 1.0f, 1.0e5f, 0.0f),
     NUMBER(camera.fy_px, 1.0f, 1.0e5f, 0.0f),
-    NUMBER(camera.cx_px, -1.0e5f, 1.0e5f, 0.0f),
-    NUMBER(camera.cy_px, -1.0e5f, 1.0e5f, 0.0f),
+    NUMBER(camera.cx_px, -1.0e5f, 1.0e5f, -1.0e6f),
+    NUMBER(camera.cy_px, -1.0e5f, 1.0e5f, -1.0e6f),
     NUMBER(camera.k1, -100.0f, 100.0f, 0.0f),
     NUMBER(camera.k2, -100.0f, 100.0f, 0.0f),
     NUMBER(camera.p1, -100.0f, 100.0f, 0.0f),
@@ -182,6 +183,10 @@ static void the_defaults_lack_only_the_camera(void) {
     settings.camera.fx_px = 500.0f;
     check_bad("camera.fy_px");
     settings.camera.fy_px = 500.0f;
+    check_bad("camera.cx_px");
+    settings.camera.cx_px = 0.0f;
+    check_bad("camera.cy_px");
+    settings.camera.cy_px = 0.0f;
     check_good();
 }
 

@@ -35,6 +35,7 @@ void setUp(void) {
     goe_settings_default(&config.estimator);
     goe_flight_settings_default(&config.flight);
     config.estimator.camera.fx_px = config.estimator.camera.fy_px = 900.0f;
+    config.estimator.camera.cx_px = config.estimator.camera.cy_px = 0.0f;
     config.estimator.camera.width_px = config.estimator.camera.height_px = 1000.0f;
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_init(&flight, sizeof flight, &config.estimator, &config.flight, &bad));
     wire.link = link_open("udpout:127.0.0.1:9", fault, sizeof fault);

@@ -182,6 +182,7 @@ static void margins_follow_the_doubt_and_nothing_else_changes(void) {
     goe_settings_default(&config.estimator);
     goe_flight_settings_default(&config.flight);
     config.estimator.camera.fx_px = config.estimator.camera.fy_px = 900.0f;
+    config.estimator.camera.cx_px = config.estimator.camera.cy_px = 0.0f;
     config.estimator.camera.width_px = config.estimator.camera.height_px = 1000.0f;
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_init(&flight, sizeof flight, &config.estimator, &config.flight, NULL));
     const goe_flight_attitude_t attitude = {5000000, {1.0f, 0.0f, 0.0f, 0.0f}, 0};

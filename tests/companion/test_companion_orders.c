@@ -40,6 +40,7 @@ void setUp(void) {
     goe_settings_default(&config.estimator);
     goe_flight_settings_default(&config.flight);
     config.estimator.camera.fx_px = config.estimator.camera.fy_px = 900.0f;
+    config.estimator.camera.cx_px = config.estimator.camera.cy_px = 0.0f;
     config.estimator.camera.width_px = config.estimator.camera.height_px = 1000.0f;
     config.reaction_mode = REACTION_PX4;
     config.reaction_modes = 3;

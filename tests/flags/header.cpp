@@ -89,6 +89,7 @@ int main() {
     goe_settings_t settings;
     goe_settings_default(&settings);
     settings.camera.fx_px = settings.camera.fy_px = 800.0f;
+    settings.camera.cx_px = settings.camera.cy_px = 640.0f;
 
     goe_estimator_t estimator;
     const char *bad_field = nullptr;

@@ -503,6 +503,7 @@ static void the_defaults_are_the_layers_but_for_px4s_own() {
     expected.estimator.navigation.attitude_bias_sd_deg = 1.f;
     expected.estimator.navigation.attitude_walk_sd_deg = 0.5f;
     expected.estimator.navigation.attitude_white_sd_deg = 0.3f;
+    expected.estimator.camera.cx_px = expected.estimator.camera.cy_px = 0.f; /* the middle of an image of no size yet */
     standin::begin(1000000u);
     standin::set_other("NAV_LOITER_RAD", 80.f);
     goe_parameters_read(parameters, false);

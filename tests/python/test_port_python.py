@@ -120,7 +120,7 @@ def test_settings_are_those_of_c() -> None:
 def test_every_setting_reaches_c_and_its_range_is_c_s(name: str) -> None:
     """The ends of the range are accepted; beyond them the error names field, value and range."""
     row = next(row for row in goe.setting_rows() if row.name == name)
-    base = {"camera.fx_px": 914.0, "camera.fy_px": 914.0, "heading_auto": 0.0}
+    base = {"camera.fx_px": 914.0, "camera.fy_px": 914.0, "camera.cx_px": 0.0, "camera.cy_px": 0.0, "heading_auto": 0.0}
     for value in (row.low, row.high):
         given = goe.Settings.from_names({**base, row.name: value})
         numbers = dict(zip((r.name for r in goe.setting_rows()), given.numbers()))
