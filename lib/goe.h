@@ -61,9 +61,8 @@
  *   Example: the aircraft is at north 0, east 0, heading north; a chimney of 6 m diameter is at north 200, east -30. Then
  *   Z0 = 200 m, X0 = -30 m, width = 6 m. After 50 m of flight, Z = 150 m.
  *
- * Memory      The caller owns goe_estimator_t, which contains all state: at most 2.9 KiB with the default compile-time
- *             options. [A9] The library uses no heap, no static variables and no recursion. [A10] Each obstacle has its own
- *             estimator and decision.
+ * Memory      The caller owns goe_estimator_t, which contains all state: at most 2.9 KiB with default options. [A9] The
+ *             library uses no heap, static variables or recursion. [A10] Each obstacle has its own estimator and decision.
  * Threads     A function accesses only its arguments' memory. Threads may share an estimator under the caller's lock. [A11]
  * Arithmetic  The library uses float, sqrtf, memcpy and memset only. [A12] With -ffp-contract=off all IEEE 754 targets
  *             compute the same bits. [A13]
@@ -109,10 +108,10 @@ typedef enum {
     GOE_EDGE_ON = -4,       /* no length: the camera views the front edge from its end or from behind */
     GOE_NO_EDGE = -5,       /* model line: no edge reaches both window.edge_min_px and orientation_min_px */
     GOE_BAD_HEIGHT = -6,    /* window: no obstacle height, because the camera's height is <= 0. Counted, never returned */
-    /* faults of the window method's solution; the image is taken */
+    /* faults of the window's solution, also before the filter has started; the image is taken */
     GOE_NO_BASELINE = -7, /* the camera moved less than window.min_baseline_m */
     GOE_NO_PARALLAX = -8, /* the obstacle does not grow in the images: it moves, is not ahead, or noise prevails */
-    GOE_ABEAM = -9,       /* the solution is abeam of the camera or behind it: Z <= 0 */
+    GOE_ABEAM = -9,       /* the solution is abeam or behind: Z <= 0 */
     /* faults of an image; the image is refused */
     GOE_NOT_FINITE = -10,   /* a NaN or an infinity in the pose or in a visible feature */
     GOE_OUT_OF_RANGE = -11, /* a number outside the range stated at its field */
@@ -143,7 +142,7 @@ typedef enum {
 
 /* Pose of the aircraft AT THE TIME OF EXPOSURE. A jump of the autopilot's filter is not motion. [A27] Supply the filter's reset
  * counter and, if known, the jump: new minus old position, summed since the last image that was taken. A jump of unknown size,
- * also of attitude, starts a new track. DESIGN.md describes jumps of down. */
+ * also of attitude, starts a new track. A jump of down changes no height_m. */
 typedef struct {
     int64_t time_us;         /* any origin; strictly increasing; GOE_TIME_UNKNOWN is refused */
     float position_ned_m[3]; /* the vehicle's reference point, each +-1e6; choose an origin within 10 km */
@@ -182,7 +181,7 @@ typedef struct {
 } goe_image_noise_t;
 
 /* One image of one obstacle: a box, points or both, with any subset of the features.
- * Box: it replaces left, right and top. With base corners goe does not use its bottom. [A29]
+ * Box: replaces left, right and top, which are more accurate. With base corners goe ignores its bottom. [A29]
  * Points: supply left and right for a disc, two or three base corners for a line or a box, and top for the height. Do not
  * supply the middles of a box's sides as points: when the camera rolls, the estimated width is too large. */
 typedef struct {

@@ -101,13 +101,13 @@ pub struct Detector {
 pub struct WindowSettings {
     /// Images in the window; 3 to 8; default 8.
     pub points: i32,
-    /// Line points before the line is reported, at least `points`; 1 to 1000; default 8.
+    /// Number of line points, at least `points`, after which the line replaces the disc; 1 to 1000; default 8.
     pub line_points: i32,
     /// An edge counts if its ends are farther apart, px; 0 to 1e4; default 10.
     pub edge_min_px: f32,
     /// ... and has an orientation if they differ by more in aligned y, px; 0 to 1e4; default 2.
     pub orientation_min_px: f32,
-    /// A side edge nearer to edge-on gives no length, px; 0.1 to 1e4; default 10.
+    /// Least x distance of a side's ends to its vanishing point that gives a length, px; 0.1 to 1e4; default 10.
     pub side_min_px: f32,
     /// Images that the low-pass of the orientation remembers; 1 to 1000; default 20.
     pub orientation_memory: i32,
@@ -129,7 +129,7 @@ pub struct FilterSettings {
     pub nis_ratio_max: f32,
     /// Sigma over range up to which a position is reported; 0.01 to 10; default 0.25.
     pub range_sd_rel_max: f32,
-    /// `top` is the roof's highest point in the image, even if the camera is above the roof; default false.
+    /// True: `top` is the roof's highest point in the image; false: it is the roof's nearest point; default false.
     pub top_is_highest: bool,
 }
 

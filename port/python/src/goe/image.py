@@ -64,7 +64,7 @@ class Pose:
     """Quaternion w, x, y, z that turns body (forward, right, down) into north, east, down; refused if its norm is off 1
     by over 1 %."""
     reset_count: int = 0
-    """Counts the resets of the autopilot's filter; any start; its lowest 8 bits count."""
+    """Counter of the resets of the autopilot's filter, any start; only its lowest 8 bits are compared."""
     reset_delta_ned_m: Sequence[float] | None = None
     """By what the position jumped with them, new minus old, summed over all resets since the last image that was taken,
     m. None: not known; then a change of ``reset_count`` starts a new track."""

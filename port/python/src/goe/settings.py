@@ -156,7 +156,7 @@ class FilterSettings(_Group):
     range_sd_rel_max: float = real("filter.range_sd_rel_max")
     """Sigma over range up to which a position is reported."""
     top_is_highest: bool = bool(whole("filter.top_is_highest"))
-    """``top`` is the roof's highest point in the image, even if the camera is above the roof."""
+    """True: ``top`` is the roof's highest point in the image; False: it is the roof's nearest point."""
 
 
 @dataclass
@@ -166,13 +166,13 @@ class WindowSettings(_Group):
     points: int = whole("window.points")
     """Images in the window."""
     line_points: int = whole("window.line_points")
-    """Line points before the line is reported, at least ``points``."""
+    """Number of line points, at least ``points``, after which the line replaces the disc."""
     edge_min_px: float = real("window.edge_min_px")
     """An edge counts if its ends are farther apart, px."""
     orientation_min_px: float = real("window.orientation_min_px")
     """... and has an orientation if they differ by more in aligned y, px."""
     side_min_px: float = real("window.side_min_px")
-    """A side edge nearer to edge-on gives no length, px."""
+    """Least x distance of a side's ends to its vanishing point that gives a length, px."""
     orientation_memory: int = whole("window.orientation_memory")
     """Images that the low-pass of the orientation remembers."""
     min_baseline_m: float = real("window.min_baseline_m")
