@@ -785,8 +785,9 @@ static bool is_too_low(const look_t *look, const encounter_t *e) {
     return begins_s + rise_m / settings->climb_m_s > e->earliest_tcpa_s;
 }
 
-/* What to do about one obstacle; an order, once it is due. */
-static float answer(goe_flight_t *flight, look_t *look, int about) {
+/* What to do about one obstacle; an order, once it is due. *unlikely: there is no time left for it, and it is probably not in the way.
+ * Null: that is no reason to leave it. */
+static float answer(goe_flight_t *flight, look_t *look, int about, bool *unlikely) {
     goe_flight_reaction_t *r = &flight->reaction;
     const goe_flight_settings_t *settings = &flight->settings;
     encounter_t e;
@@ -807,6 +808,10 @@ static float answer(goe_flight_t *flight, look_t *look, int about) {
     const float most = option.needed_s > e.earliest_tcpa_s
                            ? goe_flight_larger(LATE_VIOLATION, settings->conflict_probability_max)
                            : settings->conflict_probability_max;
+    if (unlikely && violation < most) {
+        *unlikely = true;
+        return option.needed_s;
+    }
     const bool is_hazard = violation >= most && !is_flying_back(look);
     const bool is_new =
         r->action == GOE_FLIGHT_NONE || (is_up(r->action) && (r->slot != about || is_too_low(look, &e)));
@@ -849,5 +854,8 @@ float goe_flight_reaction_decide(goe_flight_t *flight, int worst, const goe_flig
         r->rising = false;
         return 0.0f;
     }
-    return answer(flight, &look, most_pressing(&look, worst));
+    const int pressing = most_pressing(&look, worst);
+    bool unlikely = false;
+    const float needed_s = answer(flight, &look, pressing, pressing != worst ? &unlikely : NULL);
+    return unlikely ? answer(flight, &look, worst, NULL) : needed_s;
 }

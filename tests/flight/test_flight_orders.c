@@ -106,6 +106,23 @@ static void the_circle_about_the_target_is_kept_clear(void) {
     TEST_ASSERT_TRUE(miss_m(0) >= 80.0 + 17.9 && miss_m(1) >= 80.0 + 17.9);
 }
 
+/* [reserve_s] GIVEN a sure hazard whose order is due WHEN another obstacle leaves less time, too little even, and is unlikely to be in the
+ * way THEN the order comes all the same. */
+static void an_unlikely_obstacle_delays_no_order(void) {
+    for (int unsure = 0; unsure < 2; unsure++) {
+        start(0.0f);
+        put(0, 125.0f, 0.5f, 50.0f);
+        if (unsure) {
+            put(1, 60.0f, 5.0f, 50.0f);
+            flight.slot[1].covariance_ne_m2[0] = flight.slot[1].covariance_ne_m2[2] = 900.0f;
+            flight.slot[1].hazard.tcpa_sd_s = 1.5f;
+            flight.slot[1].hazard.conflict_probability = 0.3f;
+        }
+        TEST_ASSERT_NOT_EQUAL(GOE_FLIGHT_NONE, decide(0.5));
+        TEST_ASSERT_EQUAL(0, flight.reaction.slot);
+    }
+}
+
 /* A circle of 30 m cannot be flown at 20 m/s and 30 degrees of bank: the target keeps the turn's 71 m away. */
 static void a_circle_is_never_smaller_than_the_turn(void) {
     start(30.0f);
@@ -545,6 +562,7 @@ int main(void) {
     RUN_TEST(an_old_place_blocks_a_side);
     RUN_TEST(a_low_one_blocks_no_side);
     RUN_TEST(the_circle_about_the_target_is_kept_clear);
+    RUN_TEST(an_unlikely_obstacle_delays_no_order);
     RUN_TEST(a_circle_is_never_smaller_than_the_turn);
     RUN_TEST(a_wall_of_masts_is_a_reason_to_hold);
     RUN_TEST(a_blocked_aircraft_reports_it);
