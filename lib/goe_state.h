@@ -20,6 +20,13 @@
 #define GOE_NOINLINE
 #endif
 
+/* Before a static function whose constant arguments must reach its branches, also where the compiler counts bytes. */
+#if defined(__GNUC__)
+#define GOE_INLINE __attribute__((always_inline)) inline
+#else
+#define GOE_INLINE inline
+#endif
+
 /* Whether something is so: 0 is not, anything else is. A bool with a flipped bit would be undefined. */
 typedef uint8_t goe_flag_t;
 

@@ -102,8 +102,9 @@ void goe_model_learn(goe_filter_t *filter, goe_rows_t *rows, const goe_verdict_t
 
 float goe_model_update(goe_filter_t *filter, float nuisance_root, goe_rows_t *rows, float change[GOE_UNKNOWNS]) {
     const bool prism = filter->phase == GOE_PHASE_PRISM;
-    const float nis = prism ? goe_srif_update_considering(&filter->root, nuisance_root, rows->matrix, change)
-                            : goe_srif_update(&filter->root, nuisance_root, rows->matrix, change);
+    const float nis = prism
+                          ? goe_srif_update_considering(&filter->root, nuisance_root, rows->matrix, rows->count, change)
+                          : goe_srif_update(&filter->root, nuisance_root, rows->matrix, rows->count, change);
     const float before = filter->state[GOE_INVERSE_RANGE];
     for (size_t i = 0; i < GOE_STATES; i++) {
         filter->state[i] += change[i];

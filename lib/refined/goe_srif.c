@@ -17,57 +17,70 @@ void goe_srif_clear(goe_triangle_t *root) {
 
 /* -------------------------------------------------------------------------------------------------------- reflections -- */
 
-/* Element k of a column lies in row k. The kernels hold one column of all rows in registers. */
+/* Element k of a column lies in row k. The kernels hold one column of all rows in registers, of few rows or of as many as there can
+ * be: `few` is a constant in each. Rows of zeros, which the longer kernel reads as well, change no bit. */
 #define STEP GOE_COLUMNS
-GOE_STATIC_ASSERT(GOE_ROWS_MAX == 9, the_kernels_hold_nine_rows);
+GOE_STATIC_ASSERT(GOE_ROWS_MAX == 9 && GOE_ROWS_FEW == 5, the_kernels_hold_five_rows_or_nine);
 
 typedef struct {
     float v0, v1, v2, v3, v4, v5, v6, v7, v8;
 } column_t;
 
 /*@ requires \valid_read(v + (0 .. (GOE_ROWS_MAX - 1) * STEP)); */
-static inline column_t load(const float *v) {
-    const column_t c = {v[0],        v[STEP],     v[2 * STEP], v[3 * STEP], v[4 * STEP],
-                        v[5 * STEP], v[6 * STEP], v[7 * STEP], v[8 * STEP]};
+static GOE_INLINE column_t load(const float *v, bool few) {
+    column_t c = {v[0], v[STEP], v[2 * STEP], v[3 * STEP], v[4 * STEP], 0.0f, 0.0f, 0.0f, 0.0f};
+    if (!few) {
+        c.v5 = v[5 * STEP];
+        c.v6 = v[6 * STEP];
+        c.v7 = v[7 * STEP];
+        c.v8 = v[8 * STEP];
+    }
     return c;
 }
 
-static inline float dot(column_t p, column_t c, float sum) {
-    sum += p.v0 * c.v0;
+/* first: the sum up to the first row. */
+static GOE_INLINE float dot(column_t p, column_t c, float first, bool few) {
+    float sum = first;
     sum += p.v1 * c.v1;
     sum += p.v2 * c.v2;
     sum += p.v3 * c.v3;
     sum += p.v4 * c.v4;
-    sum += p.v5 * c.v5;
-    sum += p.v6 * c.v6;
-    sum += p.v7 * c.v7;
-    return sum + p.v8 * c.v8;
+    if (!few) {
+        sum += p.v5 * c.v5;
+        sum += p.v6 * c.v6;
+        sum += p.v7 * c.v7;
+        sum += p.v8 * c.v8;
+    }
+    return sum;
 }
 
 /* at = c + g p */
 /*@ requires \valid(at + (0 .. (GOE_ROWS_MAX - 1) * STEP)); */
-static inline void store_sum(float *at, column_t c, float g, column_t p) {
+static GOE_INLINE void store_sum(float *at, column_t c, float g, column_t p, bool few) {
     at[0] = c.v0 + g * p.v0;
     at[STEP] = c.v1 + g * p.v1;
     at[2 * STEP] = c.v2 + g * p.v2;
     at[3 * STEP] = c.v3 + g * p.v3;
     at[4 * STEP] = c.v4 + g * p.v4;
-    at[5 * STEP] = c.v5 + g * p.v5;
-    at[6 * STEP] = c.v6 + g * p.v6;
-    at[7 * STEP] = c.v7 + g * p.v7;
-    at[8 * STEP] = c.v8 + g * p.v8;
+    if (!few) {
+        at[5 * STEP] = c.v5 + g * p.v5;
+        at[6 * STEP] = c.v6 + g * p.v6;
+        at[7 * STEP] = c.v7 + g * p.v7;
+        at[8 * STEP] = c.v8 + g * p.v8;
+    }
 }
 
 /* The reflection that takes (r, column) to (diagonal, 0): I + beta (u, column)(u, column)'. */
 typedef struct {
+    column_t column;
     float diagonal, u, beta;
 } reflection_t;
 
 /* False if the column is 0 already. r: the element of the triangle above it. */
-/*@ requires \valid_read(matrix) && \valid(to) && j < GOE_COLUMNS; */
-static inline bool reflect(const goe_matrix_t *matrix, size_t j, float r, reflection_t *to) {
-    const column_t p = load(&matrix->row[0][j]);
-    const float s = dot(p, p, 0.0f);
+/*@ requires \valid_read(column + (0 .. (GOE_ROWS_MAX - 1) * STEP)) && \valid(to); */
+static GOE_INLINE bool aim(const float *column, float r, reflection_t *to, bool few) {
+    to->column = load(column, few);
+    const float s = dot(to->column, to->column, to->column.v0 * to->column.v0, few);
     if (!(s > 0.0f)) {
         return false;
     }
@@ -78,70 +91,103 @@ static inline bool reflect(const goe_matrix_t *matrix, size_t j, float r, reflec
     return true;
 }
 
-/* The reflection by column j of the columns from first to before last; above: what the triangle has above the first of these,
- * and with each further column `step` elements farther. */
-/*@ requires \valid(matrix) && \valid_read(to) && \valid(above);
-    requires j < GOE_COLUMNS && first <= last <= GOE_COLUMNS; */
-static inline void apply(goe_matrix_t *matrix, size_t j, const reflection_t *to, size_t first, size_t last,
-                         float *above, size_t step) {
-    const column_t p = load(&matrix->row[0][j]);
-    const float u = to->u;
-    const float beta = to->beta;
-    for (size_t c = first; c < last; c++) {
-        const column_t column = load(&matrix->row[0][c]);
-        const float g = dot(p, column, u * *above) * beta;
-        *above += g * u;
-        above += step;
-        store_sum(&matrix->row[0][c], column, g, p);
+/* Of the columns behind one of the nuisances. Nothing is known of these beforehand but their sigma: their rows of the triangle are 0 until
+ * they are reached, and are not needed afterwards. */
+/*@ requires \valid_read(to) && \valid(column) && \valid(last); */
+static GOE_INLINE void pass_nuisance(const reflection_t *to, float *column, const float *last, bool few) {
+    for (; column <= last; column++) {
+        const column_t other = load(column, few);
+        const float g = dot(to->column, other, to->column.v0 * other.v0, few) * to->beta;
+        store_sum(column, other, g, to->column, few);
     }
 }
 
-/* Nothing is known of the nuisances beforehand but their sigma: their rows of the triangle are 0 until they are reached, and
- * are not needed afterwards. */
-static void remove_nuisances(float root, goe_matrix_t *matrix) {
-    reflection_t to;
-    float none = 0.0f;
-    for (size_t j = 0; j < GOE_NUISANCES; j++) {
-        if (reflect(matrix, j, root, &to)) {
-            to.u = 0.0f; /* nothing to read, nothing to keep above the columns */
-            apply(matrix, j, &to, j + 1, GOE_COLUMNS, &none, 0);
+/* Of the columns behind an unknown: first those of other unknowns, which are below the elements of the triangle from `above` to before
+ * `end`, then the residual, which is below *right. */
+/*@ requires \valid_read(to) && \valid(column) && \valid(above) && \valid(right); */
+static GOE_INLINE void pass_unknown(const reflection_t *to, float *column, float *above, const float *end, float *right,
+                                    bool few) {
+    for (int part = 0; part < 2; part++) {
+        for (; above != end; above++) {
+            const column_t other = load(column, few);
+            const float g = dot(to->column, other, to->u * *above + to->column.v0 * other.v0, few) * to->beta;
+            *above += g * to->u;
+            store_sum(column, other, g, to->column, few);
+            column++;
         }
+        above = right;
+        end = right + 1;
     }
 }
 
-/* Of the unknowns from first to before last. */
-/*@ requires \valid(root) && \valid(matrix) && \valid(right) && first <= last <= GOE_UNKNOWNS; */
-static void reflect_unknowns(goe_triangle_t *root, goe_matrix_t *matrix, size_t first, size_t last, float *right) {
+/* The columns from first to before last, each reflected out of those behind it, which end with the residual. r: element of the
+ * triangle above the first of them, on its diagonal; right: what belongs to the residual, row by row. Of the nuisances there is none, and
+ * *r is 1/sigma of each. */
+/*@ requires \valid(matrix) && \valid(r) && first <= last <= GOE_RESIDUAL;
+    requires right == \null || \valid(right); */
+static GOE_INLINE void reflect(goe_matrix_t *matrix, size_t first, size_t last, float *r, float *right, bool few) {
     reflection_t to;
-    float *r = &root->element[goe_srif_row(first) + first];
     for (size_t j = first; j < last; j++) {
-        const size_t column = GOE_STATE_COLUMN + j;
-        if (reflect(matrix, column, *r, &to)) {
-            *r = to.diagonal;
-            apply(matrix, column, &to, column + 1, GOE_RESIDUAL, r + 1, 1);
-            apply(matrix, column, &to, GOE_RESIDUAL, GOE_COLUMNS, &right[j - first], 0);
+        float *column = &matrix->row[0][j];
+        const bool turns = aim(column, *r, &to, few);
+        if (!right) {
+            if (turns) {
+                pass_nuisance(&to, column + 1, &matrix->row[0][GOE_RESIDUAL], few);
+            }
+            continue;
         }
-        r += GOE_UNKNOWNS - j;
+        float *next = r + (GOE_RESIDUAL - j);
+        if (turns) {
+            *r = to.diagonal;
+            pass_unknown(&to, column + 1, r + 1, next, right, few);
+        }
+        r = next;
+        right++;
+    }
+}
+
+/* Each kernel once: a copy at every call would cost more than the calls. */
+/*@ requires \valid(matrix) && \valid(r) && first <= last <= GOE_RESIDUAL;
+    requires right == \null || \valid(right); */
+GOE_NOINLINE static void reflect_few(goe_matrix_t *matrix, size_t first, size_t last, float *r, float *right) {
+    reflect(matrix, first, last, r, right, true);
+}
+
+/*@ requires \valid(matrix) && \valid(r) && first <= last <= GOE_RESIDUAL;
+    requires right == \null || \valid(right); */
+GOE_NOINLINE static void reflect_all(goe_matrix_t *matrix, size_t first, size_t last, float *r, float *right) {
+    reflect(matrix, first, last, r, right, false);
+}
+
+/*@ requires \valid(matrix) && \valid(r) && first <= last <= GOE_RESIDUAL;
+    requires right == \null || \valid(right); */
+static void reflect_columns(goe_matrix_t *matrix, size_t first, size_t last, float *r, float *right, bool few) {
+    if (few) {
+        reflect_few(matrix, first, last, r, right);
+    } else {
+        reflect_all(matrix, first, last, r, right);
     }
 }
 
 /* R x = right, in place; 0 for states that are not estimated. */
 static void solve_back(const goe_triangle_t *root, float right[GOE_UNKNOWNS]) {
     const size_t count = goe_srif_count(root);
+    const float *r = &root->element[goe_srif_row(count) + count]; /* behind the last row */
     for (size_t i = count; i-- > 0;) {
-        const float *r = &root->element[goe_srif_row(i)];
+        r -= GOE_UNKNOWNS - i; /* on the diagonal */
         float g = right[i];
         for (size_t j = i + 1; j < count; j++) {
-            g -= r[j] * right[j];
+            g -= r[j - i] * right[j];
         }
-        right[i] = g / r[i];
+        right[i] = g / r[0];
     }
 }
 
 #if GOE_AUGMENTED
-static void reflect_augmented(goe_triangle_t *root, goe_matrix_t *matrix, float change[GOE_UNKNOWNS]) {
+static void reflect_augmented(goe_triangle_t *root, goe_matrix_t *matrix, bool few, float change[GOE_UNKNOWNS]) {
     const size_t count = goe_srif_augmented_count(root);
-    reflect_unknowns(root, matrix, GOE_STATES, GOE_UNKNOWNS, root->right);
+    reflect_columns(matrix, GOE_AUGMENTED_COLUMN, GOE_RESIDUAL, &root->element[goe_srif_augmented_row()], root->right,
+                    few);
     for (size_t j = 0; j < GOE_AUGMENTED; j++) {
         const bool estimated = j < count;
         change[GOE_STATES + j] = estimated ? root->right[j] : 0.0f;
@@ -151,26 +197,27 @@ static void reflect_augmented(goe_triangle_t *root, goe_matrix_t *matrix, float 
 #endif
 
 /*@ requires \valid(root) && \valid(matrix) && \valid(change + (0 .. GOE_UNKNOWNS - 1)) && states <= GOE_STATES; */
-GOE_NOINLINE static float update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, size_t states,
-                                 float change[GOE_UNKNOWNS]) {
-    remove_nuisances(nuisance_root, matrix);
+GOE_NOINLINE static float update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, bool few,
+                                 size_t states, float change[GOE_UNKNOWNS]) {
+    reflect_columns(matrix, 0, GOE_NUISANCES, &nuisance_root, NULL, few);
     memset(change, 0, GOE_STATES * sizeof change[0]);
-    reflect_unknowns(root, matrix, 0, states, change);
-    const column_t residual = load(&matrix->row[0][GOE_RESIDUAL]);
+    reflect_columns(matrix, GOE_STATE_COLUMN, GOE_STATE_COLUMN + states, root->element, change, few);
+    const column_t residual = load(&matrix->row[0][GOE_RESIDUAL], false);
 #if GOE_AUGMENTED
-    reflect_augmented(root, matrix, change);
+    reflect_augmented(root, matrix, few, change);
 #endif
     solve_back(root, change);
-    return dot(residual, residual, 0.0f);
+    return dot(residual, residual, residual.v0 * residual.v0, false);
 }
 
-float goe_srif_update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, float change[GOE_UNKNOWNS]) {
-    return update(root, nuisance_root, matrix, GOE_STATES, change);
+float goe_srif_update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, size_t count,
+                      float change[GOE_UNKNOWNS]) {
+    return update(root, nuisance_root, matrix, count <= GOE_ROWS_FEW, GOE_STATES, change);
 }
 
-float goe_srif_update_considering(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix,
+float goe_srif_update_considering(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, size_t count,
                                   float change[GOE_UNKNOWNS]) {
-    return update(root, nuisance_root, matrix, GOE_STATES - 1, change);
+    return update(root, nuisance_root, matrix, count <= GOE_ROWS_FEW, GOE_STATES - 1, change);
 }
 
 /* ------------------------------------------------------------------------------------------------------ process noise -- */
@@ -441,10 +488,10 @@ void goe_srif_substitute(goe_triangle_t *root, const goe_substitution_t *old, go
 #if GOE_AUGMENTED
     const uint8_t estimated = root->estimated; /* the augmented states keep their pending change */
     root->estimated = 0;
-    (void)goe_srif_update(root, 1.0f, rows, change);
+    (void)goe_srif_update(root, 1.0f, rows, GOE_CHANGED, change);
     root->estimated = estimated;
 #else
-    (void)goe_srif_update(root, 1.0f, rows, change);
+    (void)goe_srif_update(root, 1.0f, rows, GOE_CHANGED, change);
 #endif
 }
 

@@ -70,15 +70,19 @@ static inline void goe_srif_zero(float by[GOE_UNKNOWNS], size_t first) {
 /* Forgets the state; the augmented states stay known. */
 void goe_srif_clear(goe_triangle_t *root);
 
-/* (R17): rotates whitened rows into R by Householder reflections and solves for the change of the state and of the estimated
- * augmented states. nuisance_root:
+/* An update by at most so many rows takes the shorter kernel. */
+#define GOE_ROWS_FEW 5
+
+/* (R17): rotates `count` whitened rows into R by Householder reflections and solves for the change of the state and of the estimated
+ * augmented states. The rows behind them must be 0. nuisance_root:
  * 1/sigma of the nuisances. *matrix is used up. Returns the remaining squared norm of the residuals: the normalized
  * innovation squared. */
-float goe_srif_update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, float change[GOE_UNKNOWNS]);
+float goe_srif_update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, size_t count,
+                      float change[GOE_UNKNOWNS]);
 
 /* The same, with the last state considered, not estimated (Schmidt 1966; Bierman 1977, chapter VIII): the gain is as if it were
  * known to be 0, and its own information stays as it was; the inverse then holds its part in the variances of the others. */
-float goe_srif_update_considering(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix,
+float goe_srif_update_considering(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, size_t count,
                                   float change[GOE_UNKNOWNS]);
 
 /* Adds variance sigma^2 along a direction, of which the states from first to last are read and the others are 0; sigma > 0. */

@@ -95,7 +95,7 @@ static void augmented_states_are_solved_with_the_state(void) {
         }
         add_triangle(&root, &expected);
         add_rows(&matrix, &expected);
-        (void)goe_srif_update(&root, 1.0f, &matrix, change);
+        (void)goe_srif_update(&root, 1.0f, &matrix, GOE_ROWS_MAX, change);
         add_triangle(&root, &actual);
         for (size_t i = 0; i < UNKNOWNS; i++) {
             double moved = 0.0;

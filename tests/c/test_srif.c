@@ -214,7 +214,7 @@ static void check_update(goe_triangle_t *root, double nuisance_root, goe_matrix_
     const solution_t expected = solve(root, nuisance_root, matrix);
     const dense_t covariance = inverted(expected.information, N);
     float change[GOE_UNKNOWNS];
-    const float nis = goe_srif_update(root, (float)nuisance_root, matrix, change);
+    const float nis = goe_srif_update(root, (float)nuisance_root, matrix, GOE_ROWS_MAX, change);
     const dense_t information = information_of(root);
     check_equal(SHARE, &expected.information, &information);
     for (int i = 0; i < N; i++) {
@@ -251,7 +251,7 @@ static void a_considered_state_is_held_and_depended_on(void) {
         const float known = *goe_srif_at(&root, N - 1, N - 1);
         const solution_t expected = solve(&root, nuisance_root, &matrix);
         const dense_t covariance = inverted(expected.information, N - 1);
-        (void)goe_srif_update_considering(&root, (float)nuisance_root, &matrix, change);
+        (void)goe_srif_update_considering(&root, (float)nuisance_root, &matrix, GOE_ROWS_MAX, change);
         const dense_t information = information_of(&root);
         TEST_ASSERT_EQUAL_FLOAT(known, *goe_srif_at(&root, N - 1, N - 1));
         TEST_ASSERT_EQUAL_FLOAT(0.0f, change[N - 1]);
@@ -306,7 +306,7 @@ static void the_squares_left_over_average_to_the_number_of_rows(void) {
             }
             drawn.row[k][GOE_RESIDUAL] = (float)r;
         }
-        sum += (double)goe_srif_update(&updated, 20.0f, &drawn, change);
+        sum += (double)goe_srif_update(&updated, 20.0f, &drawn, GOE_ROWS_MAX, change);
     }
     check_report("mean of the squares left over, 7 rows", sum / draws);
     CHECK_CLOSE(5.0 * sqrt(2.0 * (double)rows / draws), (double)rows, sum / draws); /* 5 sigma */
@@ -321,7 +321,7 @@ static void rows_of_zeros_change_nothing(void) {
     random_root(&root);
     const goe_triangle_t before = root;
     memset(&matrix, 0, sizeof matrix);
-    CHECK_SAME(0.0f, goe_srif_update(&root, 100.0f, &matrix, change));
+    CHECK_SAME(0.0f, goe_srif_update(&root, 100.0f, &matrix, GOE_ROWS_MAX, change));
     TEST_ASSERT_EQUAL_MEMORY(&before, &root, sizeof root);
     for (int i = 0; i < N; i++) {
         TEST_ASSERT_EQUAL_FLOAT(0.0f, change[i]);
@@ -337,7 +337,36 @@ static void a_row_without_derivatives_is_left_over(void) {
     random_root(&root);
     memset(&matrix, 0, sizeof matrix);
     matrix.row[4][GOE_RESIDUAL] = 3.0f;
-    CHECK_SAME(9.0f, goe_srif_update(&root, 100.0f, &matrix, change));
+    CHECK_SAME(9.0f, goe_srif_update(&root, 100.0f, &matrix, GOE_ROWS_MAX, change));
+}
+
+/* [(R17)]
+ * GIVEN up to five rows WHEN they are counted THEN the shorter kernel gives the bits of the longer one, which reads rows of zeros behind
+ * them. */
+static void few_rows_give_the_same_bits(void) {
+    any = check_random_start("few rows");
+    for (size_t rows = 1; rows <= GOE_ROWS_FEW; rows++) {
+        for (int n = 0; n < 50; n++) {
+            goe_triangle_t root[2] = {no_root, no_root};
+            goe_matrix_t matrix[2];
+            float change[2][GOE_UNKNOWNS];
+            float nis[2];
+            random_root(&root[0]);
+            random_matrix(rows, &matrix[0]);
+            root[1] = root[0];
+            matrix[1] = matrix[0];
+            if (n % 2 == 0) {
+                nis[0] = goe_srif_update(&root[0], 50.0f, &matrix[0], rows, change[0]);
+                nis[1] = goe_srif_update(&root[1], 50.0f, &matrix[1], GOE_ROWS_MAX, change[1]);
+            } else {
+                nis[0] = goe_srif_update_considering(&root[0], 50.0f, &matrix[0], rows, change[0]);
+                nis[1] = goe_srif_update_considering(&root[1], 50.0f, &matrix[1], GOE_ROWS_MAX, change[1]);
+            }
+            CHECK_SAME(nis[1], nis[0]);
+            TEST_ASSERT_EQUAL_MEMORY(&root[1], &root[0], sizeof root[0]);
+            TEST_ASSERT_EQUAL_MEMORY(change[1], change[0], sizeof change[0]);
+        }
+    }
 }
 
 /* [(R17)] Each row of R with the other sign is the same information. */
@@ -357,7 +386,7 @@ static void the_signs_of_the_rows_are_free(void) {
                 *goe_srif_at(&r, i, j) *= -1.0f;
             }
             const dense_t covariance = covariance_of(&r);
-            nis[turned] = goe_srif_update(&r, 50.0f, &m, change[turned]);
+            nis[turned] = goe_srif_update(&r, 50.0f, &m, GOE_ROWS_MAX, change[turned]);
             for (int k = 0; turned && k < N; k++) {
                 CHECK_CLOSE(SHARE, 0.0, ((double)change[1][k] - (double)change[0][k]) / sqrt(covariance.m[k][k]));
             }
@@ -592,6 +621,7 @@ int main(void) {
     RUN_TEST(the_squares_left_over_average_to_the_number_of_rows);
     RUN_TEST(rows_of_zeros_change_nothing);
     RUN_TEST(a_row_without_derivatives_is_left_over);
+    RUN_TEST(few_rows_give_the_same_bits);
     RUN_TEST(the_signs_of_the_rows_are_free);
     RUN_TEST(spreading_adds_to_the_covariance);
     RUN_TEST(a_tiny_sigma_changes_nothing);

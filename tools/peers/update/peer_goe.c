@@ -12,6 +12,7 @@ typedef struct {
     goe_triangle_t root;
     goe_inverse_t inverse;
     goe_matrix_t rows;
+    size_t count; /* of rows that are not 0 */
     float nuisance_root;
     float change[GOE_STATES];
     float nis;
@@ -25,11 +26,16 @@ void peer_prepare(int slot, const peer_case_t *given) {
     memcpy(state->root.element, given->root, sizeof given->root);
     memcpy(state->rows.row, given->measured, sizeof given->measured);
     state->nuisance_root = given->nuisance_root;
+    for (size_t i = 0; i < GOE_ROWS_MAX; i++) {
+        for (size_t c = 0; c < GOE_COLUMNS; c++) {
+            state->count = state->rows.row[i][c] != 0.0f ? i + 1 : state->count;
+        }
+    }
 }
 
 void peer_solve(int slot) {
     state_t *state = &states[slot];
-    state->nis = goe_srif_update(&state->root, state->nuisance_root, &state->rows, state->change);
+    state->nis = goe_srif_update(&state->root, state->nuisance_root, &state->rows, state->count, state->change);
 #if WITH_INVERSE
     goe_srif_invert(&state->root, &state->inverse);
 #endif

@@ -11,8 +11,10 @@
 _Static_assert(GOE_STATES == PEER_STATES && GOE_NUISANCES == PEER_NUISANCES && GOE_ROWS_MAX == PEER_ROWS,
                "job.h describes another filter");
 
-float __real_goe_srif_update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, float *change);
-float __wrap_goe_srif_update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, float *change);
+float __real_goe_srif_update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, size_t count,
+                             float *change);
+float __wrap_goe_srif_update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, size_t count,
+                             float *change);
 
 static void print(const float *numbers, int count) {
     for (int i = 0; i < count; i++) {
@@ -20,12 +22,13 @@ static void print(const float *numbers, int count) {
     }
 }
 
-float __wrap_goe_srif_update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, float *change) {
+float __wrap_goe_srif_update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, size_t count,
+                             float *change) {
     print(root->element, PEER_TRIANGLE);
     print(&nuisance_root, 1);
     print(&matrix->row[0][0], PEER_COLUMNS * PEER_ROWS);
     printf("\n");
-    return __real_goe_srif_update(root, nuisance_root, matrix, change);
+    return __real_goe_srif_update(root, nuisance_root, matrix, count, change);
 }
 
 static void fly(goe_estimator_t *estimator, const logged_track_t *track) {
