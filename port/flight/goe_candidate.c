@@ -83,7 +83,7 @@ bool goe_flight_candidate_confirm(goe_flight_waiting_t *waiting, const goe_fligh
 static void forget(goe_flight_waiting_t *waiting, unsigned cameras, uint32_t time_us, int32_t after_us) {
     for (int i = 0; i < GOE_FLIGHT_CANDIDATES; i++) {
         goe_flight_candidate_t *candidate = &waiting->place[i];
-        const bool meant = ((cameras >> candidate->camera) & 1u) != 0u;
+        const bool meant = candidate->camera >= GOE_CAMERAS_MAX || ((cameras >> candidate->camera) & 1u) != 0u;
         if (meant && goe_flight_between_us(time_us, candidate->time_us) > after_us) {
             candidate->images = 0;
         }
