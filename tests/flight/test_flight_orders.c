@@ -106,7 +106,7 @@ static void the_circle_about_the_target_is_kept_clear(void) {
     TEST_ASSERT_TRUE(miss_m(0) >= 80.0 + 17.9 && miss_m(1) >= 80.0 + 17.9);
 }
 
-/* [reserve_s] GIVEN a sure hazard whose order is due WHEN another obstacle leaves less time, too little even, and is unlikely to be in the
+/* [flight.reserve_s] GIVEN a sure hazard whose order is due WHEN another obstacle leaves less time, too little even, and is unlikely to be in the
  * way THEN the order comes all the same. */
 static void an_unlikely_obstacle_delays_no_order(void) {
     for (int unsure = 0; unsure < 2; unsure++) {

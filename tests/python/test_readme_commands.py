@@ -161,7 +161,6 @@ RUN_BY = {
     "python -m ci ledger": By("tools/test.sh", "ci ledger"),
     "python -m ci ledger --check": By("tools/test.sh", "ci ledger --check"),
     "python -m ci ledger --write": By("tests/python/test_cost.py", '"ledger", "--write"'),
-    "python -m goe_tools live": By("tests/python/test_live_page.py", '"live", "--out"'),
     "python -m goe_tools live --out live.html": By("tests/python/test_live_page.py", '"live", "--out"'),
     "python -m goe_tools offline": By("tests/python/test_optimum.py", '"offline"'),
     "python -m bench peers": By("tests/python/test_peers.py", "peers"),
