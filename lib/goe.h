@@ -142,7 +142,7 @@ typedef enum {
 
 /* Pose of the aircraft AT THE TIME OF EXPOSURE. A jump of the autopilot's filter is not motion. [A27] Supply the filter's reset
  * counter and, if known, the jump: new minus old position, summed since the last image that was taken. A jump of unknown size,
- * also of attitude, starts a new track. A jump of down changes no height_m. */
+ * also of attitude, starts a new track. height_m may jump with down or not. */
 typedef struct {
     int64_t time_us;         /* any origin; strictly increasing; GOE_TIME_UNKNOWN is refused */
     float position_ned_m[3]; /* the vehicle's reference point, each +-1e6; choose an origin within 10 km */
@@ -181,7 +181,7 @@ typedef struct {
 } goe_image_noise_t;
 
 /* One image of one obstacle: a box, points or both, with any subset of the features.
- * Box: replaces left, right and top, which are more accurate. With base corners goe ignores its bottom. [A29]
+ * Box: it replaces the points left, right and top. With base corners goe ignores its bottom. [A29]
  * Points: supply left and right for a disc, two or three base corners for a line or a box, and top for the height. Do not
  * supply the middles of a box's sides as points: when the camera rolls, the estimated width is too large. */
 typedef struct {
