@@ -217,15 +217,19 @@ static bool camera_alive(const goe_flight_t *flight, int number, uint32_t now_us
            goe_flight_between_s(now_us, flight->frame_us[number]) <= flight->settings.detector_timeout_s;
 }
 
+/* Whether the latest complete image of a camera is recent enough to clear sectors. */
+static bool view_alive(const goe_flight_t *flight, int number, uint32_t now_us) {
+    const goe_flight_parts_t *parts = &flight->parts[number];
+    return parts->viewed && goe_flight_between_s(now_us, parts->viewed_us) <= flight->settings.detector_timeout_s;
+}
+
 /* An input that was dead stays dead until it gives a sign again: times of half an hour ago would look like future times. */
 static void bury(goe_flight_t *flight, uint32_t now_us) {
     for (int i = 0; i < GOE_CAMERAS_MAX; i++) {
-        goe_flight_parts_t *parts = &flight->parts[i];
         if (!camera_alive(flight, i, now_us)) {
             flight->had_frame = (uint8_t)(flight->had_frame & ~(1u << i));
         }
-        parts->viewed =
-            parts->viewed && goe_flight_between_s(now_us, parts->viewed_us) <= flight->settings.detector_timeout_s;
+        flight->parts[i].viewed = view_alive(flight, i, now_us);
     }
 }
 
@@ -751,9 +755,7 @@ static void open_sectors(const goe_flight_t *flight, uint32_t max_cm, uint16_t s
     }
     for (int i = 0; i < GOE_CAMERAS_MAX; i++) {
         const goe_flight_parts_t *parts = &flight->parts[i];
-        const bool viewed = parts->viewed != 0u &&
-                            goe_flight_between_s(now_us, parts->viewed_us) <= flight->settings.detector_timeout_s;
-        if (alive && viewed && camera_alive(flight, i, now_us)) {
+        if (alive && view_alive(flight, i, now_us) && camera_alive(flight, i, now_us)) {
             goe_flight_geometry_open_sectors(sector_cm, max_cm, &flight->camera[i], parts->q, parts->above_m);
         }
     }

@@ -785,8 +785,8 @@ static bool is_too_low(const look_t *look, const encounter_t *e) {
     return begins_s + rise_m / settings->climb_m_s > e->earliest_tcpa_s;
 }
 
-/* What to do about one obstacle; an order, once it is due. *unlikely: there is no time left for it, and it is probably not in the way.
- * Null: that is no reason to leave it. */
+/* Gives the order about one obstacle once it is due; returns the time that the best action needs. If that time is not left and the
+ * conflict probability is too low for a late order, it sets *unlikely and changes nothing; with a null pointer it only gives no order. */
 static float answer(goe_flight_t *flight, look_t *look, int about, bool *unlikely) {
     goe_flight_reaction_t *r = &flight->reaction;
     const goe_flight_settings_t *settings = &flight->settings;
