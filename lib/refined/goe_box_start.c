@@ -283,9 +283,9 @@ static void start_box(goe_filter_t *filter, const goe_footprint_t *box, bool bot
     x[GOE_SIDE_X] = box->length * box->sine;
     x[GOE_FRONT_X] = box->width * box->cosine;
     x[GOE_DEPTH_DIFFERENCE] = box->length * box->cosine - box->width * goe_absolute(box->sine);
-    const float sigma[GOE_STATES - GOE_KEPT] = {SIZE_FREEDOM * size, SIZE_FREEDOM * size,
-                                                (both ? DEPTH_FREEDOM : DEPTH_HELD) * size,
-                                                SIZE_FREEDOM * goe_larger(goe_absolute(x[GOE_TOP]), size)};
+    const float sigma[GOE_STATES - GOE_KEPT] = {SIZE_FREEDOM * goe_larger(goe_absolute(x[GOE_TOP]), size),
+                                                SIZE_FREEDOM * size, SIZE_FREEDOM * size,
+                                                (both ? DEPTH_FREEDOM : DEPTH_HELD) * size};
     goe_srif_from_covariance(c, sigma, &filter->root, &filter->inverse);
     goe_filter_settle(filter);
     filter->axes.turn_cos = box->turn_cos;

@@ -287,7 +287,6 @@ static void become_box(goe_filter_t *filter, const float was[GOE_STATES], float 
     inflate(filter, GOE_SIDE_X, DEPTH_UNNOTICED * length);
     inflate(filter, GOE_FRONT_X, WIDTH_UNNOTICED * length);
     *goe_srif_at(&filter->root, GOE_DEPTH_DIFFERENCE, GOE_DEPTH_DIFFERENCE) = 1.0f / CORNER_RAD;
-    *goe_srif_at(&filter->root, GOE_DEPTH_DIFFERENCE, GOE_TOP) = 0.0f;
     differentiate(was, filter->state, side_sign, &old);
     goe_srif_substitute(&filter->root, &old, &filter->rows);
     inflate(filter, GOE_SIDE_X, BOX_FREEDOM * length);

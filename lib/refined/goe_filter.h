@@ -17,12 +17,12 @@ typedef enum {
     GOE_GROUND,        /* (true minus given height of the camera above the obstacle's ground)/Z0 */
     GOE_BEARING,       /* X0/Z0 */
     GOE_INVERSE_RANGE, /* 1/Z0, 1/m */
+    GOE_TOP,           /* H/Z0 - GOE_GROUND: the top above the altimeter's own zero */
     GOE_SIDE_X, /* box: L sin(b)/Z0. Disc and chord, a depth: how much deeper the right end lies than the left one, over Z0;
                           0 of a true disc */
     GOE_FRONT_X, /* box: W cos(b)/Z0; disc: diameter/Z0; chord: how much farther to the right its right end lies */
     GOE_DEPTH_DIFFERENCE, /* box: (L cos(b) - W |sin(b)|)/Z0: how much deeper the side reaches than the front; otherwise
                              idle */
-    GOE_TOP,              /* H/Z0 - GOE_GROUND: the top above the altimeter's own zero */
     GOE_STATE_COUNT
 } goe_state_index_t;
 
@@ -32,19 +32,18 @@ GOE_STATIC_ASSERT(GOE_STATE_COUNT == GOE_STATES, every_state_has_a_name);
 enum {
     GOE_PRISM_DEPTH = GOE_SIDE_X,              /* log of the depth along Z over the width */
     GOE_PRISM_HALF = GOE_FRONT_X,              /* half width across Z */
-    GOE_PRISM_TOP = GOE_DEPTH_DIFFERENCE,      /* like GOE_TOP */
-    GOE_PRISM_UNOBSERVED = GOE_TOP,            /* added to GOE_PRISM_DEPTH: not estimated, only its sigma counts */
+    GOE_PRISM_UNOBSERVED = GOE_DEPTH_DIFFERENCE, /* added to GOE_PRISM_DEPTH: not estimated, only its sigma counts */
     GOE_PRISM_ESTIMATED = GOE_PRISM_UNOBSERVED /* states before this one are estimated */
 };
 
 GOE_STATIC_ASSERT(GOE_PRISM_UNOBSERVED == GOE_STATES - 1, unestimated_states_come_last);
 
 /* Places of the states in goe_substitution_t. */
-enum { GOE_OF_GROUND, GOE_OF_BEARING, GOE_OF_RANGE, GOE_OF_SIDE, GOE_OF_FRONT, GOE_OF_DEPTH, GOE_OF_TOP };
+enum { GOE_OF_GROUND, GOE_OF_BEARING, GOE_OF_RANGE, GOE_OF_TOP, GOE_OF_SIDE, GOE_OF_FRONT, GOE_OF_DEPTH };
 
-GOE_STATIC_ASSERT(GOE_GROUND + GOE_CHANGED == GOE_STATES && GOE_GROUND + GOE_OF_TOP == GOE_TOP,
+GOE_STATIC_ASSERT(GOE_GROUND + GOE_CHANGED == GOE_STATES && GOE_GROUND + GOE_OF_DEPTH == GOE_DEPTH_DIFFERENCE,
                   the_last_states_are_those_that_change);
-GOE_STATIC_ASSERT(GOE_KEPT == GOE_SIDE_X, the_first_states_are_those_that_are_kept);
+GOE_STATIC_ASSERT(GOE_KEPT == GOE_TOP, the_first_states_are_those_that_are_kept);
 
 /* The phases, and what leads from one to the next.
  *

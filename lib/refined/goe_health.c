@@ -104,11 +104,9 @@ static bool is_captured(goe_filter_t *filter, goe_verdict_t verdict) {
 /* The top alone hangs on nothing else. */
 static void free_top(goe_filter_t *filter) {
     const float *x = filter->state;
-    const bool prism = filter->phase == GOE_PHASE_PRISM;
-    const goe_state_index_t top = prism ? (goe_state_index_t)GOE_PRISM_TOP : GOE_TOP;
-    const float depth = prism ? 0.0f : goe_absolute(x[GOE_DEPTH_DIFFERENCE]);
-    const float size = goe_larger(goe_absolute(x[top]), goe_larger(x[GOE_FRONT_X], depth));
-    goe_filter_inflate(filter, top, TOP_FREEDOM * size);
+    const float depth = filter->phase == GOE_PHASE_PRISM ? 0.0f : goe_absolute(x[GOE_DEPTH_DIFFERENCE]);
+    const float size = goe_larger(goe_absolute(x[GOE_TOP]), goe_larger(x[GOE_FRONT_X], depth));
+    goe_filter_inflate(filter, GOE_TOP, TOP_FREEDOM * size);
     filter->health.refused[GOE_POINT_TOP] = 0;
 }
 

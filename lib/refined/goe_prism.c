@@ -52,7 +52,7 @@ static void describe(const goe_observation_t *obs, goe_solid_t *o) {
     o->depth = o->half * goe_exp(x[GOE_PRISM_DEPTH]);
     o->corners = 0;
     o->ground = obs->steady_height_m * x[GOE_INVERSE_RANGE] + x[GOE_GROUND];
-    o->roof = obs->steady_height_m * x[GOE_INVERSE_RANGE] - x[GOE_PRISM_TOP];
+    o->roof = obs->steady_height_m * x[GOE_INVERSE_RANGE] - x[GOE_TOP];
     goe_touch_open(obs, o);
 }
 
@@ -61,7 +61,7 @@ static void describe(const goe_observation_t *obs, goe_solid_t *o) {
 static float size_of(const goe_observation_t *obs, size_t side) {
     const float *x = obs->state;
     return goe_touch_size(obs, side,
-                          goe_touch_is_level(side) ? x[GOE_PRISM_TOP] + x[GOE_GROUND] : 2.0f * x[GOE_PRISM_HALF]);
+                          goe_touch_is_level(side) ? x[GOE_TOP] + x[GOE_GROUND] : 2.0f * x[GOE_PRISM_HALF]);
 }
 
 /* (R29). */
@@ -81,7 +81,7 @@ static void add_side(const goe_observation_t *obs, const goe_solid_t *o, size_t 
     by[GOE_INVERSE_RANGE] += g.y * obs->steady_height_m;
     by[GOE_PRISM_DEPTH] = outward * along * along / t.reach;
     by[GOE_PRISM_HALF] = outward * t.reach / o->half;
-    by[GOE_PRISM_TOP] = t.foot ? 0.0f : -g.y;
+    by[GOE_TOP] = t.foot ? 0.0f : -g.y;
     by[GOE_PRISM_UNOBSERVED] = by[GOE_PRISM_DEPTH];
     const float shift = -obs->position_sd * obs->state[GOE_INVERSE_RANGE];
     float *common = rows->shift[rows->count - 1u];
@@ -255,7 +255,7 @@ static void set_root(const goe_observation_t *obs, const float state[GOE_STATES]
     sd[GOE_INVERSE_RANGE] = RANGE_FREEDOM * q;
     sd[GOE_PRISM_DEPTH] = disc ? DISC_FREEDOM : DEPTH_FREEDOM;
     sd[GOE_PRISM_HALF] = HALF_FREEDOM * width;
-    sd[GOE_PRISM_TOP] = TOP_FREEDOM * goe_larger(goe_absolute(state[GOE_PRISM_TOP]), width);
+    sd[GOE_TOP] = TOP_FREEDOM * goe_larger(goe_absolute(state[GOE_TOP]), width);
     sd[GOE_PRISM_UNOBSERVED] = disc ? DISC_FREEDOM : DEPTH_SD;
     goe_srif_clear(root);
     for (size_t i = 0; i < GOE_STATES; i++) {
@@ -286,7 +286,7 @@ bool goe_prism_start(const goe_observation_t *obs, float state[GOE_STATES], goe_
     memset(state, 0, GOE_STATES * sizeof state[0]);
     state[GOE_INVERSE_RANGE] = q;
     state[GOE_PRISM_HALF] = 0.5f * size;
-    state[GOE_PRISM_TOP] = obs->steady_height_m * q - (head.usable ? head.y : 0.0f);
+    state[GOE_TOP] = obs->steady_height_m * q - (head.usable ? head.y : 0.0f);
     if (height_sd_m(obs) > NO_ALTIMETER_M && foot.usable) {
         state[GOE_GROUND] = foot.y - obs->steady_height_m * q;
     }
@@ -307,14 +307,9 @@ void goe_prism_shape(const goe_filter_t *filter, goe_shape_t *shape) {
     shape->middle = reference;
     const float scale_m = shape->scale_m;
     goe_linear_t *width = &shape->quantity[GOE_WIDTH];
-    goe_linear_t *height = &shape->quantity[GOE_HEIGHT];
     width->value = 2.0f * x[GOE_PRISM_HALF] * scale_m;
     width->by[GOE_INVERSE_RANGE] = -scale_m * width->value;
     width->by[GOE_PRISM_HALF] = 2.0f * scale_m;
-    height->value = (x[GOE_PRISM_TOP] + x[GOE_GROUND]) * scale_m;
-    height->by[GOE_INVERSE_RANGE] = -scale_m * height->value;
-    height->by[GOE_TOP] = 0.0f; /* which is another state here */
-    height->by[GOE_PRISM_TOP] = scale_m;
 }
 
 void goe_prism_doubt(const goe_filter_t *filter, goe_xz_t camera_m, goe_shape_t *shape) {

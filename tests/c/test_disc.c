@@ -272,8 +272,8 @@ static void a_start_is_as_uncertain_as_one_image(void) {
     const double q = (double)x[GOE_INVERSE_RANGE];
     CHECK_CLOSE(1.0e-6, (20.0 + 0.3 * 80.0) * q, x[GOE_TOP]);
     CHECK_CLOSE(1.0e-6, 80.0 * VISIBLE_WIDTH * q, width);
-    const double sigma[GOE_STATES] = {bias,    bias,  hypot(bias, 0.008), 0.7 * q, 1.0,
-                                      2.0 * q, width, 5.0 * width,        width,   10.0 * (double)x[GOE_TOP]};
+    const double sigma[GOE_STATES] = {
+        bias, bias, hypot(bias, 0.008), 0.7 * q, 1.0, 2.0 * q, 10.0 * (double)x[GOE_TOP], width, 5.0 * width, width};
     for (size_t i = 0; i < GOE_STATES; i++) {
         CHECK_CLOSE(1.0e-4, 1.0, sigma[i] * (double)*goe_srif_at(&root, i, i));
         for (size_t j = i + 1; j < GOE_STATES; j++) {

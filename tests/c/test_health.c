@@ -102,7 +102,7 @@ static void a_refused_top_is_learnt_again(void) {
     const double before = (double)goe_filter_variance(&filter, GOE_FRONT_X);
     for (int box = 0; box < 2; box++) {
         setUp();
-        const size_t top = box == 1 ? GOE_TOP : (size_t)GOE_PRISM_TOP;
+        const size_t top = GOE_TOP;
         filter.phase = box == 1 ? GOE_PHASE_BOX : GOE_PHASE_PRISM;
         filter.state[GOE_FRONT_X] = 0.3f;
         filter.state[GOE_DEPTH_DIFFERENCE] = box == 1 ? -0.5f : 0.2f;

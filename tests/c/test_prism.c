@@ -36,7 +36,7 @@ static void rim_point(const double state[GOE_STATES], size_t side, double at, bo
     const double depth = half * exp(state[GOE_PRISM_DEPTH] + state[GOE_PRISM_UNOBSERVED]);
     (void)side;
     point[0] = state[GOE_BEARING] - (double)sighting.sight.camera_m.x * q + half * sin(at);
-    point[1] = foot ? h * q + state[GOE_GROUND] : h * q - state[GOE_PRISM_TOP];
+    point[1] = foot ? h * q + state[GOE_GROUND] : h * q - state[GOE_TOP];
     point[2] = 1.0 - (double)sighting.sight.camera_m.z * q + depth * cos(at);
 }
 
@@ -51,7 +51,7 @@ static void any_prism(double truth[GOE_STATES]) {
     sighting.state[GOE_GROUND] = (float)(check_random_between(&any, -1.0, 1.0) / z0_m);
     sighting.state[GOE_PRISM_HALF] = (float)(check_random_between(&any, 0.5, 12.0) / z0_m);
     sighting.state[GOE_PRISM_DEPTH] = (float)check_random_between(&any, -1.0, 1.0);
-    sighting.state[GOE_PRISM_TOP] = (float)(check_random_between(&any, 2.0, 60.0) / z0_m);
+    sighting.state[GOE_TOP] = (float)(check_random_between(&any, 2.0, 60.0) / z0_m);
     sighting.sight.steady_height_m = 20.0f;
     sighting.sight.position_sd = 0.0f;
     sighting.sight.sides = &sides;
@@ -158,7 +158,7 @@ static void an_own_position_error_moves_all_rows(void) {
             const float *by = &sighting.matrix.row[i][GOE_STATE_COLUMN];
             const double unit = 0.4 * truth[GOE_INVERSE_RANGE]; /* in units of Z0 */
             const double gx = (double)by[GOE_BEARING];
-            const double gy = (double)by[GOE_GROUND] - (double)by[GOE_PRISM_TOP]; /* of the one that it touches */
+            const double gy = (double)by[GOE_GROUND] - (double)by[GOE_TOP]; /* of the one that it touches */
             const double height = (double)sighting.sight.steady_height_m;
             const double gz = -((double)by[GOE_INVERSE_RANGE] - gy * height + gx * 3.0) / 25.0;
             CHECK_CLOSE(1.0e-5, -unit * gx, sighting.rows.shift[i][0]);
@@ -277,7 +277,7 @@ static void a_sides_error_is_a_share_of_the_box(void) {
         const goe_camera_t *camera = &sighting.settings.camera;
         const double ahead = 1.0 - 25.0 * truth[GOE_INVERSE_RANGE];
         const double predicted[2] = {2.0 * truth[GOE_PRISM_HALF] / ahead,
-                                     (truth[GOE_PRISM_TOP] + truth[GOE_GROUND]) / ahead};
+                                     (truth[GOE_TOP] + truth[GOE_GROUND]) / ahead};
         for (size_t side = 0; side < GOE_BOX_SIDES; side++) {
             const double focal = (double)((side & 1u) != 0u ? camera->fy_px : camera->fx_px);
             const double pixel = (double)sighting.sight.side_px / focal;
@@ -343,7 +343,7 @@ static void a_start_matches_one_box(void) {
     CHECK_CLOSE(1.0e-6, q, x[GOE_INVERSE_RANGE]);
     CHECK_CLOSE(1.0e-6, 0.0, x[GOE_BEARING]);
     CHECK_CLOSE(1.0e-6, 0.05, x[GOE_PRISM_HALF]);
-    CHECK_CLOSE(1.0e-6, 20.0 * q + 0.1, x[GOE_PRISM_TOP]);
+    CHECK_CLOSE(1.0e-6, 20.0 * q + 0.1, x[GOE_TOP]);
     CHECK_CLOSE(1.0e-6, 0.0, x[GOE_GROUND]);
     const double sigma[GOE_STATES] = {bias,
                                       bias,
@@ -351,9 +351,9 @@ static void a_start_matches_one_box(void) {
                                       sqrt(0.25 + 4.0) * q, /* of the height, and of how far the ground may lie off */
                                       1.0,
                                       2.0 * q,
+                                      10.0 * (20.0 * q + 0.1),
                                       0.3,
                                       2.5 * 0.1,
-                                      10.0 * (20.0 * q + 0.1),
                                       3.0};
     for (size_t i = 0; i < GOE_STATES; i++) {
         CHECK_CLOSE(1.0e-4, 1.0, sigma[i] * (double)*goe_srif_at(&root, i, i));
@@ -366,7 +366,7 @@ static void a_start_matches_one_box(void) {
     sides.usable = GOE_SIDE_LEFT | GOE_SIDE_RIGHT; /* no foot, no head */
     TEST_ASSERT_TRUE(goe_prism_start(&sighting.sight, x, &root));
     CHECK_CLOSE(1.0e-6, 0.1 / 6.0, x[GOE_INVERSE_RANGE]); /* 6 m under 0.1 */
-    CHECK_CLOSE(1.0e-6, 20.0 * 0.1 / 6.0, x[GOE_PRISM_TOP]);
+    CHECK_CLOSE(1.0e-6, 20.0 * 0.1 / 6.0, x[GOE_TOP]);
     see_box(-0.05f, -0.1f, 0.05f, 0.02f); /* below three sigma of attitude, pixel and share */
     TEST_ASSERT_TRUE(goe_prism_start(&sighting.sight, x, &root));
     CHECK_CLOSE(1.0e-6, 0.1 / 6.0, x[GOE_INVERSE_RANGE]);
@@ -564,12 +564,12 @@ static void the_ground_gives_the_first_range(void) {
     show_tower();
     CHECK_CLOSE(0.1, 103.0, first_range_m());
     CHECK_CLOSE(1.0e-6, 0.03, first[GOE_PRISM_HALF]);
-    CHECK_CLOSE(1.0e-3, 30.3, (double)first[GOE_PRISM_TOP] * first_range_m());
+    CHECK_CLOSE(1.0e-3, 30.3, (double)first[GOE_TOP] * first_range_m());
     CHECK_SAME(0.0f, first[GOE_GROUND]);
     CHECK_SAME(0.0f, first[GOE_BEARING]);
     sides.usable &= (uint8_t)~GOE_SIDE_TOP; /* then it is taken to reach as high as the camera */
     CHECK_CLOSE(0.1, 103.0, first_range_m());
-    CHECK_CLOSE(1.0e-4, 20.0, (double)first[GOE_PRISM_TOP] / (double)first[GOE_INVERSE_RANGE]);
+    CHECK_CLOSE(1.0e-4, 20.0, (double)first[GOE_TOP] / (double)first[GOE_INVERSE_RANGE]);
 }
 
 /* GIVEN an invisible foot, or one too near to the horizon, or a height without information THEN the range is that of the prior

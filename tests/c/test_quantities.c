@@ -73,8 +73,8 @@ static void make_any(goe_phase_t phase) {
     filter.state[GOE_INVERSE_RANGE] = (float)q;
     filter.state[GOE_SIDE_X] = (float)(prism ? between(-0.5, 0.5) : between(3.0, 6.0) * (between(-1, 1) > 0 ? q : -q));
     filter.state[GOE_FRONT_X] = (float)(between(8.0, 16.0) * q);
-    filter.state[GOE_DEPTH_DIFFERENCE] = (float)(between(6.0, 12.0) * q);
-    filter.state[GOE_TOP] = (float)(prism ? 0.0 : between(8.0, 20.0) * q);
+    filter.state[GOE_DEPTH_DIFFERENCE] = (float)(prism ? 0.0 : between(6.0, 12.0) * q);
+    filter.state[GOE_TOP] = (float)(between(8.0, 20.0) * q);
     for (size_t i = 0; i < GOE_STATES; i++) {
         sigma_of[i] = i < GOE_GROUND ? 0.01 : i == GOE_INVERSE_RANGE ? 0.01 * q : 0.3 * q;
     }
@@ -512,7 +512,7 @@ static void the_altimeters_error_is_not_between_camera_and_top(void) {
         filter.inverse.element[goe_inverse_column(GOE_SIDE_X) + GOE_SIDE_X] = 1.0e-6f;
         const double q = (double)filter.state[GOE_INVERSE_RANGE];
         filter.inverse.element[goe_inverse_column(GOE_INVERSE_RANGE) + GOE_INVERSE_RANGE] = (float)(0.01 * q);
-        const double top = (double)filter.state[phases[n] == GOE_PHASE_PRISM ? GOE_PRISM_TOP : (int)GOE_TOP] / q;
+        const double top = (double)filter.state[GOE_TOP] / q;
         goe_quantities_covariance(&filter, &settings, &motion, true, 0.0f, ahead);
         CHECK_CLOSE(SHARE * 1.0e-4 * top * top, 1.0e-4 * top * top,
                     (double)ahead[GOE_HEIGHT][GOE_HEIGHT] - beyond_of(GOE_HEIGHT));
