@@ -163,6 +163,7 @@ static void add_sides(const goe_observation_t *obs, const circle_t *o, float sha
     goe_touch_open(obs, &solid);
     solid.center = o->center;
     solid.half = 0.5f * obs->state[GOE_FRONT_X];
+    solid.shear = 0.0f;
     solid.depth = solid.half;
     solid.corners = 0;
     solid.roof = goe_observation_roof(obs);

@@ -30,13 +30,13 @@ GOE_STATIC_ASSERT(GOE_STATE_COUNT == GOE_STATES, every_state_has_a_name);
 
 /* What the same places hold while the obstacle is a prism, see goe_prism.h. All over Z0. */
 enum {
-    GOE_PRISM_DEPTH = GOE_SIDE_X,              /* log of the depth along Z over the width */
-    GOE_PRISM_HALF = GOE_FRONT_X,              /* half width across Z */
-    GOE_PRISM_UNOBSERVED = GOE_DEPTH_DIFFERENCE, /* added to GOE_PRISM_DEPTH: not estimated, only its sigma counts */
-    GOE_PRISM_ESTIMATED = GOE_PRISM_UNOBSERVED /* states before this one are estimated */
+    GOE_PRISM_SHEAR = GOE_SIDE_X, /* how much deeper the right end lies than the middle */
+    GOE_PRISM_HALF = GOE_FRONT_X, /* half width across Z */
+    GOE_PRISM_DEPTH =
+        GOE_DEPTH_DIFFERENCE /* log of the depth along Z over the width: the last one, which may be considered */
 };
 
-GOE_STATIC_ASSERT(GOE_PRISM_UNOBSERVED == GOE_STATES - 1, unestimated_states_come_last);
+GOE_STATIC_ASSERT(GOE_PRISM_DEPTH == GOE_STATES - 1, the_considered_state_comes_last);
 
 /* Places of the states in goe_substitution_t. */
 enum { GOE_OF_GROUND, GOE_OF_BEARING, GOE_OF_RANGE, GOE_OF_TOP, GOE_OF_SIDE, GOE_OF_FRONT, GOE_OF_DEPTH };

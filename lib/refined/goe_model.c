@@ -102,7 +102,7 @@ void goe_model_learn(goe_filter_t *filter, goe_rows_t *rows, const goe_verdict_t
 
 float goe_model_update(goe_filter_t *filter, float nuisance_root, goe_rows_t *rows, float change[GOE_UNKNOWNS]) {
     const bool prism = filter->phase == GOE_PHASE_PRISM;
-    const float nis = prism
+    const float nis = prism && !goe_prism_knows_depth(filter)
                           ? goe_srif_update_considering(&filter->root, nuisance_root, rows->matrix, rows->count, change)
                           : goe_srif_update(&filter->root, nuisance_root, rows->matrix, rows->count, change);
     const float before = filter->state[GOE_INVERSE_RANGE];

@@ -30,13 +30,11 @@
 #define RANGE_FREEDOM 2.0f     /* ... of 1/Z0, relative */
 #define HALF_FREEDOM 2.5f      /* ... of the half width, in widths */
 #define TOP_FREEDOM 10.0f      /* ... of the top, in the larger of top and width */
-#define DEPTH_FREEDOM 0.3f     /* ... of s */
-#define DEPTH_SD 3.0f          /* one sigma of c: a factor of 20 in depth, from a plate to a wall viewed end-on */
-#define TURNED_SHARE 1.3f      /* of the width by which it changes while the line of sight turns by a radian */
-#define TURNED_MAX 0.15f       /* ... up to which: earlier images still count */
-#define ROOF_SHARE 0.15f /* of the depth beyond the width: where the point of the roof may lie that the top is over */
-#define DISC_FREEDOM 1.0e-3f  /* both, where a disc is configured */
-#define GROUND_MIN 1.0e-6f    /* one sigma of the ground's offset, units of Z0 */
+#define SHEAR_FREEDOM 0.6f     /* ... of the shear, in half widths */
+#define DEPTH_FREEDOM 1.0f   /* ... of the log of the depth: a population of masts, cars and houses, in any direction */
+#define DEPTH_TURNED 0.3f    /* sine of the turn of the line of sight from which on images give the depth */
+#define DISC_FREEDOM 1.0e-3f /* both, where a disc is configured */
+#define GROUND_MIN 1.0e-6f   /* one sigma of the ground's offset, units of Z0 */
 #define BOX_SIZE_MIN 1.0e-12f /* of a box, angular: a smaller one gives no range */
 
 GOE_STATIC_ASSERT(sizeof(((goe_filter_t *)0)->side) == GOE_BOX_SIDES * sizeof(goe_side_memory_t),
@@ -49,6 +47,7 @@ static void describe(const goe_observation_t *obs, goe_solid_t *o) {
     const float *x = obs->state;
     o->center = goe_observation_reference(obs);
     o->half = x[GOE_PRISM_HALF];
+    o->shear = x[GOE_PRISM_SHEAR];
     o->depth = o->half * goe_exp(x[GOE_PRISM_DEPTH]);
     o->corners = 0;
     o->ground = obs->steady_height_m * x[GOE_INVERSE_RANGE] + x[GOE_GROUND];
@@ -60,8 +59,7 @@ static void describe(const goe_observation_t *obs, goe_solid_t *o) {
 /*@ requires goe_observation_is_open(obs) && side < GOE_BOX_SIDES; */
 static float size_of(const goe_observation_t *obs, size_t side) {
     const float *x = obs->state;
-    return goe_touch_size(obs, side,
-                          goe_touch_is_level(side) ? x[GOE_TOP] + x[GOE_GROUND] : 2.0f * x[GOE_PRISM_HALF]);
+    return goe_touch_size(obs, side, goe_touch_is_level(side) ? x[GOE_TOP] + x[GOE_GROUND] : 2.0f * x[GOE_PRISM_HALF]);
 }
 
 /* (R29). */
@@ -76,13 +74,13 @@ static void add_side(const goe_observation_t *obs, const goe_solid_t *o, size_t 
         return;
     }
     const float outward = g.x * t.outward.x + g.z * t.outward.z;
-    const float along = o->depth * t.outward.z;
+    const float per_reach = outward / t.reach;
     goe_rows_place(by, obs, g.x, g.z);
     by[GOE_INVERSE_RANGE] += g.y * obs->steady_height_m;
-    by[GOE_PRISM_DEPTH] = outward * along * along / t.reach;
-    by[GOE_PRISM_HALF] = outward * t.reach / o->half;
+    by[GOE_PRISM_SHEAR] = per_reach * t.across * t.outward.z;
+    by[GOE_PRISM_HALF] = per_reach * (t.across * t.outward.x + t.along * t.along / o->half);
     by[GOE_TOP] = t.foot ? 0.0f : -g.y;
-    by[GOE_PRISM_UNOBSERVED] = by[GOE_PRISM_DEPTH];
+    by[GOE_PRISM_DEPTH] = per_reach * t.along * t.along;
     const float shift = -obs->position_sd * obs->state[GOE_INVERSE_RANGE];
     float *common = rows->shift[rows->count - 1u];
     common[0] = shift * g.x;
@@ -253,10 +251,10 @@ static void set_root(const goe_observation_t *obs, const float state[GOE_STATES]
     sd[GOE_GROUND] = goe_larger(height_sd_m(obs) * q, GROUND_MIN);
     sd[GOE_BEARING] = BEARING_FREEDOM;
     sd[GOE_INVERSE_RANGE] = RANGE_FREEDOM * q;
-    sd[GOE_PRISM_DEPTH] = disc ? DISC_FREEDOM : DEPTH_FREEDOM;
+    sd[GOE_PRISM_SHEAR] = (disc ? DISC_FREEDOM : SHEAR_FREEDOM) * state[GOE_PRISM_HALF];
     sd[GOE_PRISM_HALF] = HALF_FREEDOM * width;
     sd[GOE_TOP] = TOP_FREEDOM * goe_larger(goe_absolute(state[GOE_TOP]), width);
-    sd[GOE_PRISM_UNOBSERVED] = disc ? DISC_FREEDOM : DEPTH_SD;
+    sd[GOE_PRISM_DEPTH] = disc ? DISC_FREEDOM : DEPTH_FREEDOM;
     goe_srif_clear(root);
     for (size_t i = 0; i < GOE_STATES; i++) {
         root->element[goe_srif_row(i) + i] = 1.0f / sd[i];
@@ -312,12 +310,10 @@ void goe_prism_shape(const goe_filter_t *filter, goe_shape_t *shape) {
     width->by[GOE_PRISM_HALF] = 2.0f * scale_m;
 }
 
-void goe_prism_doubt(const goe_filter_t *filter, goe_xz_t camera_m, goe_shape_t *shape) {
-    const float width_m = shape->quantity[GOE_WIDTH].value;
-    const float depth_m = width_m * goe_exp(filter->state[GOE_PRISM_DEPTH]);
-    const float turned = goe_absolute(goe_shape_turned(filter, camera_m));
-    shape->width_m2 = goe_square(TURNED_SHARE * width_m * (turned < TURNED_MAX ? turned : TURNED_MAX));
-    shape->roof_m2 = goe_square(ROOF_SHARE * goe_larger(depth_m - width_m, 0.0f));
+/* -------------------------------------------------------------------------------------------------------------- depth -- */
+
+bool goe_prism_knows_depth(const goe_filter_t *filter) {
+    return goe_absolute(goe_shape_turned(filter, goe_filter_measured(filter))) > DEPTH_TURNED;
 }
 
 #endif

@@ -36,14 +36,13 @@ void goe_prism_recall(goe_filter_t *filter, const goe_observation_t *obs, goe_ro
 /*@ requires \valid(filter) && goe_rows_hold(rows) && rows->count <= GOE_BOX_SIDES; */
 void goe_prism_learn(goe_filter_t *filter, goe_rows_t *rows);
 
+/* Whether an image gives the depth: after the line of sight has turned. */
+bool goe_prism_knows_depth(const goe_filter_t *filter);
+
 /* After the update. */
 void goe_prism_follow(goe_filter_t *filter, const float change[GOE_UNKNOWNS]);
 
 /* Quantities. */
 void goe_prism_shape(const goe_filter_t *filter, goe_shape_t *shape);
-
-/* Uncertainty of the width and the height, as the footprint is no ellipse across the first line of sight, (R41): unless a disc
- * was configured. camera_m: since the filter's start. */
-void goe_prism_doubt(const goe_filter_t *filter, goe_xz_t camera_m, goe_shape_t *shape);
 
 #endif

@@ -358,9 +358,6 @@ static widening_t widening_of(const goe_filter_t *filter, const goe_settings_t *
     if (filter->phase == GOE_PHASE_DISC) {
         wider.doubt = goe_disc_doubt(filter, settings->model == GOE_MODEL_DISC, goe_filter_measured(filter), shape);
     }
-    if (filter->phase == GOE_PHASE_PRISM && settings->model != GOE_MODEL_DISC) {
-        goe_prism_doubt(filter, goe_filter_measured(filter), shape);
-    }
     goe_box_face_doubt(filter, shape);
     doubt_far_roof(filter, settings, shape);
     shape->top_m2 = shape->roof_m2 > 0.0f ? top_variance(motion, drift, shape) : 0.0f;

@@ -39,7 +39,6 @@ static GOE_NOINLINE void walk_along_z(goe_filter_t *filter, float sigma) {
     memcpy(direction, filter->state, sizeof direction);
     if (filter->phase == GOE_PHASE_PRISM) {
         direction[GOE_PRISM_DEPTH] = 0.0f;
-        direction[GOE_PRISM_UNOBSERVED] = 0.0f;
     }
     goe_srif_spread(&filter->root, direction, GOE_GROUND, GOE_STATES - 1u, sigma);
 }

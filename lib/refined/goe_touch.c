@@ -100,11 +100,11 @@ static void reach_rim(const goe_solid_t *solid, const float n[3], goe_touch_t *t
     const bool tilts = level > LEVEL_MIN;
     t->outward.x = tilts ? n[0] / level : 0.0f;
     t->outward.z = tilts ? n[2] / level : -1.0f;
-    const float across = solid->half * t->outward.x;
-    const float along = solid->depth * t->outward.z;
-    t->reach = goe_larger(sqrtf(across * across + along * along), REACH_MIN);
-    t->point[0] = solid->center.x + solid->half * across / t->reach;
-    t->point[2] = solid->center.z + solid->depth * along / t->reach;
+    t->across = solid->half * t->outward.x + solid->shear * t->outward.z;
+    t->along = solid->depth * t->outward.z;
+    t->reach = goe_larger(sqrtf(t->across * t->across + t->along * t->along), REACH_MIN);
+    t->point[0] = solid->center.x + solid->half * t->across / t->reach;
+    t->point[2] = solid->center.z + (solid->shear * t->across + solid->depth * t->along) / t->reach;
 }
 
 typedef enum { FOOT, HEAD, EITHER } end_t;

@@ -12,7 +12,7 @@
  * corners or, without corners, an ellipse. */
 typedef struct {
     goe_xz_t center;
-    float half, depth; /* of the ellipse, across and along Z */
+    float half, shear, depth; /* of the ellipse: A = (half 0; shear depth), across and along Z */
     const goe_xz_t *corner;
     size_t corners;
     float ground, roof;            /* Y */
@@ -24,7 +24,8 @@ typedef struct {
     float point[3];       /* from the camera, the state's axes */
     float x, y, nearness; /* the point in the image, focal lengths, no lens; 1/(range along the optical axis) */
     goe_xz_t outward;     /* unit normal of the plane, horizontal part */
-    float reach;          /* of the ellipse along it: the support function */
+    float across, along;  /* of the ellipse: A' outward ... */
+    float reach;          /* ... and its length, the support function */
     size_t corner;        /* of a hull: the one that is touched */
     bool foot;            /* at the foot, not at the head */
 } goe_touch_t;
