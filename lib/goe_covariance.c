@@ -75,6 +75,10 @@ float goe_latest_height_bias(const goe_estimator_t *estimator) {
 float goe_latest_reach(const goe_estimator_t *estimator) {
     return is_refined_answer(estimator) ? estimator->filter.answer.reach_m : 0.0f;
 }
+
+float goe_latest_nearer(const goe_estimator_t *estimator) {
+    return is_refined_answer(estimator) ? estimator->filter.answer.nearer_m : 0.0f;
+}
 #else
 static bool covariance_of_filter(const goe_estimator_t *estimator, bool for_hazard, float ahead_s,
                                  goe_covariance_t covariance) {
@@ -93,6 +97,11 @@ float goe_latest_height_bias(const goe_estimator_t *estimator) {
 }
 
 float goe_latest_reach(const goe_estimator_t *estimator) {
+    (void)estimator;
+    return 0.0f;
+}
+
+float goe_latest_nearer(const goe_estimator_t *estimator) {
     (void)estimator;
     return 0.0f;
 }

@@ -7,7 +7,7 @@
 typedef float goe_covariance_t[GOE_QUANTITIES][GOE_QUANTITIES];
 
 /* goe_covariance() of an estimator that is ready.
- *   for_hazard  the top's height is counted from the altimeter's zero, and correlations that are lost are allowed for
+ *   for_hazard  the top's height is counted from the altimeter's zero, the place is that of the near side (goe_quantities_covariance), and correlations that are lost are allowed for
  *   ahead_s     the place of an obstacle that moves counts that long after the latest image */
 /*@ requires estimator == \null || \valid_read(estimator);
     requires \valid(covariance + (0 .. GOE_QUANTITIES - 1)); */
@@ -22,5 +22,8 @@ float goe_latest_height_bias(const goe_estimator_t *estimator);
 /* Half of the visible extent of the obstacle about its reference point, m, also while the width is not valid; 0: not
  * known. An image without a detection, or a new start of the filter, does not reduce it. */
 float goe_latest_reach(const goe_estimator_t *estimator);
+
+/* Of a prism, by how much its near side lies nearer than that of a circle of this reach, m; negative: farther. */
+float goe_latest_nearer(const goe_estimator_t *estimator);
 
 #endif

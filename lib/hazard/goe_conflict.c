@@ -1,6 +1,8 @@
 /* Probabilities of a violation. SPDX-License-Identifier: MIT */
 #include "hazard/goe_conflict.h"
 
+#include <math.h>
+
 #include "hazard/goe_approach.h"
 #include "maths/goe_scalar.h"
 
@@ -8,6 +10,7 @@
 
 #define SIGMA_MIN 1.0e-6f
 #define SPEED_MIN_M_S 0.1f
+#define RANGE_MIN_M 1.0e-6f
 #define AHEAD_MAX_S 60.0f /* for which a velocity is taken to last */
 
 /* ------------------------------------------------------------------------------------------- sigmas and probability -- */
@@ -102,6 +105,17 @@ void goe_conflict_add_intent(const goe_estimator_t *estimator, const goe_intent_
     covariance[GOE_HEIGHT][GOE_HEIGHT] += sd_m * sd_m;
 }
 
+/* The circle about a reference point, as near as the obstacle is. */
+static void meet_near_side(const goe_estimator_t *estimator, goe_outline_t *outline) {
+    const goe_xz_t at = outline->reference;
+    const float range_m = sqrtf(goe_xz_dot(at, at));
+    const float nearer_m = goe_bounded(goe_latest_nearer(estimator));
+    const float share = (nearer_m < range_m ? nearer_m : range_m) / goe_larger(range_m, RANGE_MIN_M);
+    outline->reference.x -= share * at.x;
+    outline->reference.z -= share * at.z;
+    outline->half = goe_larger(outline->half, goe_bounded(goe_latest_reach(estimator)));
+}
+
 /* The obstacle from where the camera is now. */
 static void fly_on(const goe_course_t *course, float s, goe_outline_t *outline) {
     outline->reference.x -= course->speed_m_s * s * course->ahead.x;
@@ -116,7 +130,7 @@ void goe_conflict_foresee(const goe_estimator_t *estimator, const goe_intent_t *
     const goe_estimate_t *estimate = &estimator->estimate;
     goe_outline_of(estimate, &outline);
     if (!outline.box) {
-        outline.half = goe_larger(outline.half, goe_bounded(goe_latest_reach(estimator)));
+        meet_near_side(estimator, &outline);
     }
     goe_approach_course(&estimator->motion, intent, &course);
     fly_on(&course, intent->since_image_s, &outline);

@@ -34,6 +34,7 @@
 #define DEPTH_FREEDOM 1.0f   /* ... of the log of the depth: a population of masts, cars and houses, in any direction */
 #define DEPTH_TURNED 0.3f    /* sine of the turn of the line of sight from which on images give the depth */
 #define DISC_FREEDOM 1.0e-3f /* both, where a disc is configured */
+#define NEAR_MIN 1.0e-9f     /* of the footprint, and of its distance, units of Z0 */
 #define GROUND_MIN 1.0e-6f   /* one sigma of the ground's offset, units of Z0 */
 #define BOX_SIZE_MIN 1.0e-12f /* of a box, angular: a smaller one gives no range */
 
@@ -310,10 +311,29 @@ void goe_prism_shape(const goe_filter_t *filter, goe_shape_t *shape) {
     width->by[GOE_PRISM_HALF] = 2.0f * scale_m;
 }
 
-/* -------------------------------------------------------------------------------------------------------------- depth -- */
+/* ------------------------------------------------------------------------------------------------------ depth, near side -- */
 
 bool goe_prism_knows_depth(const goe_filter_t *filter) {
     return goe_absolute(goe_shape_turned(filter, goe_filter_measured(filter))) > DEPTH_TURNED;
+}
+
+/* (R25) along the line of sight. */
+float goe_prism_nearer(const goe_filter_t *filter, goe_xz_t camera_m, goe_xz_t *towards, float by[GOE_STATES]) {
+    const float *x = filter->state;
+    const float q = x[GOE_INVERSE_RANGE];
+    const float half = x[GOE_PRISM_HALF];
+    const goe_xz_t middle = {x[GOE_BEARING] - camera_m.x * q, 1.0f - camera_m.z * q};
+    const float range = goe_larger(sqrtf(goe_xz_dot(middle, middle)), NEAR_MIN);
+    towards->x = -middle.x / range;
+    towards->z = -middle.z / range;
+    const float across = half * towards->x + x[GOE_PRISM_SHEAR] * towards->z;
+    const float along = half * goe_exp(x[GOE_PRISM_DEPTH]) * towards->z;
+    const float reach = goe_larger(sqrtf(across * across + along * along), NEAR_MIN);
+    memset(by, 0, GOE_STATES * sizeof by[0]);
+    by[GOE_PRISM_SHEAR] = across * towards->z / reach;
+    by[GOE_PRISM_HALF] = (across * towards->x + along * along / goe_larger(half, NEAR_MIN)) / reach - 1.0f;
+    by[GOE_PRISM_DEPTH] = along * along / reach;
+    return (reach < range ? reach : range) - half;
 }
 
 #endif

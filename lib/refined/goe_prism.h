@@ -42,6 +42,11 @@ bool goe_prism_knows_depth(const goe_filter_t *filter);
 /* After the update. */
 void goe_prism_follow(goe_filter_t *filter, const float change[GOE_UNKNOWNS]);
 
+/* By how much the footprint reaches nearer to the camera than a circle of its half width about its middle: negative of a flat one,
+ * units of Z0. towards: unit vector to the camera, the state's axes. by: derivatives by the states, for a constant towards. */
+/*@ requires \valid_read(filter) && \valid(towards) && \valid(by + (0 .. GOE_STATES - 1)); */
+float goe_prism_nearer(const goe_filter_t *filter, goe_xz_t camera_m, goe_xz_t *towards, float by[GOE_STATES]);
+
 /* Quantities. */
 void goe_prism_shape(const goe_filter_t *filter, goe_shape_t *shape);
 

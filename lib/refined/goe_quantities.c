@@ -248,18 +248,13 @@ static unsigned known_now(const goe_filter_t *filter, const goe_quantities_t *q,
 
 /* --------------------------------------------------------------------------------------------------------- quantities -- */
 
-/* Addition to a prism's sigmas for other shapes than an ellipse. */
-static float doubt_of(const goe_shape_t *shape, int quantity) {
-    return quantity == GOE_WIDTH ? shape->width_m2 : (quantity == GOE_HEIGHT ? shape->top_m2 : 0.0f);
-}
-
 /* The scatter widens the sigmas; validity is decided without it, as doubt must
  * not silence an answer. */
 static void set_quantities(const goe_filter_t *filter, const goe_motion_t *motion, goe_shape_t *shape, drift_t drift,
                            const widening_t *wider, goe_quantities_t *q) {
     const float elapsed_s = since_start_s(filter, motion);
     for (int i = 0; i < GOE_QUANTITIES; i++) {
-        const float unobserved = q->prism ? goe_srif_last_variance(&filter->inverse, shape->quantity[i].by) : 0.0f;
+        const float excluded = q->prism ? goe_srif_last_variance(&filter->inverse, shape->quantity[i].by) : 0.0f;
         augmented_t augmented;
         augmented_quantity(filter, shape->quantity[i].by, i, elapsed_s, &augmented);
         float moved;
@@ -272,7 +267,6 @@ static void set_quantities(const goe_filter_t *filter, const goe_motion_t *motio
         q->value[i] = shape->quantity[i].value;
         q->sigma[i] =
             sqrtf(wider->scatter * found + given + turns * goe_square(q->sigma[GOE_ORIENTATION]) + moved * moved);
-        const float excluded = q->prism ? unobserved + doubt_of(shape, i) : 0.0f;
         q->worked_out[i] =
             sqrtf(goe_larger(found + given + turns * goe_square(q->worked_out[GOE_ORIENTATION]) - excluded, 0.0f));
     }
@@ -397,14 +391,35 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
 
 /* --------------------------------------------------------------------------------------------------------- covariance -- */
 
+static void count_from_datum(goe_shape_t *shape) {
+    shape->quantity[GOE_HEIGHT].by[GOE_GROUND] = 0.0f;
+    shape->quantity[GOE_HEIGHT].by[GOE_INVERSE_RANGE] += shape->datum_by_range;
+}
+
+/* What decides a warning is the near side, which images show, not the middle, which hangs on the depth. */
+static void meet_near_side(const goe_filter_t *filter, goe_xz_t camera_m, goe_shape_t *shape) {
+    goe_xz_t towards;
+    float by[GOE_STATES];
+    if (filter->phase != GOE_PHASE_PRISM) {
+        return;
+    }
+    const float nearer = goe_prism_nearer(filter, camera_m, &towards, by);
+    by[GOE_INVERSE_RANGE] = -shape->scale_m * nearer;
+    towards = goe_filter_into_trajectory(filter, towards);
+    for (int k = 0; k < GOE_STATES; k++) {
+        shape->quantity[GOE_X0].by[k] += towards.x * shape->scale_m * by[k];
+        shape->quantity[GOE_Z0].by[k] += towards.z * shape->scale_m * by[k];
+    }
+}
+
 void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
-                               bool from_datum, float ahead_s, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]) {
+                               bool for_hazard, float ahead_s, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]) {
     goe_shape_t shape;
     const drift_t drift = drift_of(filter, &settings->navigation, motion);
     goe_model_shape(filter, &shape);
-    if (from_datum) {
-        shape.quantity[GOE_HEIGHT].by[GOE_GROUND] = 0.0f;
-        shape.quantity[GOE_HEIGHT].by[GOE_INVERSE_RANGE] += shape.datum_by_range;
+    if (for_hazard) {
+        count_from_datum(&shape);
+        meet_near_side(filter, drift.camera_m, &shape);
     }
     const widening_t wider = widening_of(filter, settings, motion, drift, &shape);
     const float scatter = sqrtf(wider.scatter);
@@ -428,7 +443,7 @@ void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t 
             covariance[i][j] = sum;
             covariance[j][i] = sum;
         }
-        if (i <= GOE_Z0 && !from_datum) { /* the camera now has no part in it */
+        if (i <= GOE_Z0 && !for_hazard) { /* the camera now has no part in it */
             covariance[i][i] += early_variance(filter, &settings->navigation, motion);
         }
         float turns;

@@ -24,9 +24,10 @@ typedef struct {
 void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
                          goe_quantities_t *quantities);
 
-/* (R22): covariance of the six quantities, meters and radians, of the filter's present state. from_datum: the top's height
- * is counted from the altimeter's zero, not from the ground: its constant error cancels between camera and top. */
+/* (R22): covariance of the six quantities, meters and radians, of the filter's present state. for_hazard: the top's height
+ * is counted from the altimeter's zero, not from the ground: its constant error cancels between camera and top. And the place of a
+ * prism is the middle of the circle of its width that reaches as near to the camera as its footprint does. */
 void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
-                               bool from_datum, float ahead_s, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]);
+                               bool for_hazard, float ahead_s, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]);
 
 #endif

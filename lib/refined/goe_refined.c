@@ -247,6 +247,15 @@ static float reach_of(const goe_filter_t *filter) {
     return 0.5f * (x[GOE_FRONT_X] + side) / x[GOE_INVERSE_RANGE];
 }
 
+/* By how much a prism reaches nearer to the camera than that, m. */
+static float nearer_of(const goe_filter_t *filter) {
+    goe_xz_t towards;
+    float by[GOE_STATES];
+    return filter->phase == GOE_PHASE_PRISM
+               ? goe_prism_nearer(filter, goe_filter_measured(filter), &towards, by) / filter->state[GOE_INVERSE_RANGE]
+               : 0.0f;
+}
+
 /* One coordinate of the place. */
 typedef struct {
     float value, sigma;
@@ -277,6 +286,7 @@ static bool keeps_previous(const goe_filter_t *filter, const goe_motion_t *motio
 static void keep_answer(goe_filter_t *filter, const goe_navigation_t *navigation, unsigned valid) {
     goe_answer_t *answer = &filter->answer;
     const float reach_m = reach_of(filter);
+    answer->nearer_m = nearer_of(filter);
     answer->least_m = (valid & GOE_HAS_WIDTH) != 0u ? 0.0f : answer->least_m;
     if (goe_within(reach_m, REACH_MAX_M)) {
         answer->reach_m = goe_larger(reach_m, answer->least_m);

@@ -109,11 +109,13 @@ static void the_position_of_a_moving_target_grows_uncertain(void) {
 static void inputs_of_a_hazard_are_kept_with_the_answer(void) {
     goe_answer_t *answer = &estimator.filter.answer;
     answer->reach_m = 7.0f;
+    answer->nearer_m = 3.0f;
     answer->height_bias_m = 0.5f;
     estimator.filter.datum.height_m = 35.0f;
     for (int fresh = 0; fresh < 2; fresh++) {
         estimator.estimate.fresh = fresh == 1;
         CHECK_SAME(7.0f, goe_latest_reach(&estimator));
+        CHECK_SAME(3.0f, goe_latest_nearer(&estimator));
         CHECK_SAME(0.5f, goe_latest_height_bias(&estimator));
         answer->steady = false;
         CHECK_SAME(40.0f, goe_latest_camera_height(&estimator));
@@ -122,6 +124,7 @@ static void inputs_of_a_hazard_are_kept_with_the_answer(void) {
     }
     estimator.estimate.method = GOE_METHOD_WINDOW;
     CHECK_SAME(0.0f, goe_latest_reach(&estimator));
+    CHECK_SAME(0.0f, goe_latest_nearer(&estimator));
     CHECK_SAME(0.0f, goe_latest_height_bias(&estimator));
     CHECK_SAME(40.0f, goe_latest_camera_height(&estimator));
 }

@@ -3,6 +3,7 @@
  * Each variance must be that of the state's covariance, by derivatives that are taken here as differences of the values
  * themselves; unobservable depth adds to it, on purpose. */
 /* tests: lib/refined/goe_quantities.c */
+#include "refined/goe_prism.h"
 #include "refined/goe_quantities.h"
 
 #include <math.h>
@@ -79,8 +80,9 @@ static void make_any(goe_phase_t phase) {
         sigma_of[i] = i < GOE_GROUND ? 0.01 : i == GOE_INVERSE_RANGE ? 0.01 * q : 0.3 * q;
     }
     if (prism) {
+        filter.state[GOE_PRISM_SHEAR] = (float)(between(-6.0, 6.0) * q);
+        filter.state[GOE_PRISM_DEPTH] = (float)between(-0.8, 0.8);
         sigma_of[GOE_PRISM_DEPTH] = 0.1;
-        sigma_of[GOE_PRISM_UNOBSERVED] = 1.0;
     } else if (phase == GOE_PHASE_DISC) {
         filter.state[GOE_SIDE_X] = 0.0f;
         settings.model = GOE_MODEL_DISC; /* a true disc, and asked for: its condition moves nothing */
@@ -223,16 +225,6 @@ static double turned_of(void) {
     return sin(atan2(x_m, z_m) - atan((double)filter.state[GOE_BEARING]));
 }
 
-/* (R41), unless a disc is configured. */
-static double beyond_prism(int value) {
-    const double width = 2.0 * (double)filter.state[GOE_PRISM_HALF] / (double)filter.state[GOE_INVERSE_RANGE];
-    const double deeper = fmax(exp((double)filter.state[GOE_PRISM_DEPTH]) - 1.0, 0.0);
-    return settings.model == GOE_MODEL_DISC ? 0.0
-           : value == GOE_WIDTH             ? squared(1.3 * width * fmin(fabs(turned_of()), 0.15))
-           : value == GOE_HEIGHT            ? squared(0.15 * width * deeper) * below2()
-                                            : 0.0;
-}
-
 /* (R42): the ends of one face may be those of two. */
 static double beyond_face(int value) {
     goe_quantities_t q;
@@ -254,7 +246,6 @@ static double beyond_face(int value) {
 
 static double beyond_of(int value) {
     return filter.phase == GOE_PHASE_CHORD      ? beyond(value, 1.0, 0.15)
-           : filter.phase == GOE_PHASE_PRISM    ? beyond_prism(value)
            : filter.phase == GOE_PHASE_BOX_FACE ? beyond_face(value)
                                                 : 0.0;
 }
@@ -263,7 +254,7 @@ static bool is_of_corner(int quantity) { return quantity >= GOE_ORIENTATION && q
 
 /* -------------------------------------------------------------------------------------------------------------- tests -- */
 
-/* [A30, (R41), (R42)]
+/* [A30, (R42)]
  * GIVEN any state of any phase and an own motion that is exact THEN the sigma of each quantity, of the center in north and east, and
  * the covariance of the two are those of the state. */
 static void sigmas_are_those_of_the_state(void) {
@@ -311,9 +302,80 @@ static void unobserved_depth_silences_nothing(void) {
         for (int i = 0; i < GOE_QUANTITIES; i++) {
             const bool prism = phase == GOE_PHASE_PRISM;
             const double sigma = (double)(prism ? quantities.sigma[i] : with.sigma[i]);
-            const double expected = sqrt(sigma * sigma - (prism ? beyond_of(i) : 0.0)); /* that it is no ellipse, too */
-            CHECK_CLOSE(2.0e-3 * expected + 1.0e-6, expected, with.worked_out[i]);
+            CHECK_CLOSE(2.0e-3 * sigma + 1.0e-6, sigma, with.worked_out[i]);
         }
+    }
+}
+
+/* X and Z, T axes, m, of the middle of the circle of a prism's width that reaches as near along (nx, nz), the state's axes, as the
+ * farthest of many points of its rim does. */
+static void near_circle_of(double nx, double nz, double place[2]) {
+    const double q = (double)filter.state[GOE_INVERSE_RANGE];
+    const double half = (double)filter.state[GOE_PRISM_HALF];
+    double reach = 0.0;
+    for (int i = 0; i < 20000; i++) {
+        const double at = i * (6.283185307179586 / 20000);
+        const double z = (double)filter.state[GOE_PRISM_SHEAR] * sin(at) +
+                         half * exp((double)filter.state[GOE_PRISM_DEPTH]) * cos(at);
+        reach = fmax(reach, nx * half * sin(at) + nz * z);
+    }
+    const double x = ((double)filter.state[GOE_BEARING] + nx * (reach - half)) / q;
+    const double z = (1.0 + nz * (reach - half)) / q;
+    const double c = (double)filter.axes.turn_cos;
+    const double s = (double)filter.axes.turn_sin;
+    place[0] = c * x + s * z;
+    place[1] = c * z - s * x;
+}
+
+/* [goe_hazard]
+ * GIVEN any prism THEN a hazard's covariance of its place is that of the circle of its width that reaches as near to the camera as its
+ * footprint does, for a constant line of sight; and so near it does reach. */
+static void a_hazard_meets_the_near_side_of_a_prism(void) {
+    any = check_random_start("near side");
+    for (int n = 0; n < CASES; n++) {
+        double c[GOE_STATES][GOE_STATES];
+        double slope[2][GOE_STATES];
+        float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
+        float unused[GOE_STATES];
+        goe_xz_t towards;
+        make_any(GOE_PHASE_PRISM);
+        be_uncertain(CERTAIN);
+        covariance_of(c);
+        const double nearer = (double)goe_prism_nearer(&filter, goe_filter_camera(&filter, &motion), &towards, unused);
+        for (size_t k = 0; k < GOE_STATES; k++) {
+            double up[2];
+            double down[2];
+            const float at = filter.state[k];
+            const float step = (float)(0.05 * sigma_of[k]);
+            filter.state[k] = at + step;
+            const double above = (double)filter.state[k];
+            near_circle_of((double)towards.x, (double)towards.z, up);
+            filter.state[k] = at - step;
+            near_circle_of((double)towards.x, (double)towards.z, down);
+            const double wide = above - (double)filter.state[k];
+            filter.state[k] = at;
+            slope[0][k] = (up[0] - down[0]) / wide;
+            slope[1][k] = (up[1] - down[1]) / wide;
+        }
+        goe_quantities_covariance(&filter, &settings, &motion, true, 0.0f, covariance);
+        for (int i = 0; i < 2; i++) {
+            for (int j = 0; j < 2; j++) {
+                double expected = 0.0;
+                for (size_t k = 0; k < GOE_STATES; k++) {
+                    for (size_t l = 0; l < GOE_STATES; l++) {
+                        expected += slope[i][k] * c[k][l] * slope[j][l];
+                    }
+                }
+                const double size = sqrt((double)covariance[i][i] * (double)covariance[j][j]);
+                CHECK_CLOSE(2.0 * SHARE * size, expected, covariance[i][j]);
+            }
+        }
+        double place[2];
+        const double q = (double)filter.state[GOE_INVERSE_RANGE];
+        near_circle_of((double)towards.x, (double)towards.z, place);
+        const goe_xz_t middle = {filter.state[GOE_BEARING], 1.0f};
+        const goe_xz_t in_t = goe_filter_into_trajectory(&filter, middle);
+        CHECK_CLOSE(1.0e-3, fabs(nearer) / q, hypot(place[0] - (double)in_t.x / q, place[1] - (double)in_t.z / q));
     }
 }
 
@@ -665,6 +727,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(sigmas_are_those_of_the_state);
     RUN_TEST(unobserved_depth_silences_nothing);
+    RUN_TEST(a_hazard_meets_the_near_side_of_a_prism);
     RUN_TEST(a_disc_may_be_something_else);
     RUN_TEST(augmented_states_widen_the_sigmas);
     RUN_TEST(covariances_are_those_of_the_state);
