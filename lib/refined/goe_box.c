@@ -28,7 +28,7 @@
 #define EARLY 12.0f         /* (R24) */
 #define EARLY_MAX 4.0f
 #define POOR_SHARE 0.3f   /* one sigma of the depth difference, of both depths: two corners may be those of anything */
-#define FACE_RAD 0.14f    /* (R42), one sigma of what two ends are off by if they are those of two faces: orientation */
+#define FACE_RAD 0.14f    /* (R41), one sigma of what two ends are off by if they are those of two faces: orientation */
 #define FACE_WIDTH 0.06f  /* ... width, of itself */
 #define FACE_PLACE 0.1f   /* ... place, of the width */
 #define FACE_ROOF 0.15f   /* ... where the roof's nearest corner is, of the width */

@@ -42,7 +42,7 @@ bool goe_box_change(goe_filter_t *filter, const goe_observation_t *obs);
  * their true error is larger than to first order, by goe_shape_t.early, (R24). */
 void goe_box_shape(const goe_filter_t *filter, goe_shape_t *shape);
 
-/* (R42): what a single face is uncertain by, as its ends may be the outer ends of two faces. */
+/* (R41): what a single face is uncertain by, as its ends may be the outer ends of two faces. */
 void goe_box_face_doubt(const goe_filter_t *filter, goe_shape_t *shape);
 
 /* Variance of orientation (rad^2), width and length (m^2) beyond that of the state, of a box that was found by its outline:

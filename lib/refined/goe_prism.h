@@ -1,11 +1,10 @@
 /* An upright obstacle, observed by its upright bounding boxes. SPDX-License-Identifier: MIT
  *
  * A side of the box is an image line, and the plane through it and the camera touches the obstacle: left and right at an
- * upright edge's foot or head, top and bottom at the rim. The footprint is an ellipse about (X0, Z0), half widths w across
- * and w e^(s + c) along the line of sight of the first image; the support function of an ellipse is smooth, has no corners
- * to mistake, and is exact for a mast, and for a wall viewed end-on or broadside. Boxes hardly determine the depth of an
- * obstacle: s, with a prior of its own, is estimated, and c represents the remaining depth that a pilot must reckon with; it is considered,
- * never estimated. (R25) to (R29), (R33). */
+ * upright edge's foot or head, top and bottom at the rim. The footprint is an ellipse about (X0, Z0) that may turn: half
+ * width w across the line of sight of the first image, shear s, and depth w e^d along it. The support function of an ellipse is smooth
+ * and has no corners to mistake. Boxes hardly determine the depth before the line of sight has turned: until then d is considered, and
+ * estimated afterwards. (R25) to (R29), (R33). */
 #ifndef GOE_PRISM_H
 #define GOE_PRISM_H
 

@@ -330,7 +330,7 @@ static void set_velocity(const goe_filter_t *filter, const goe_settings_t *setti
 #endif
 }
 
-/* (R42): the highest point of a roof from above is a far corner, and no image shows how far while one face is visible, or a disc
+/* (R41): the highest point of a roof from above is a far corner, and no image shows how far while one face is visible, or a disc
  * substitutes for the box. */
 static void doubt_far_roof(const goe_filter_t *filter, const goe_settings_t *settings, goe_shape_t *shape) {
     const bool highest = settings->filter.top_is_highest;

@@ -225,7 +225,7 @@ static double turned_of(void) {
     return sin(atan2(x_m, z_m) - atan((double)filter.state[GOE_BEARING]));
 }
 
-/* (R42): the ends of one face may be those of two. */
+/* (R41): the ends of one face may be those of two. */
 static double beyond_face(int value) {
     goe_quantities_t q;
     goe_quantities_find(&filter, &settings, &motion, &q);
@@ -254,7 +254,7 @@ static bool is_of_corner(int quantity) { return quantity >= GOE_ORIENTATION && q
 
 /* -------------------------------------------------------------------------------------------------------------- tests -- */
 
-/* [A30, (R42)]
+/* [A30, (R41)]
  * GIVEN any state of any phase and an own motion that is exact THEN the sigma of each quantity, of the center in north and east, and
  * the covariance of the two are those of the state. */
 static void sigmas_are_those_of_the_state(void) {

@@ -30,7 +30,7 @@ typedef struct {
 static const thing_t things[] = {
     {"mast", 260.0f, 12.0f, 3.0f, 50.0f},
     {"house", 330.0f, -30.0f, 14.0f, 11.0f},
-    {"truck", 240.0f, -8.0f, 8.0f, 4.0f},
+    {"truck", 240.0f, -8.0f, 2.5f, 4.0f},
 };
 #define THINGS (sizeof things / sizeof things[0])
 
