@@ -23,8 +23,9 @@ typedef enum {
     GOE_MODEL_LINE = 3, /* the front edge of a box, from base corners; equation (3). As a setting of the filter: a box from
                          * the start */
     GOE_MODEL_BOX = 4,  /* estimate of the filter only: an upright box */
-    GOE_MODEL_PRISM = 5 /* estimate of the filter only: an upright solid observed by its bounding boxes. Its depth along the
-                         * line of sight is not known. Its width is across the line of sight of the filter's first image */
+    GOE_MODEL_PRISM = 5 /* estimate of the filter only: an upright solid observed by its bounding boxes. Its width is across
+                         * the line of sight of the filter's first image; its depth along it is unknown, and part of the sigma of
+                         * the position, until the line of sight has turned by some 17 degrees */
 } goe_model_t;
 
 /* Pinhole camera with a Brown-Conrady lens, in OpenCV's conventions, and its mounting. If all mounting angles are 0, the camera
