@@ -247,7 +247,7 @@ typedef struct {
     goe_place_t last;        /* camera in the image before, T axes */
     goe_place_t measured;    /* ... in the latest image that gave rows, the state's axes */
     float walk_s[2];         /* time since the walk of the own position was last added along X, and along Z */
-    float drift_rad2, walk2; /* variance that the attitude bias and the bearing have gained since `inverse` was taken */
+    float due_s;             /* ... since process noise was, which waits for the next image that gives rows */
     goe_candidate_t candidate;
     goe_leaving_t leaving;
     goe_health_t health;

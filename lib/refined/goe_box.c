@@ -364,12 +364,13 @@ void goe_box_clip(goe_filter_t *filter) {
 
 /* While one face is visible the other edge's length is unobservable; if it were free, relinearisation would pull it to zero.
  * So it is held until its face comes into view. */
-static void free_length(goe_filter_t *filter) {
+static void free_length(goe_filter_t *filter, const goe_observation_t *obs) {
     goe_box_edges_t edges;
     goe_box_edges(filter->state, &edges);
     float direction[GOE_STATES] = {0.0f};
     direction[GOE_SIDE_X] = filter->state[GOE_SIDE_X];
     direction[GOE_DEPTH_DIFFERENCE] = edges.side.along.z;
+    goe_observation_age(filter, obs);
     goe_srif_spread(&filter->root, direction, GOE_SIDE_X, GOE_DEPTH_DIFFERENCE, LENGTH_FREED);
     goe_filter_invert(filter);
     filter->phase = GOE_PHASE_BOX; /* the same box: what counts its images goes on */
@@ -411,8 +412,9 @@ static void exchange_root(goe_filter_t *filter, const float was[GOE_STATES]) {
     goe_srif_substitute(&filter->root, &old, &filter->rows);
 }
 
-static void exchange_names(goe_filter_t *filter) {
+static void exchange_names(goe_filter_t *filter, const goe_observation_t *obs) {
     float was[GOE_STATES];
+    goe_observation_age(filter, obs);
     memcpy(was, filter->state, sizeof was);
     exchange_state(filter->state);
     exchange_root(filter, was);
@@ -422,11 +424,11 @@ static void exchange_names(goe_filter_t *filter) {
 
 bool goe_box_change(goe_filter_t *filter, const goe_observation_t *obs) {
     if (filter->phase == GOE_PHASE_BOX_FACE && obs->base && obs->point[GOE_POINT_BASE_NEAR].usable) {
-        free_length(filter);
+        free_length(filter, obs);
         return true;
     }
     if (side_is_shorter(filter->state, goe_absolute(filter->state[GOE_SIDE_X]) * (1.0f / EXCHANGE_SLOPE))) {
-        exchange_names(filter);
+        exchange_names(filter, obs);
         return true;
     }
     return false;

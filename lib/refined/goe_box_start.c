@@ -260,15 +260,13 @@ static void scale_ground(float scale, float covariance[GOE_KEPT][GOE_KEPT]) {
 
 /* From a disc to the box of the footprint. The nuisances and the range keep their covariance; the reference moves by up to
  * the box's size, and the disc was only a stand-in. both: two faces are visible. */
-static void start_box(goe_filter_t *filter, const goe_footprint_t *box, bool both) {
+static void start_box(goe_filter_t *filter, const goe_observation_t *obs, const goe_footprint_t *box, bool both) {
     float c[GOE_KEPT][GOE_KEPT];
     float *x = filter->state;
     const float size = goe_larger(box->width, box->length);
+    goe_observation_age(filter, obs);
+    goe_srif_invert(&filter->root, &filter->inverse);
     goe_srif_marginal(&filter->inverse, c);
-    for (size_t i = GOE_BIAS_X; i <= GOE_BIAS_Z; i++) {
-        c[i][i] += filter->drift_rad2;
-    }
-    c[GOE_BEARING][GOE_BEARING] += filter->walk2;
     turn_covariance(x, box->turn_cos, box->turn_sin, c);
     c[GOE_BEARING][GOE_BEARING] =
         BEARING_GROWTH * c[GOE_BEARING][GOE_BEARING] + goe_square(BEARING_FREEDOM * size) + BEARING_FLOOR2;
@@ -287,7 +285,6 @@ static void start_box(goe_filter_t *filter, const goe_footprint_t *box, bool bot
                                                 SIZE_FREEDOM * size, SIZE_FREEDOM * size,
                                                 (both ? DEPTH_FREEDOM : DEPTH_HELD) * size};
     goe_srif_from_covariance(c, sigma, &filter->root, &filter->inverse);
-    goe_filter_settle(filter);
     filter->axes.turn_cos = box->turn_cos;
     filter->axes.turn_sin = box->turn_sin;
     goe_box_enter(filter, both ? GOE_PHASE_BOX : GOE_PHASE_BOX_FACE);
@@ -298,7 +295,7 @@ bool goe_box_start(goe_filter_t *filter, const goe_observation_t *obs) {
     if (!obs->base || obs->settings->model == GOE_MODEL_DISC || !find_box(filter, obs, &box)) {
         return false;
     }
-    start_box(filter, &box, obs->point[GOE_POINT_BASE_NEAR].usable);
+    start_box(filter, obs, &box, obs->point[GOE_POINT_BASE_NEAR].usable);
     return true;
 }
 

@@ -154,6 +154,7 @@ bool goe_chord_start(goe_filter_t *filter, const goe_observation_t *obs) {
         !(goe_filter_variance(filter, GOE_INVERSE_RANGE) < most * most) || !goe_disc_is_skewed(filter)) {
         return false;
     }
+    goe_observation_age(filter, obs);
     const float sigma = DISC_FREEDOM * filter->state[GOE_FRONT_X];
     inflate(filter, GOE_SIDE_X, sigma);
     inflate(filter, GOE_FRONT_X, sigma);
@@ -281,14 +282,17 @@ static void differentiate(const float was[GOE_STATES], const float is[GOE_STATES
     old->by[GOE_OF_TOP][GOE_OF_TOP] = scale;
 }
 
-static void become_box(goe_filter_t *filter, const float was[GOE_STATES], float side_sign, float top) {
+/* is: the state of the box. */
+static void become_box(goe_filter_t *filter, const float is[GOE_STATES], float side_sign, float top) {
     goe_substitution_t old;
+    const float *was = filter->state;
     const float length = chord_length(was);
     inflate(filter, GOE_SIDE_X, DEPTH_UNNOTICED * length);
     inflate(filter, GOE_FRONT_X, WIDTH_UNNOTICED * length);
     *goe_srif_at(&filter->root, GOE_DEPTH_DIFFERENCE, GOE_DEPTH_DIFFERENCE) = 1.0f / CORNER_RAD;
-    differentiate(was, filter->state, side_sign, &old);
+    differentiate(was, is, side_sign, &old);
     goe_srif_substitute(&filter->root, &old, &filter->rows);
+    memcpy(filter->state, is, sizeof filter->state);
     inflate(filter, GOE_SIDE_X, BOX_FREEDOM * length);
     inflate(filter, GOE_FRONT_X, BOX_FREEDOM * length);
     inflate(filter, GOE_DEPTH_DIFFERENCE, BOX_FREEDOM * length);
@@ -300,22 +304,24 @@ static void become_box(goe_filter_t *filter, const float was[GOE_STATES], float 
 
 /*@ requires \valid(filter) && goe_observation_is_open(obs) && feature < GOE_FEATURES; */
 static bool turn_face_away(goe_filter_t *filter, const goe_observation_t *obs, goe_feature_t feature) {
-    float was[GOE_STATES];
+    float is[GOE_STATES];
     goe_xz_t corner;
     if (!find_corner(obs, feature, &corner)) {
         return false;
     }
     const float top = goe_absolute(top_y(obs));
     const faces_t faces = faces_at(filter->state, corner);
-    memcpy(was, filter->state, sizeof was);
-    if (!set_box(&faces, filter->state)) {
+    memcpy(is, filter->state, sizeof is);
+    if (!set_box(&faces, is)) {
         return false;
     }
-    become_box(filter, was, faces.side_sign, top);
+    goe_observation_age(filter, obs);
+    become_box(filter, is, faces.side_sign, top);
     return true;
 }
 
-static void relearn(goe_filter_t *filter) {
+static void relearn(goe_filter_t *filter, const goe_observation_t *obs) {
+    goe_observation_age(filter, obs);
     const float sigma = END_FREEDOM * chord_length(filter->state);
     inflate(filter, GOE_SIDE_X, sigma);
     inflate(filter, GOE_FRONT_X, sigma);
@@ -334,7 +340,7 @@ bool goe_chord_change(goe_filter_t *filter, const goe_observation_t *obs) {
     const bool right = filter->leaving.turning > 0.0f;
     const bool to_left = obs->camera_m.x > filter->state[GOE_BEARING] * obs->camera_m.z;
     if (right == to_left) {
-        relearn(filter);
+        relearn(filter, obs);
         return true;
     }
     return turn_face_away(filter, obs, right ? GOE_POINT_RIGHT : GOE_POINT_LEFT);

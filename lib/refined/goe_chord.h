@@ -19,7 +19,7 @@ bool goe_chord_start(goe_filter_t *filter, const goe_observation_t *obs);
  * face turned away). */
 bool goe_chord_change(goe_filter_t *filter, const goe_observation_t *obs);
 
-/* Before the rows of an image: the roof's nearest corner may stand before the chord, and must not give the range. */
+/* Before the update: the roof's nearest corner may stand before the chord, and must not give the range. */
 void goe_chord_free_top(goe_filter_t *filter, const goe_observation_t *obs);
 
 /* Appends the rows of a chord. */

@@ -1,8 +1,10 @@
 /* Phase, root with inverse, axes. SPDX-License-Identifier: MIT */
 #include "refined/goe_filter.h"
 
+#include <math.h>
 #include <string.h>
 
+#include "maths/goe_angle.h"
 #include "maths/goe_scalar.h"
 #include "maths/goe_time.h"
 #include "refined/goe_mover.h"
@@ -42,20 +44,71 @@ void goe_filter_enter(goe_filter_t *filter, goe_phase_t phase) {
     filter->health.recent_nis = GOE_NIS_NONE; /* the first image of a phase does not count */
 }
 
-void goe_filter_settle(goe_filter_t *filter) {
-    filter->drift_rad2 = 0.0f;
-    filter->walk2 = 0.0f;
-}
-
-void goe_filter_invert(goe_filter_t *filter) {
-    goe_srif_invert(&filter->root, &filter->inverse);
-    goe_filter_settle(filter);
-}
+void goe_filter_invert(goe_filter_t *filter) { goe_srif_invert(&filter->root, &filter->inverse); }
 
 void goe_filter_inflate(goe_filter_t *filter, goe_state_index_t state, float sigma) {
     float direction[GOE_STATES];
     direction[state] = 1.0f;
     goe_srif_spread(&filter->root, direction, state, state, sigma);
+}
+
+void goe_filter_wait(goe_filter_t *filter, float since_s) {
+    filter->walk_s[0] += since_s;
+    filter->walk_s[1] += since_s;
+    filter->due_s += since_s;
+}
+
+float goe_filter_due_drift2(const goe_filter_t *filter, const goe_navigation_t *navigation) {
+    return goe_square(navigation->attitude_walk_sd_deg * GOE_RAD_PER_DEG) * filter->due_s;
+}
+
+float goe_filter_due_walk2(const goe_filter_t *filter, const goe_navigation_t *navigation) {
+    return goe_square(navigation->position_walk_sd_m * filter->state[GOE_INVERSE_RANGE]) * filter->due_s;
+}
+
+/* A step of the own position along Z rescales every length in units of Z0. Of a prism, the depth is a ratio of two. */
+static GOE_NOINLINE void walk_along_z(goe_filter_t *filter, float sigma) {
+    float direction[GOE_STATES];
+    memcpy(direction, filter->state, sizeof direction);
+    if (filter->phase == GOE_PHASE_PRISM) {
+        direction[GOE_PRISM_DEPTH] = 0.0f;
+    }
+    goe_srif_spread(&filter->root, direction, GOE_GROUND, GOE_STATES - 1u, sigma);
+}
+
+/* Along X, or along Z: for as long as it has not been. walk: per root second, units of Z0. */
+/*@ requires \valid(filter) && axis < 2; */
+static void walk_along(goe_filter_t *filter, size_t axis, float walk) {
+    const float sigma = walk * sqrtf(filter->walk_s[axis]);
+    if (!(sigma > 0.0f)) {
+        return;
+    }
+    filter->walk_s[axis] = 0.0f;
+    if (axis == 0u) {
+        goe_filter_inflate(filter, GOE_BEARING, sigma);
+    } else {
+        walk_along_z(filter, sigma);
+    }
+}
+
+/* The walk along X and Z in turn, image by image; after images without rows along both, as much is due. */
+void goe_filter_age(goe_filter_t *filter, const goe_navigation_t *navigation, float since_s) {
+    const float drift = sqrtf(goe_filter_due_drift2(filter, navigation));
+    const float walk = navigation->position_walk_sd_m * filter->state[GOE_INVERSE_RANGE];
+    const size_t first = filter->walk_s[1] > filter->walk_s[0] ? 1u : 0u;
+    if (!(filter->due_s > 0.0f)) {
+        return;
+    }
+    if (drift > 0.0f) {
+        goe_filter_inflate(filter, GOE_BIAS_X, drift);
+        goe_filter_inflate(filter, GOE_BIAS_Y, drift);
+        goe_filter_inflate(filter, GOE_BIAS_Z, drift);
+    }
+    walk_along(filter, first, walk);
+    if (filter->due_s > since_s) {
+        walk_along(filter, 1u - first, walk);
+    }
+    filter->due_s = 0.0f;
 }
 
 float goe_filter_elapsed_s(const goe_filter_t *filter, const goe_motion_t *motion) {

@@ -92,9 +92,6 @@ static inline unsigned goe_count_image(uint8_t *count) {
 
 /* ------------------------------------------------------------------------------------------------ root and inverse -- */
 
-/* Declares the inverse up to date: drift_rad2 and walk2, which are kept separately, begin at 0 again. */
-void goe_filter_settle(goe_filter_t *filter);
-
 /* Brings the inverse up to date with R. */
 void goe_filter_invert(goe_filter_t *filter);
 
@@ -106,6 +103,21 @@ void goe_filter_inflate(goe_filter_t *filter, goe_state_index_t state, float sig
 static inline float goe_filter_variance(const goe_filter_t *filter, goe_state_index_t state) {
     return goe_inverse_variance(&filter->inverse, state);
 }
+
+/* --------------------------------------------------------------------------------------------------- process noise -- */
+
+/* (R14): the bias of the attitude drifts, the own position walks. R holds the errors as of the latest image that gave rows, and so
+ * does an answer; the noise since then is due, and goes into R before the rows of the next, or before a change of the model.
+ *
+ * Time passes. */
+void goe_filter_wait(goe_filter_t *filter, float since_s);
+
+/* What is due goes into R. since_s: after the image before. */
+void goe_filter_age(goe_filter_t *filter, const goe_navigation_t *navigation, float since_s);
+
+/* Variance that is due: of each attitude bias, and of the bearing. */
+float goe_filter_due_drift2(const goe_filter_t *filter, const goe_navigation_t *navigation);
+float goe_filter_due_walk2(const goe_filter_t *filter, const goe_navigation_t *navigation);
 
 /* ------------------------------------------------------------------------------------------------------------ axes -- */
 

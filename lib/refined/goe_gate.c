@@ -66,11 +66,19 @@ static float augmented_variance(const goe_filter_t *filter, const float *row, co
 }
 #endif
 
+/* What the gate reads of the filter: the state's errors as of the latest rows, and the variance of the process noise since then. */
+typedef struct {
+    const goe_filter_t *filter;
+    float drift2; /* of each attitude bias */
+    float walk2;  /* of the bearing */
+} known_t;
+
 GOE_STATIC_ASSERT(GOE_STATES % 5 == 0, a_difference_of_rows_is_taken_by_five_states_at_a_time);
 
 /* (R16): normalized square of a row's residual, or of the difference of two rows'. */
-/*@ requires \valid_read(filter) && goe_rows_hold(rows) && row < rows->count && middle < rows->count; */
-static float innovation(const goe_filter_t *filter, const goe_rows_t *rows, size_t row, size_t middle) {
+/*@ requires \valid_read(known) && goe_rows_hold(rows) && row < rows->count && middle < rows->count; */
+static float innovation(const known_t *known, const goe_rows_t *rows, size_t row, size_t middle) {
+    const goe_filter_t *filter = known->filter;
     float weight[GOE_STATES];
     const float white = rows->white_rad;
     const float other = row == middle ? 0.0f : 1.0f;
@@ -95,14 +103,14 @@ static float innovation(const goe_filter_t *filter, const goe_rows_t *rows, size
     const float own = rows->variance[row] + other * rows->variance[middle];
     const float turned = weight[GOE_BIAS_X] * weight[GOE_BIAS_X] + weight[GOE_BIAS_Y] * weight[GOE_BIAS_Y] +
                          weight[GOE_BIAS_Z] * weight[GOE_BIAS_Z];
-    const float gained = turned * filter->drift_rad2 + weight[GOE_BEARING] * weight[GOE_BEARING] * filter->walk2;
-    float known = goe_srif_variance(&filter->inverse, weight) + gained;
+    const float due = turned * known->drift2 + weight[GOE_BEARING] * weight[GOE_BEARING] * known->walk2;
+    float variance = goe_srif_variance(&filter->inverse, weight) + due;
 #if GOE_AUGMENTED
     if (row == middle && goe_inverse_augmented(&filter->inverse) > 0) {
-        known += augmented_variance(filter, a, weight);
+        variance += augmented_variance(filter, a, weight);
     }
 #endif
-    return residual * residual / (own + white * white * attitude + known);
+    return residual * residual / (own + white * white * attitude + variance);
 }
 
 typedef struct {
@@ -120,18 +128,18 @@ static void note_odd(const goe_rows_t *rows, const group_t *group, size_t row, f
     verdict->odd_outward = more == (verdict->odd == GOE_POINT_RIGHT);
 }
 
-static void judge(const goe_settings_t *settings, const goe_filter_t *filter, const goe_rows_t *rows, bool along_x,
+static void judge(const goe_settings_t *settings, const known_t *known, const goe_rows_t *rows, bool along_x,
                   belief_t *belief) {
     group_t group;
     const float gate = settings->filter.gate_sigma;
     const float huber = settings->filter.huber_sigma;
     gather(rows, along_x, &group);
-    const float alone = group.count > 0 ? innovation(filter, rows, group.middle, group.middle) : 0.0f;
+    const float alone = group.count > 0 ? innovation(known, rows, group.middle, group.middle) : 0.0f;
     const bool common = alone <= gate * gate; /* a wrong middle is no evidence about the others */
     for (size_t i = 0; i < group.count; i++) {
         const size_t row = group.row[i];
         const size_t feature = rows->feature[row];
-        const float squared = row == group.middle ? alone : innovation(filter, rows, row, common ? group.middle : row);
+        const float squared = row == group.middle ? alone : innovation(known, rows, row, common ? group.middle : row);
         if (along_x && group.count == 2 && row != group.middle) {
             note_odd(rows, &group, row, squared, &belief->verdict);
         }
@@ -173,9 +181,11 @@ float goe_gate_repeated(const goe_settings_t *settings, const goe_filter_t *filt
 
 goe_verdict_t goe_gate_apply(const goe_settings_t *settings, const goe_filter_t *filter, goe_rows_t *rows) {
     belief_t belief = {{1.0f, 1.0f, 1.0f, 1.0f, 1.0f, 1.0f}, {0u, 0u, 0, GOE_FEATURES, 0.0f, false}};
+    const known_t known = {filter, goe_filter_due_drift2(filter, &settings->navigation),
+                           goe_filter_due_walk2(filter, &settings->navigation)};
     const float repeated = goe_gate_repeated(settings, filter);
-    judge(settings, filter, rows, true, &belief);
-    judge(settings, filter, rows, false, &belief);
+    judge(settings, &known, rows, true, &belief);
+    judge(settings, &known, rows, false, &belief);
     for (size_t i = 0; i < rows->count; i++) {
         const unsigned flag = 1u << rows->feature[i];
         const bool refused = (belief.verdict.refused & flag) != 0;

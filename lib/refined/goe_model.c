@@ -36,9 +36,9 @@ bool goe_model_start(goe_filter_t *filter, const goe_observation_t *obs, bool pr
     filter->datum.boxes = obs->sides->usable != 0;
     goe_ground_start(filter, goe_observation_height_variance(obs, filter->datum.boxes));
     memset(filter->walk_s, 0, sizeof filter->walk_s);
+    filter->due_s = 0.0f;
     filter->candidate.stand_in = false;
     goe_srif_invert_diagonal(&filter->root, &filter->inverse);
-    goe_filter_settle(filter);
     return true;
 }
 
@@ -70,7 +70,7 @@ bool goe_model_change(goe_filter_t *filter, const goe_observation_t *obs) {
     }
 }
 
-void goe_model_rows(goe_filter_t *filter, goe_observation_t *obs, goe_rows_t *rows) {
+void goe_model_rows(const goe_filter_t *filter, goe_observation_t *obs, goe_rows_t *rows) {
     if (filter->phase == GOE_PHASE_PRISM) {
         goe_prism_rows(obs, rows);
     } else if (goe_filter_is_box(filter)) {
@@ -78,7 +78,6 @@ void goe_model_rows(goe_filter_t *filter, goe_observation_t *obs, goe_rows_t *ro
         obs->two_faces = filter->phase != GOE_PHASE_BOX_FACE;
         goe_box_rows(obs, rows);
     } else if (filter->phase == GOE_PHASE_CHORD) {
-        goe_chord_free_top(filter, obs);
         goe_chord_rows(obs, rows);
     } else {
         obs->stand_in = filter->candidate.stand_in;
@@ -97,6 +96,12 @@ void goe_model_learn(goe_filter_t *filter, goe_rows_t *rows, const goe_verdict_t
         goe_chord_follow(filter, verdict);
     } else if (filter->phase == GOE_PHASE_PRISM) {
         goe_prism_learn(filter, rows);
+    }
+}
+
+void goe_model_doubt(goe_filter_t *filter, const goe_observation_t *obs) {
+    if (filter->phase == GOE_PHASE_CHORD) {
+        goe_chord_free_top(filter, obs);
     }
 }
 

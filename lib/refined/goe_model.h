@@ -16,16 +16,19 @@ bool goe_model_start(goe_filter_t *filter, const goe_observation_t *obs, bool pr
  * for more, because it costs as much as a measurement. */
 bool goe_model_change(goe_filter_t *filter, const goe_observation_t *obs);
 
-/* Prepares the filter for the rows of an image, and appends them. */
+/* Appends the rows of an image. */
 /*@ requires \valid(filter) && \valid(obs) && goe_observation_is_open(obs) && goe_rows_hold(rows);
     requires rows->count == 0; */
-void goe_model_rows(goe_filter_t *filter, goe_observation_t *obs, goe_rows_t *rows);
+void goe_model_rows(const goe_filter_t *filter, goe_observation_t *obs, goe_rows_t *rows);
 
 /* Before the gate. */
 void goe_model_recall(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows);
 
 /* After the gate. */
 void goe_model_learn(goe_filter_t *filter, goe_rows_t *rows, const goe_verdict_t *verdict);
+
+/* Before the update: what a model does not let the rows learn from those before. */
+void goe_model_doubt(goe_filter_t *filter, const goe_observation_t *obs);
 
 /* The update by whitened rows, and the consequences of the change of the state. change: of it and of the augmented states. Returns the
  * normalized innovation squared. */

@@ -18,6 +18,7 @@ typedef struct {
     const goe_sides_t *sides;
     float steady_height_m;   /* the same by the changes of down, see goe_datum_t */
     float height_sd_m;       /* one sigma of its error: of the constant one, and of the mean of all readings */
+    float since_s;           /* the image before */
     float fade;              /* what the error of a box's side keeps since the image used before */
     float white_rad;         /* one sigma of the image's own attitude error */
     float point_px, side_px; /* ... of a point, and of a box's side */
@@ -86,6 +87,12 @@ void goe_observation_project_y(const goe_observation_t *obs, float x, float y, f
 static inline float goe_observation_height_variance(const goe_observation_t *obs, bool boxes) {
     const float ground_m = boxes ? obs->settings->navigation.terrain_height_sd_m : 0.0f;
     return obs->height_sd_m * obs->height_sd_m + ground_m * ground_m;
+}
+
+/* The process noise that is due goes into the filter: before rows do, and before the model changes. */
+/*@ requires \valid(filter) && goe_observation_is_open(obs); */
+static inline void goe_observation_age(goe_filter_t *filter, const goe_observation_t *obs) {
+    goe_filter_age(filter, &obs->settings->navigation, obs->since_s);
 }
 
 /* One sigma of a pixel, focal lengths. */

@@ -33,35 +33,6 @@
 
 /* --------------------------------------------------------------------------------------------------------------- time -- */
 
-/* (R14). A step of the own position along Z rescales every length in units of Z0. Of a prism, the depth is a ratio of two. */
-static GOE_NOINLINE void walk_along_z(goe_filter_t *filter, float sigma) {
-    float direction[GOE_STATES];
-    memcpy(direction, filter->state, sizeof direction);
-    if (filter->phase == GOE_PHASE_PRISM) {
-        direction[GOE_PRISM_DEPTH] = 0.0f;
-    }
-    goe_srif_spread(&filter->root, direction, GOE_GROUND, GOE_STATES - 1u, sigma);
-}
-
-/* Along X and Z in turn, image by image: each time for as long as it has not been. */
-static void walk(goe_filter_t *filter, float walk_m, float since_s) {
-    const float q = filter->state[GOE_INVERSE_RANGE];
-    filter->walk_s[0] += since_s;
-    filter->walk_s[1] += since_s;
-    filter->walk2 += goe_square(walk_m * q) * since_s;
-    const size_t axis = filter->walk_s[1] > filter->walk_s[0] ? 1u : 0u;
-    const float sigma = walk_m * q * sqrtf(filter->walk_s[axis]);
-    if (!(sigma > 0.0f)) {
-        return;
-    }
-    filter->walk_s[axis] = 0.0f;
-    if (axis == 0u) {
-        goe_filter_inflate(filter, GOE_BEARING, sigma);
-    } else {
-        walk_along_z(filter, sigma);
-    }
-}
-
 /* Along the path, which in a turn is longer than the way to where it began. */
 static void fly_on(goe_filter_t *filter, const goe_motion_t *motion) {
     const float dx_m = motion->dx_m - filter->last.dx_m;
@@ -72,20 +43,6 @@ static void fly_on(goe_filter_t *filter, const goe_motion_t *motion) {
 #if GOE_AUGMENTED
     goe_filter_pace(filter, motion);
 #endif
-}
-
-/* (R14), process noise: the attitude's bias drifts, the own position walks. */
-static void let_time_pass(goe_filter_t *filter, const goe_navigation_t *navigation, float since_s, int64_t time_us) {
-    const float drift = navigation->attitude_walk_sd_deg * GOE_RAD_PER_DEG * sqrtf(since_s);
-    filter->time_us = time_us;
-    filter->drift_rad2 += drift * drift;
-    if (drift > 0.0f) {
-        goe_filter_inflate(filter, GOE_BIAS_X, drift);
-        goe_filter_inflate(filter, GOE_BIAS_Y, drift);
-        goe_filter_inflate(filter, GOE_BIAS_Z, drift);
-    }
-    walk(filter, navigation->position_walk_sd_m, since_s);
-    goe_ground_climb(filter, navigation);
 }
 
 /* ------------------------------------------------------------------------------------------------------------- update -- */
@@ -99,9 +56,16 @@ static void allow_for_curvature(const goe_observation_t *obs, goe_rows_t *rows) 
     }
 }
 
+/* What the rows find less certain than the image before left it; not sooner, as without them the state stays as it is. */
+static void doubt(goe_filter_t *filter, const goe_observation_t *obs) {
+    goe_ground_widen(filter);
+    goe_observation_age(filter, obs);
+    goe_ground_climb(filter, &obs->settings->navigation);
+    goe_model_doubt(filter, obs);
+}
+
 static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t *verdict, float change[GOE_UNKNOWNS]) {
     goe_rows_t rows;
-    goe_ground_widen(filter);
     goe_rows_clear(&rows, &filter->rows);
     rows.white_rad = obs->white_rad;
     goe_model_rows(filter, obs, &rows);
@@ -121,6 +85,7 @@ static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t 
     filter->answer.outdated = true;
     filter->measured.dx_m = obs->camera_m.x;
     filter->measured.dz_m = obs->camera_m.z;
+    doubt(filter, obs);
     verdict->rows += goe_ground_row(filter, obs, &rows);
     const float nis = goe_model_update(filter, 1.0f / rows.white_rad, &rows, change);
     /* Variances were inflated by (1+r)/(1-r) for the correlation in time, the scatter within one image is not: undone for the
@@ -140,14 +105,14 @@ static float outline_share(const goe_detector_t *detector, float fade) {
 
 /* What of a box's error is left since the image before; and what an image's own position error does, with the second order that
  * the uncertain range adds. */
-static void note_time(goe_filter_t *filter, float since_s, goe_observation_t *obs) {
+static void note_time(goe_filter_t *filter, goe_observation_t *obs) {
     const goe_detector_t *detector = &obs->settings->detector;
     obs->range_variance = goe_filter_variance(filter, GOE_INVERSE_RANGE);
     const float relative2 = obs->range_variance / goe_square(filter->state[GOE_INVERSE_RANGE]);
     if (filter->phase == GOE_PHASE_PRISM || obs->sides->usable != 0) {
         const bool same = filter->camera == obs->number; /* a correlation in one camera is no evidence about another */
         obs->fade = same && detector->box_correlation_time_s > 0.0f
-                        ? goe_exp(-since_s / detector->box_correlation_time_s)
+                        ? goe_exp(-obs->since_s / detector->box_correlation_time_s)
                         : 0.0f;
         obs->outline_share = outline_share(detector, obs->fade);
         filter->camera = obs->number;
@@ -175,20 +140,18 @@ static bool open_image(goe_filter_t *filter, const goe_settings_t *settings, con
 }
 
 /* Whether the obstacle has just been found to move. */
-static bool starts_to_move(goe_filter_t *filter, const goe_observation_t *obs, const float change[GOE_UNKNOWNS],
-                           float since_s) {
+static bool starts_to_move(goe_filter_t *filter, const goe_observation_t *obs, const float change[GOE_UNKNOWNS]) {
 #if GOE_AUGMENTED
-    return goe_mover_judge(filter, obs, change, since_s);
+    return goe_mover_judge(filter, obs, change, obs->since_s);
 #else
     (void)filter;
     (void)obs;
     (void)change;
-    (void)since_s;
     return false;
 #endif
 }
 
-GOE_NOINLINE static bool use_image(goe_filter_t *filter, goe_observation_t *obs, float since_s) {
+GOE_NOINLINE static bool use_image(goe_filter_t *filter, goe_observation_t *obs) {
     goe_verdict_t verdict;
     float change[GOE_UNKNOWNS];
     (void)goe_count_image(&filter->phase_images);
@@ -196,7 +159,7 @@ GOE_NOINLINE static bool use_image(goe_filter_t *filter, goe_observation_t *obs,
     if (goe_filter_is_box(filter)) {
         goe_box_clip(filter);
     }
-    const bool moves = measured && starts_to_move(filter, obs, change, since_s);
+    const bool moves = measured && starts_to_move(filter, obs, change);
     if (goe_health_judge(filter, obs->settings, verdict) || moves) {
         goe_filter_enter(filter, GOE_PHASE_NONE);
         return false;
@@ -223,16 +186,17 @@ bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, co
     if (goe_prism_is_early(filter, settings, view->motion) || !open_image(filter, settings, view, &obs, swapped)) {
         return false;
     }
-    const float since_s = goe_time_between_s(filter->time_us, view->motion->time_us, GAP_MAX_US);
+    obs.since_s = goe_time_between_s(filter->time_us, view->motion->time_us, GAP_MAX_US);
     fly_on(filter, view->motion);
-    note_time(filter, since_s, &obs);
-    let_time_pass(filter, &settings->navigation, since_s, view->motion->time_us);
+    note_time(filter, &obs);
+    goe_filter_wait(filter, obs.since_s);
+    filter->time_us = view->motion->time_us;
     goe_observation_linearise(&obs);
     if (view->seen && goe_model_change(filter, &obs)) { /* an image without a feature changes nothing but the time */
         filter->answer.outdated = true;
         return false;
     }
-    return use_image(filter, &obs, since_s);
+    return use_image(filter, &obs);
 }
 
 /* ------------------------------------------------------------------------------------------------------------- answer -- */

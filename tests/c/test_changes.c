@@ -14,6 +14,7 @@
 
 #define CASES 100
 #define STEP 1.0e-6
+#define RAD_PER_DEG 0.017453292519943295
 #define SHARE 4.0e-3 /* of a covariance's size: rounding of the root */
 
 typedef double covariance_t[GOE_STATES][GOE_STATES];
@@ -345,8 +346,10 @@ static void make_disc(bool both, goe_footprint_t *box) {
     filter.state[GOE_FRONT_X] = 0.1f;
     be_uncertain(sigma);
     goe_filter_invert(&filter);
-    filter.drift_rad2 = 4.0e-5f;
-    filter.walk2 = 3.0e-5f;
+    filter.due_s = filter.walk_s[0] = 0.5f;
+    sighting.sight.since_s = 0.5f;
+    sighting.settings.navigation.attitude_walk_sd_deg = (float)(sqrt(8.0e-5) / RAD_PER_DEG);
+    sighting.settings.navigation.position_walk_sd_m = (float)sqrt(6.0e-5) / filter.state[GOE_INVERSE_RANGE];
     for (size_t i = 0; i < 3; i++) {
         goe_point_t *p = &sighting.sight.point[GOE_POINT_BASE_LEFT + i];
         p->x = (float)xs[i];
@@ -380,7 +383,7 @@ static void turned(const double x[GOE_STATES], double to[GOE_STATES]) {
 }
 
 /* GIVEN a disc that becomes a box THEN it keeps its information on attitude, ground, place and range, with the process noise of biases and
- * place since then; the place is open again by the size of the box, as another point of it counts from now on, and the range by as
+ * place that is due; the place is open again by the size of the box, as another point of it counts from now on, and the range by as
  * much; extents are open but for the length of a single face, which nothing determines. */
 static void a_box_starts_from_the_disc(void) {
     any = check_random_start("a box starts");
@@ -417,8 +420,7 @@ static void a_box_starts_from_the_disc(void) {
         }
         CHECK_CLOSE(1.0e-6, top, filter.state[GOE_TOP]);
         CHECK_CLOSE(1.0e-6, ground, filter.state[GOE_GROUND]);
-        CHECK_SAME(0.0f, filter.drift_rad2); /* it is in the covariance now, and must not count twice */
-        CHECK_SAME(0.0f, filter.walk2);
+        CHECK_SAME(0.0f, filter.due_s); /* it is in the covariance now, and must not count twice */
         TEST_ASSERT_EQUAL_INT(both ? GOE_PHASE_BOX : GOE_PHASE_BOX_FACE, filter.phase);
     }
 }

@@ -205,7 +205,7 @@ static void correlated_errors_count_less(void) {
 }
 
 /* [(R16)] GIVEN a state that is not sure of what moves one point THEN that point may be far off; the same for what the state gained
- * since it was inverted. */
+ * since the latest rows. */
 static void an_unsure_state_opens_the_gate(void) {
     for (int n = 0; n < 3; n++) {
         setUp();
@@ -214,7 +214,9 @@ static void an_unsure_state_opens_the_gate(void) {
         if (n == 1) {
             filter.inverse.element[goe_inverse_column(GOE_BEARING) + GOE_BEARING] = 0.01f;
         } else if (n == 2) {
-            filter.walk2 = 1.0e-4f;
+            settings.navigation.position_walk_sd_m = 2.0f;
+            filter.state[GOE_INVERSE_RANGE] = 0.01f;
+            filter.due_s = 0.25f;
         }
         apply();
         TEST_ASSERT_EQUAL_HEX32(n == 0 ? 1u << rows.feature[0] : 0u, verdict.refused);
@@ -288,7 +290,7 @@ static void a_row_alone_is_judged(void) {
     TEST_ASSERT_EQUAL_INT(0, verdict.rows);
 }
 
-/* GIVEN a bias of the attitude that has drifted since the state was inverted, about whichever axis THEN a point that it moves may be
+/* GIVEN a bias of the attitude that has drifted since the latest rows, about whichever axis THEN a point that it moves may be
  * that much farther off. */
 static void a_drift_of_the_attitude_opens_the_gate(void) {
     for (size_t axis = 0; axis < 3; axis++) {
@@ -296,7 +298,8 @@ static void a_drift_of_the_attitude_opens_the_gate(void) {
             setUp();
             *residual(0) = (float)(15.0 / FOCAL_PX);
             matrix.row[0][GOE_STATE_COLUMN + GOE_BIAS_X + axis] = -1.0f;
-            filter.drift_rad2 = drifted == 1 ? 1.0e-4f : 0.0f;
+            settings.navigation.attitude_walk_sd_deg = (float)(0.02 / RAD_PER_DEG);
+            filter.due_s = drifted == 1 ? 0.25f : 0.0f;
             apply();
             TEST_ASSERT_EQUAL_HEX32(drifted == 1 ? 0u : 1u << rows.feature[0], verdict.refused);
         }

@@ -28,7 +28,7 @@ const field_t fields[] = {
     NUMBER(filter.time_us) DECIDES(filter.phase) DECIDES(filter.phase_images) DECIDES(filter.known)
     DECIDES(filter.paced) DECIDES(filter.naming) DECIDES(filter.camera) DECIDES(filter.has_datum)
     NUMBER(filter.ground_scale) NUMBER(filter.flown_m) NUMBER(filter.sloped_m) NUMBER(filter.last)
-    NUMBER(filter.walk_s) NUMBER(filter.drift_rad2) NUMBER(filter.walk2) NUMBER(filter.candidate.extent)
+    NUMBER(filter.walk_s) NUMBER(filter.due_s) NUMBER(filter.candidate.extent)
     DECIDES(filter.candidate.both) DECIDES(filter.candidate.agreeing) NUMBER(filter.leaving)
     NUMBER(filter.health.nis) NUMBER(filter.health.mean_nis) NUMBER(filter.health.excess)
     NUMBER(filter.health.recent_nis) DECIDES(filter.health.nis_rows) DECIDES(filter.health.images)
