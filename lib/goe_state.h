@@ -111,14 +111,6 @@ typedef struct {
 #endif
 } goe_triangle_t;
 
-typedef struct {
-    float element[GOE_UNKNOWNS * (GOE_UNKNOWNS + 1) /
-                  2]; /* the inverse of one, column by column; of the estimated states */
-#if GOE_AUGMENTED
-    uint8_t estimated;
-#endif
-} goe_inverse_t;
-
 /* Rows of a measurement: by the nuisances of the image (its own attitude noise about three axes), by the states, by the
  * augmented states, and the residual. */
 #define GOE_NUISANCES 3
@@ -239,15 +231,15 @@ typedef struct {
     goe_flag_t paced; /* the velocity in axes holds */
 #endif
     goe_naming_t naming;
-    uint8_t camera;          /* that took the latest image */
-    goe_flag_t has_datum;    /* the datum is that of the track's first image */
-    float ground_scale;      /* 1/Z0 for which the sigma of GOE_GROUND was set, over the present one */
-    float flown_m;           /* along the path since the filter's start, over ground */
-    float sloped_m;          /* ... up to which the ground's slope was added */
-    goe_place_t last;        /* camera in the image before, T axes */
-    goe_place_t measured;    /* ... in the latest image that gave rows, the state's axes */
-    float walk_s[2];         /* time since the walk of the own position was last added along X, and along Z */
-    float due_s;             /* ... since process noise was, which waits for the next image that gives rows */
+    uint8_t camera;       /* that took the latest image */
+    goe_flag_t has_datum; /* the datum is that of the track's first image */
+    float ground_scale;   /* 1/Z0 for which the sigma of GOE_GROUND was set, over the present one */
+    float flown_m;        /* along the path since the filter's start, over ground */
+    float sloped_m;       /* ... up to which the ground's slope was added */
+    goe_place_t last;     /* camera in the image before, T axes */
+    goe_place_t measured; /* ... in the latest image that gave rows, the state's axes */
+    float walk_s[2];      /* time since the walk of the own position was last added along X, and along Z */
+    float due_s;          /* ... since process noise was, which waits for the next image that gives rows */
     goe_candidate_t candidate;
     goe_leaving_t leaving;
     goe_health_t health;
@@ -260,8 +252,7 @@ typedef struct {
 #endif
     goe_side_memory_t side[4]; /* by goe_box_side_t */
     float state[GOE_STATES];   /* by goe_state_index_t */
-    goe_triangle_t root;       /* R: R'R is the information of the state */
-    goe_inverse_t inverse;     /* of R, after the latest image: R^-1 R^-1' is the covariance */
+    goe_triangle_t root;       /* R: R'R is the information of the state, as of the latest image that gave rows */
     goe_matrix_t rows;         /* of the image at hand */
 } goe_filter_t;
 

@@ -372,7 +372,6 @@ static void free_length(goe_filter_t *filter, const goe_observation_t *obs) {
     direction[GOE_DEPTH_DIFFERENCE] = edges.side.along.z;
     goe_observation_age(filter, obs);
     goe_srif_spread(&filter->root, direction, GOE_SIDE_X, GOE_DEPTH_DIFFERENCE, LENGTH_FREED);
-    goe_filter_invert(filter);
     filter->phase = GOE_PHASE_BOX; /* the same box: what counts its images goes on */
 }
 
@@ -418,7 +417,6 @@ static void exchange_names(goe_filter_t *filter, const goe_observation_t *obs) {
     memcpy(was, filter->state, sizeof was);
     exchange_state(filter->state);
     exchange_root(filter, was);
-    goe_filter_invert(filter);
     filter->naming.exchanged = !filter->naming.exchanged;
 }
 

@@ -265,8 +265,7 @@ static void start_box(goe_filter_t *filter, const goe_observation_t *obs, const 
     float *x = filter->state;
     const float size = goe_larger(box->width, box->length);
     goe_observation_age(filter, obs);
-    goe_srif_invert(&filter->root, &filter->inverse);
-    goe_srif_marginal(&filter->inverse, c);
+    goe_srif_marginal(&filter->root, c);
     turn_covariance(x, box->turn_cos, box->turn_sin, c);
     c[GOE_BEARING][GOE_BEARING] =
         BEARING_GROWTH * c[GOE_BEARING][GOE_BEARING] + goe_square(BEARING_FREEDOM * size) + BEARING_FLOOR2;
@@ -284,7 +283,7 @@ static void start_box(goe_filter_t *filter, const goe_observation_t *obs, const 
     const float sigma[GOE_STATES - GOE_KEPT] = {SIZE_FREEDOM * goe_larger(goe_absolute(x[GOE_TOP]), size),
                                                 SIZE_FREEDOM * size, SIZE_FREEDOM * size,
                                                 (both ? DEPTH_FREEDOM : DEPTH_HELD) * size};
-    goe_srif_from_covariance(c, sigma, &filter->root, &filter->inverse);
+    goe_srif_from_covariance(c, sigma, &filter->root);
     filter->axes.turn_cos = box->turn_cos;
     filter->axes.turn_sin = box->turn_sin;
     goe_box_enter(filter, both ? GOE_PHASE_BOX : GOE_PHASE_BOX_FACE);

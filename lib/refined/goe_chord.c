@@ -158,7 +158,6 @@ bool goe_chord_start(goe_filter_t *filter, const goe_observation_t *obs) {
     const float sigma = DISC_FREEDOM * filter->state[GOE_FRONT_X];
     inflate(filter, GOE_SIDE_X, sigma);
     inflate(filter, GOE_FRONT_X, sigma);
-    goe_filter_invert(filter);
     filter->leaving.outward = 0.0f;
     filter->leaving.turning = 0.0f;
 #if GOE_AUGMENTED
@@ -297,7 +296,6 @@ static void become_box(goe_filter_t *filter, const float is[GOE_STATES], float s
     inflate(filter, GOE_FRONT_X, BOX_FREEDOM * length);
     inflate(filter, GOE_DEPTH_DIFFERENCE, BOX_FREEDOM * length);
     inflate(filter, GOE_TOP, TOP_MOVED * top * length);
-    goe_filter_invert(filter);
     memset(filter->health.refused, 0, sizeof filter->health.refused);
     goe_box_enter(filter, GOE_PHASE_BOX_OUTLINE);
 }
@@ -325,7 +323,6 @@ static void relearn(goe_filter_t *filter, const goe_observation_t *obs) {
     const float sigma = END_FREEDOM * chord_length(filter->state);
     inflate(filter, GOE_SIDE_X, sigma);
     inflate(filter, GOE_FRONT_X, sigma);
-    goe_filter_invert(filter);
     filter->leaving.outward = 0.0f;
     filter->phase_images = 0;
 }

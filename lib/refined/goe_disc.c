@@ -283,24 +283,28 @@ bool goe_disc_start(const goe_observation_t *obs, float state[GOE_STATES], goe_t
 /* --------------------------------------------------------------------------------------------------------- quantities -- */
 
 /* Of the skew, on which the condition is. */
-static float skew_variance_of(const goe_filter_t *filter) {
-    return goe_larger(goe_filter_variance(filter, GOE_SIDE_X), VARIANCE_MIN);
+static float skew_of(const goe_filter_t *filter, float part[GOE_UNKNOWNS]) {
+    return goe_larger(goe_srif_part(&filter->root, GOE_SIDE_X, part), VARIANCE_MIN);
 }
 
 bool goe_disc_is_skewed(const goe_filter_t *filter) {
     return goe_square(filter->state[GOE_SIDE_X]) > SKEWED_SIGMAS2 * goe_filter_variance(filter, GOE_SIDE_X);
 }
 
-/* (R7): conditions the state on zero skew, which is what a disc has. */
+/* (R7): conditions the state on zero skew, which is what a disc has. Its covariance with the states is R^-1 times its part; no quantity
+ * depends on the first states. */
 static void condition_state(const goe_filter_t *filter, float x[GOE_STATES]) {
-    const float *v = filter->inverse.element;
-    const float share = filter->state[GOE_SIDE_X] / skew_variance_of(filter);
-    for (size_t i = 0; i < GOE_STATES; i++) {
-        float with_skew = 0.0f;
-        for (size_t j = i > GOE_SIDE_X ? i : GOE_SIDE_X; j < GOE_STATES; j++) {
-            with_skew += v[goe_inverse_column(j) + i] * v[goe_inverse_column(j) + GOE_SIDE_X];
+    float with_skew[GOE_UNKNOWNS];
+    const float share = filter->state[GOE_SIDE_X] / skew_of(filter, with_skew);
+    memcpy(x, filter->state, sizeof filter->state);
+    for (size_t i = GOE_STATES; i-- > GOE_UNWEIGHTED;) {
+        const float *r = &filter->root.element[goe_srif_row(i)];
+        float sum = with_skew[i];
+        for (size_t j = i + 1; j < GOE_STATES; j++) {
+            sum -= r[j] * with_skew[j];
         }
-        x[i] = filter->state[i] - with_skew * share;
+        with_skew[i] = sum / r[i];
+        x[i] -= with_skew[i] * share;
     }
 }
 
@@ -317,9 +321,11 @@ static float unlikeness(const goe_filter_t *filter, float variance, float turned
 
 goe_disc_doubt_t goe_disc_doubt(const goe_filter_t *filter, bool wanted, goe_xz_t camera_m, goe_shape_t *shape) {
     goe_disc_doubt_t doubt;
-    const float variance = skew_variance_of(filter);
+    float part[GOE_UNKNOWNS];
+    const float variance = skew_of(filter, part);
     const float skew2 = goe_square(filter->state[GOE_SIDE_X]);
     doubt.skew_variance = variance;
+    memcpy(doubt.part, part, sizeof doubt.part);
     if (wanted) {
         doubt.spread = sqrtf(goe_larger(skew2 - CHANCE_SHARE * variance, 0.0f));
         return doubt;
@@ -338,15 +344,15 @@ goe_disc_doubt_t goe_disc_doubt(const goe_filter_t *filter, bool wanted, goe_xz_
     return doubt;
 }
 
-float goe_disc_condition(const goe_filter_t *filter, const goe_disc_doubt_t *doubt, float projected[GOE_STATES]) {
-    const float *v = filter->inverse.element;
+float goe_disc_condition(const goe_disc_doubt_t *doubt, float projected[GOE_STATES]) {
+    const float *part = doubt->part;
     float along = 0.0f;
     for (size_t j = GOE_SIDE_X; j < GOE_STATES; j++) {
-        along += projected[j] * v[goe_inverse_column(j) + GOE_SIDE_X];
+        along += projected[j] * part[j];
     }
     along = along / doubt->skew_variance;
     for (size_t j = GOE_SIDE_X; j < GOE_STATES; j++) {
-        projected[j] -= along * v[goe_inverse_column(j) + GOE_SIDE_X];
+        projected[j] -= along * part[j];
     }
     return along * doubt->spread;
 }

@@ -1,4 +1,4 @@
-/* Phase, root with inverse, axes. SPDX-License-Identifier: MIT */
+/* Phase, root, process noise, axes. SPDX-License-Identifier: MIT */
 #include "refined/goe_filter.h"
 
 #include <math.h>
@@ -44,7 +44,10 @@ void goe_filter_enter(goe_filter_t *filter, goe_phase_t phase) {
     filter->health.recent_nis = GOE_NIS_NONE; /* the first image of a phase does not count */
 }
 
-void goe_filter_invert(goe_filter_t *filter) { goe_srif_invert(&filter->root, &filter->inverse); }
+float goe_filter_variance(const goe_filter_t *filter, goe_state_index_t state) {
+    float part[GOE_UNKNOWNS];
+    return goe_srif_part(&filter->root, state, part);
+}
 
 void goe_filter_inflate(goe_filter_t *filter, goe_state_index_t state, float sigma) {
     float direction[GOE_STATES];

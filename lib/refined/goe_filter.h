@@ -1,4 +1,4 @@
-/* The filter's state, its phase, its root with the inverse, and the axes in which it is counted.
+/* The filter's state, its phase, its root, and the axes in which it is counted.
  * SPDX-License-Identifier: MIT */
 #ifndef GOE_FILTER_H
 #define GOE_FILTER_H
@@ -90,19 +90,14 @@ static inline unsigned goe_count_image(uint8_t *count) {
     return *count;
 }
 
-/* ------------------------------------------------------------------------------------------------ root and inverse -- */
-
-/* Brings the inverse up to date with R. */
-void goe_filter_invert(goe_filter_t *filter);
+/* --------------------------------------------------------------------------------------------------------------- root -- */
 
 /* Adds the variance sigma^2 to a state; sigma > 0. */
 /*@ requires \valid(filter) && state < GOE_STATES; */
 void goe_filter_inflate(goe_filter_t *filter, goe_state_index_t state, float sigma);
 
 /*@ requires \valid_read(filter) && state < GOE_STATES; */
-static inline float goe_filter_variance(const goe_filter_t *filter, goe_state_index_t state) {
-    return goe_inverse_variance(&filter->inverse, state);
-}
+float goe_filter_variance(const goe_filter_t *filter, goe_state_index_t state);
 
 /* --------------------------------------------------------------------------------------------------- process noise -- */
 

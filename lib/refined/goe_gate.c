@@ -59,9 +59,9 @@ static float shift_variance(const goe_rows_t *rows, size_t row, size_t middle, f
 
 #if GOE_AUGMENTED
 /* Of the augmented states. They move the points of an image nearly equally, and are left out of their differences. */
-static float augmented_variance(const goe_filter_t *filter, const float *row, const float weight[GOE_STATES]) {
+static float augmented_variance(const goe_filter_t *filter, const float *row, const float projected[GOE_STATES]) {
     float part[GOE_AUGMENTED];
-    goe_srif_augmented(&filter->inverse, weight, &row[GOE_AUGMENTED_COLUMN], part);
+    goe_srif_augmented(&filter->root, projected, 0, &row[GOE_AUGMENTED_COLUMN], part);
     return goe_srif_augmented_dot(part, part);
 }
 #endif
@@ -69,8 +69,9 @@ static float augmented_variance(const goe_filter_t *filter, const float *row, co
 /* What the gate reads of the filter: the state's errors as of the latest rows, and the variance of the process noise since then. */
 typedef struct {
     const goe_filter_t *filter;
-    float drift2; /* of each attitude bias */
-    float walk2;  /* of the bearing */
+    float reciprocal[GOE_STATES]; /* of R */
+    float drift2;                 /* of each attitude bias */
+    float walk2;                  /* of the bearing */
 } known_t;
 
 GOE_STATIC_ASSERT(GOE_STATES % 5 == 0, a_difference_of_rows_is_taken_by_five_states_at_a_time);
@@ -104,9 +105,9 @@ static float innovation(const known_t *known, const goe_rows_t *rows, size_t row
     const float turned = weight[GOE_BIAS_X] * weight[GOE_BIAS_X] + weight[GOE_BIAS_Y] * weight[GOE_BIAS_Y] +
                          weight[GOE_BIAS_Z] * weight[GOE_BIAS_Z];
     const float due = turned * known->drift2 + weight[GOE_BEARING] * weight[GOE_BEARING] * known->walk2;
-    float variance = goe_srif_variance(&filter->inverse, weight) + due;
+    float variance = goe_srif_project(&filter->root, known->reciprocal, 0, weight) + due;
 #if GOE_AUGMENTED
-    if (row == middle && goe_inverse_augmented(&filter->inverse) > 0) {
+    if (row == middle && goe_srif_augmented_count(&filter->root) > 0) {
         variance += augmented_variance(filter, a, weight);
     }
 #endif
@@ -181,9 +182,12 @@ float goe_gate_repeated(const goe_settings_t *settings, const goe_filter_t *filt
 
 goe_verdict_t goe_gate_apply(const goe_settings_t *settings, const goe_filter_t *filter, goe_rows_t *rows) {
     belief_t belief = {{1.0f, 1.0f, 1.0f, 1.0f, 1.0f, 1.0f}, {0u, 0u, 0, GOE_FEATURES, 0.0f, false}};
-    const known_t known = {filter, goe_filter_due_drift2(filter, &settings->navigation),
-                           goe_filter_due_walk2(filter, &settings->navigation)};
     const float repeated = goe_gate_repeated(settings, filter);
+    known_t known;
+    known.filter = filter;
+    known.drift2 = goe_filter_due_drift2(filter, &settings->navigation);
+    known.walk2 = goe_filter_due_walk2(filter, &settings->navigation);
+    goe_srif_reciprocals(&filter->root, known.reciprocal);
     judge(settings, &known, rows, true, &belief);
     judge(settings, &known, rows, false, &belief);
     for (size_t i = 0; i < rows->count; i++) {

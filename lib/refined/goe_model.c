@@ -38,7 +38,6 @@ bool goe_model_start(goe_filter_t *filter, const goe_observation_t *obs, bool pr
     memset(filter->walk_s, 0, sizeof filter->walk_s);
     filter->due_s = 0.0f;
     filter->candidate.stand_in = false;
-    goe_srif_invert_diagonal(&filter->root, &filter->inverse);
     return true;
 }
 

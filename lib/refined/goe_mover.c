@@ -42,18 +42,11 @@ static void forget_augmented(goe_triangle_t *root) {
     memset(root->right, 0, sizeof root->right);
 }
 
-/* Of the inverse: the part that unknown i has in independent error j. */
-/*@ requires \valid_read(inverse) && i < GOE_AUGMENTED && j < GOE_AUGMENTED; */
-static float part_of(const goe_inverse_t *inverse, size_t i, size_t j) {
-    return i <= j ? inverse->element[goe_inverse_column(GOE_STATES + j) + GOE_STATES + i] : 0.0f;
-}
-
 void goe_mover_clear(goe_filter_t *filter) {
     memset(&filter->mover, 0, sizeof filter->mover);
     forget_augmented(&filter->root);
     *augmented_at(&filter->root, GOE_AUGMENTED_LATENCY, GOE_AUGMENTED_LATENCY) = 1.0f / LATENCY_PRIOR_S;
     filter->root.estimated = 0;
-    filter->inverse.estimated = 0;
 }
 
 void goe_mover_doubt(goe_filter_t *filter) {
@@ -90,14 +83,12 @@ void goe_mover_columns(const goe_observation_t *obs, goe_rows_t *rows) {
 /* ------------------------------------------------------------------------------------------------------------ sigmas -- */
 
 float goe_mover_variance(const goe_filter_t *filter, goe_xz_t along) {
-    const goe_inverse_t *inverse = &filter->inverse;
-    float sum = 0.0f;
-    const size_t estimated = goe_inverse_augmented(inverse);
-    for (size_t j = GOE_AUGMENTED_VELOCITY_X; j < estimated; j++) {
-        sum += goe_square(along.x * part_of(inverse, GOE_AUGMENTED_VELOCITY_X, j) +
-                          along.z * part_of(inverse, GOE_AUGMENTED_VELOCITY_Z, j));
+    const float *t = &filter->root.element[goe_srif_augmented_row()];
+    if (goe_srif_augmented_count(&filter->root) < GOE_AUGMENTED) {
+        return 0.0f;
     }
-    return sum;
+    const float x = along.x / t[3]; /* T' y = (0, along) */
+    return goe_square(x) + goe_square((along.z - t[4] * x) / t[5]);
 }
 
 float goe_mover_own_variance(const goe_navigation_t *navigation, float elapsed_s) {
@@ -106,16 +97,11 @@ float goe_mover_own_variance(const goe_navigation_t *navigation, float elapsed_s
 }
 
 float goe_mover_latency_sd(const goe_filter_t *filter) {
-    const goe_inverse_t *inverse = &filter->inverse;
     const float wider = goe_larger(filter->health.mean_nis, 1.0f);
-    float variance = 0.0f;
-    const size_t estimated = goe_inverse_augmented(inverse);
-    for (size_t j = 0; j < estimated; j++) {
-        variance += goe_square(part_of(inverse, GOE_AUGMENTED_LATENCY, j));
-    }
-    if (estimated == 0) {
-        variance = 1.0f / goe_square(filter->root.element[goe_srif_augmented_row()]);
-    }
+    float part[GOE_UNKNOWNS];
+    const float variance = goe_srif_augmented_count(&filter->root) > 0
+                               ? goe_srif_part(&filter->root, GOE_STATES + GOE_AUGMENTED_LATENCY, part)
+                               : 1.0f / goe_square(filter->root.element[goe_srif_augmented_row()]);
     return sqrtf(wider * variance);
 }
 

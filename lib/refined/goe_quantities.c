@@ -99,16 +99,10 @@ static float drift_variance(const goe_motion_t *motion, drift_t drift, const goe
 
 /* What an answer is less certain by than the filter. */
 typedef struct {
-    float scatter; /* factor on the variance of what it found, (R34) */
+    float scatter;                /* factor on the variance of what it found, (R34) */
+    float reciprocal[GOE_STATES]; /* of R, for the projections */
     goe_disc_doubt_t doubt;
 } widening_t;
-
-/* Derivatives become those in terms of independent unit errors: their squared norm is the variance. Returns what the condition
- * that makes a disc moved the quantity by, (R7). */
-static float project(const goe_filter_t *filter, const widening_t *wider, float by[GOE_STATES]) {
-    goe_srif_project(&filter->inverse, by);
-    return filter->phase == GOE_PHASE_DISC ? goe_disc_condition(filter, &wider->doubt, by) : 0.0f;
-}
 
 static float dot(const float a[GOE_STATES], const float b[GOE_STATES], float sum) {
     for (size_t k = 0; k < GOE_STATES; k++) {
@@ -117,22 +111,10 @@ static float dot(const float a[GOE_STATES], const float b[GOE_STATES], float sum
     return sum;
 }
 
-GOE_STATIC_ASSERT(GOE_GROUND == GOE_UNWEIGHTED, no_quantity_depends_on_the_attitude_bias);
-
-/* The derivatives are used up. *moved: what a disc's condition moves it by, see project(). */
-static float variance_of(const goe_filter_t *filter, const widening_t *wider, float by[GOE_STATES], float *moved) {
-    *moved = 0.0f;
-    if (filter->phase != GOE_PHASE_DISC) {
-        return goe_srif_variance_of_rest(&filter->inverse, by);
-    }
-    *moved = project(filter, wider, by);
-    return dot(by, by, 0.0f);
-}
-
 /* ------------------------------------------------------------------------------------------------- augmented --------- */
 
-/* The contribution of the augmented states, as independent unit errors. at_s: the place counts that long after the filter's start,
- * and (x, z), T axes, is its derivative by the place there; it matters of an obstacle that is followed. */
+/* The contribution of the augmented states, as independent unit errors; by: projected. at_s: the place counts that long after the
+ * filter's start, and (x, z), T axes, is its derivative by the place there; it matters of an obstacle that is followed. */
 #if GOE_AUGMENTED
 typedef struct {
     float part[GOE_AUGMENTED];
@@ -145,7 +127,7 @@ static float since_start_s(const goe_filter_t *filter, const goe_motion_t *motio
 static void augmented_of(const goe_filter_t *filter, const float by[GOE_STATES], float x, float z, float at_s,
                          augmented_t *augmented) {
     const float direct[GOE_AUGMENTED] = {0.0f, x * at_s, z * at_s};
-    goe_srif_augmented(&filter->inverse, by, filter->mover.followed ? direct : NULL, augmented->part);
+    goe_srif_augmented(&filter->root, by, GOE_UNWEIGHTED, filter->mover.followed ? direct : NULL, augmented->part);
 }
 
 static float augmented_dot(const augmented_t *a, const augmented_t *b) {
@@ -188,11 +170,32 @@ static void augmented_scale(const augmented_t *augmented, float factor) {
 }
 #endif
 
-/*@ requires \valid_read(filter) && \valid_read(by + (0 .. GOE_STATES - 1)) && \valid(augmented);
-    requires 0 <= quantity < GOE_QUANTITIES; */
-static void augmented_quantity(const goe_filter_t *filter, const float by[GOE_STATES], int quantity, float at_s,
-                               augmented_t *augmented) {
-    augmented_of(filter, by, quantity == GOE_X0 ? 1.0f : 0.0f, quantity == GOE_Z0 ? 1.0f : 0.0f, at_s, augmented);
+/* ------------------------------------------------------------------------------------------------------- projection -- */
+
+GOE_STATIC_ASSERT(GOE_GROUND == GOE_UNWEIGHTED, no_quantity_depends_on_the_attitude_bias);
+
+/* Where the place counts of which a quantity is made, see augmented_of(). */
+typedef struct {
+    float x, z, at_s;
+} counted_t;
+
+static counted_t counted_of(int quantity, float at_s) {
+    const counted_t counted = {quantity == GOE_X0 ? 1.0f : 0.0f, quantity == GOE_Z0 ? 1.0f : 0.0f, at_s};
+    return counted;
+}
+
+/* The derivatives become those in terms of independent unit errors, with those of the augmented states: their squared norm is the
+ * variance, which it returns. *moved: what the condition that makes a disc moves the quantity by, (R7). */
+static float project(const goe_filter_t *filter, const widening_t *wider, const counted_t *counted,
+                     float by[GOE_STATES], augmented_t *augmented, float *moved) {
+    float variance = goe_srif_project(&filter->root, wider->reciprocal, GOE_UNWEIGHTED, by);
+    *moved = 0.0f;
+    augmented_of(filter, by, counted->x, counted->z, counted->at_s, augmented);
+    if (filter->phase == GOE_PHASE_DISC) {
+        *moved = goe_disc_condition(&wider->doubt, by);
+        variance = dot(by, by, 0.0f);
+    }
+    return variance + augmented_dot(augmented, augmented);
 }
 
 /* ---------------------------------------------------------------------------------------------------------- validity -- */
@@ -254,13 +257,13 @@ static void set_quantities(const goe_filter_t *filter, const goe_motion_t *motio
                            const widening_t *wider, goe_quantities_t *q) {
     const float elapsed_s = since_start_s(filter, motion);
     for (int i = 0; i < GOE_QUANTITIES; i++) {
-        const float excluded = q->prism ? goe_srif_last_variance(&filter->inverse, shape->quantity[i].by) : 0.0f;
+        float *by = shape->quantity[i].by;
+        const counted_t counted = counted_of(i, elapsed_s);
         augmented_t augmented;
-        augmented_quantity(filter, shape->quantity[i].by, i, elapsed_s, &augmented);
         float moved;
         const float found =
-            (variance_of(filter, wider, shape->quantity[i].by, &moved) + augmented_dot(&augmented, &augmented)) *
-            (depends_on_corner(i) ? shape->early : 1.0f);
+            project(filter, wider, &counted, by, &augmented, &moved) * (depends_on_corner(i) ? shape->early : 1.0f);
+        const float excluded = q->prism ? goe_srif_last_variance(by) : 0.0f;
         float turns; /* with the orientation, whose own sigma comes first */
         const float given = drift_variance(motion, drift, shape, q->box, i) +
                             goe_box_outline_variance(filter, shape, drift.camera_m, i, &turns);
@@ -292,9 +295,9 @@ static void set_center(const goe_filter_t *filter, const goe_motion_t *motion, c
     for (int i = 0; i < (disc ? 2 : 3); i++) {
         const goe_xz_t along = {i == 0 ? -s : (i == 1 ? c : c - s), i == 0 ? c : (i == 1 ? s : c + s)};
         const goe_xz_t in_trajectory = goe_filter_into_trajectory(filter, along);
+        const counted_t counted = {in_trajectory.x, in_trajectory.z, elapsed_s};
         goe_shape_place(&shape->middle, shape->scale_m, along.x, along.z, by[i]);
-        augmented_of(filter, by[i], in_trajectory.x, in_trajectory.z, elapsed_s, &augmented[i]);
-        const float found = variance_of(filter, wider, by[i], &moved[i]) + augmented_dot(&augmented[i], &augmented[i]);
+        const float found = project(filter, wider, &counted, by[i], &augmented[i], &moved[i]);
         variance[i] = wider->scatter * found + moved[i] * moved[i];
     }
     q->center_sd_m[0] = sqrtf(variance[0] + drifted);
@@ -347,8 +350,7 @@ static widening_t widening_of(const goe_filter_t *filter, const goe_settings_t *
                               drift_t drift, goe_shape_t *shape) {
     widening_t wider;
     wider.scatter = goe_scatter_factor(filter, goe_gate_repeated(settings, filter));
-    wider.doubt.skew_variance = 0.0f;
-    wider.doubt.spread = 0.0f;
+    goe_srif_reciprocals(&filter->root, wider.reciprocal);
     if (filter->phase == GOE_PHASE_DISC) {
         wider.doubt = goe_disc_doubt(filter, settings->model == GOE_MODEL_DISC, goe_filter_measured(filter), shape);
     }
@@ -429,8 +431,8 @@ void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t 
     augmented_t augmented[GOE_QUANTITIES];
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         float *by = shape.quantity[i].by;
-        augmented_quantity(filter, by, i, elapsed_s, &augmented[i]);
-        moved[i] = project(filter, &wider, by);
+        const counted_t counted = counted_of(i, elapsed_s);
+        (void)project(filter, &wider, &counted, by, &augmented[i], &moved[i]);
         const float factor = depends_on_corner(i) ? early : scatter;
         for (int k = 0; k < GOE_STATES; k++) {
             by[k] *= factor;

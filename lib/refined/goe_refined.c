@@ -167,7 +167,6 @@ GOE_NOINLINE static bool use_image(goe_filter_t *filter, goe_observation_t *obs)
     if (!measured) {
         return false;
     }
-    goe_filter_invert(filter);
     if (goe_filter_is_box(filter)) {
         goe_box_name(filter);
     }

@@ -1,4 +1,4 @@
-/* Square-root information filter: reflections, inverse, process noise. SPDX-License-Identifier: MIT
+/* Square-root information filter: reflections, process noise, variances. SPDX-License-Identifier: MIT
  *
  * The sign of the diagonal of R is free; nothing depends on it. */
 #include "refined/goe_srif.h"
@@ -246,168 +246,146 @@ void goe_srif_spread(goe_triangle_t *root, const float direction[GOE_STATES], si
     }
 }
 
-/* ------------------------------------------------------------------------------------------------ inverse, covariance -- */
+/* ---------------------------------------------------------------------------------------------------------- variances -- */
 
-/*@ requires \valid_read(a + (0 .. count - 1)) && \valid_read(b + (0 .. count - 1)); */
-static float dot_run(const float *a, const float *b, size_t count) {
-    float sum = 0.0f;
-    for (size_t i = 0; i < count; i++) {
-        sum += a[i] * b[i];
-    }
-    return sum;
-}
-
-float goe_inverse_variance(const goe_inverse_t *inverse, size_t state) {
-    const size_t count = goe_inverse_count(inverse);
-    float sum = 0.0f;
-    for (size_t j = state; j < count; j++) {
-        const float v = inverse->element[goe_inverse_column(j) + state];
-        sum += v * v;
-    }
-    return sum;
-}
-
-GOE_STATIC_ASSERT(GOE_UNWEIGHTED == 3, as_many_elements_of_a_column_are_left_0);
-
-/* Column j of the inverse solves R v = (0 ... 1 at j ... 0)'. Of a column of the augmented states the first GOE_UNWEIGHTED elements, which
- * no quantity depends on, are left 0. */
-/*@ requires \valid_read(root) && \valid(inverse) && first <= GOE_STATES; */
-static void invert_from(const goe_triangle_t *root, size_t first, goe_inverse_t *inverse) {
+/* A row of R takes its element of the solution out of those behind it. */
+float goe_srif_part(const goe_triangle_t *root, size_t unknown, float part[GOE_UNKNOWNS]) {
     const size_t count = goe_srif_count(root);
-    float *v = &inverse->element[goe_inverse_column(first)];
-    for (size_t j = first; j < count; j++) {
-        const size_t top = j < GOE_STATES ? 0 : GOE_UNWEIGHTED;
-        if (top > 0) { /* written out: the compiler would call memset() for every column */
-            v[0] = 0.0f;
-            v[1] = 0.0f;
-            v[2] = 0.0f;
+    float variance = 0.0f;
+    goe_srif_zero(part, 0);
+    part[unknown] = 1.0f;
+    for (size_t i = unknown; i < count; i++) {
+        const float *r = &root->element[goe_srif_row(i)];
+        const float solved = part[i] / r[i];
+        part[i] = solved;
+        variance += solved * solved;
+        for (size_t j = i + 1; j < count; j++) {
+            part[j] -= r[j] * solved;
         }
-        v[j] = 1.0f / root->element[goe_srif_row(j) + j];
-        for (size_t i = j; i-- > top;) {
-            const float *r = &root->element[goe_srif_row(i)];
-            v[i] = -(dot_run(&r[i + 1], &v[i + 1], j - i) * inverse->element[goe_inverse_column(i) + i]);
-        }
-        v += j + 1;
     }
-#if GOE_AUGMENTED
-    inverse->estimated = (uint8_t)goe_srif_augmented_count(root);
-#endif
+    return variance;
 }
 
-void goe_srif_invert(const goe_triangle_t *root, goe_inverse_t *inverse) { invert_from(root, 0, inverse); }
-
-void goe_srif_invert_diagonal(const goe_triangle_t *root, goe_inverse_t *inverse) {
-    memset(inverse, 0, sizeof *inverse);
+void goe_srif_reciprocals(const goe_triangle_t *root, float reciprocal[GOE_STATES]) {
     for (size_t i = 0; i < GOE_STATES; i++) {
-        inverse->element[goe_inverse_column(i) + i] = 1.0f / root->element[goe_srif_row(i) + i];
+        reciprocal[i] = 1.0f / root->element[goe_srif_row(i) + i];
     }
-    invert_from(root, GOE_STATES, inverse);
 }
 
-GOE_STATIC_ASSERT(GOE_STATES == 10, the_variance_is_written_out_for_ten_states);
+GOE_STATIC_ASSERT(GOE_STATES == 10 && GOE_UNWEIGHTED == 3, the_projection_is_written_out_for_ten_states);
 
-/* Written out: this is done for every row and every quantity of every image. */
-float goe_srif_variance(const goe_inverse_t *inverse, const float weight[GOE_STATES]) {
-    const float *v = inverse->element;
-    const float w0 = weight[0], w1 = weight[1], w2 = weight[2], w3 = weight[3], w4 = weight[4];
-    const float w5 = weight[5], w6 = weight[6], w7 = weight[7], w8 = weight[8], w9 = weight[9];
-    float p = w0 * v[0];
-    float sum = p * p;
-    p = w0 * v[1] + w1 * v[2];
-    sum += p * p;
-    p = w0 * v[3] + w1 * v[4] + w2 * v[5];
-    sum += p * p;
-    p = w0 * v[6] + w1 * v[7] + w2 * v[8] + w3 * v[9];
-    sum += p * p;
-    p = w0 * v[10] + w1 * v[11] + w2 * v[12] + w3 * v[13] + w4 * v[14];
-    sum += p * p;
-    p = w0 * v[15] + w1 * v[16] + w2 * v[17] + w3 * v[18] + w4 * v[19] + w5 * v[20];
-    sum += p * p;
-    p = w0 * v[21] + w1 * v[22] + w2 * v[23] + w3 * v[24] + w4 * v[25] + w5 * v[26] + w6 * v[27];
-    sum += p * p;
-    p = w0 * v[28] + w1 * v[29] + w2 * v[30] + w3 * v[31] + w4 * v[32] + w5 * v[33] + w6 * v[34] + w7 * v[35];
-    sum += p * p;
-    p = w0 * v[36] + w1 * v[37] + w2 * v[38] + w3 * v[39] + w4 * v[40] + w5 * v[41] + w6 * v[42] + w7 * v[43] +
-        w8 * v[44];
-    sum += p * p;
-    p = w0 * v[45] + w1 * v[46] + w2 * v[47] + w3 * v[48] + w4 * v[49] + w5 * v[50] + w6 * v[51] + w7 * v[52] +
-        w8 * v[53] + w9 * v[54];
-    return sum + p * p;
+/*@ requires \valid_read(root) && i <= j < GOE_STATES; */
+static GOE_INLINE float r_at(const goe_triangle_t *root, size_t i, size_t j) {
+    return root->element[goe_srif_row(i) + j];
 }
 
-GOE_STATIC_ASSERT(GOE_UNWEIGHTED == 3, the_variance_of_the_rest_is_written_out_from_the_fourth_state);
+/* What the first GOE_UNWEIGHTED elements, already solved, take out of element j. */
+/*@ requires \valid_read(root) && \valid_read(y + (0 .. GOE_UNWEIGHTED - 1)) && GOE_UNWEIGHTED <= j < GOE_STATES; */
+static GOE_INLINE float taken(const goe_triangle_t *root, const float y[GOE_STATES], size_t j) {
+    return r_at(root, 0, j) * y[0] + r_at(root, 1, j) * y[1] + r_at(root, 2, j) * y[2];
+}
 
-float goe_srif_variance_of_rest(const goe_inverse_t *inverse, const float weight[GOE_STATES]) {
-    const float *v = inverse->element;
-    const float w3 = weight[3], w4 = weight[4], w5 = weight[5], w6 = weight[6];
-    const float w7 = weight[7], w8 = weight[8], w9 = weight[9];
-    float p = w3 * v[9];
-    float sum = p * p;
-    p = w3 * v[13] + w4 * v[14];
-    sum += p * p;
-    p = w3 * v[18] + w4 * v[19] + w5 * v[20];
-    sum += p * p;
-    p = w3 * v[24] + w4 * v[25] + w5 * v[26] + w6 * v[27];
-    sum += p * p;
-    p = w3 * v[31] + w4 * v[32] + w5 * v[33] + w6 * v[34] + w7 * v[35];
-    sum += p * p;
-    p = w3 * v[39] + w4 * v[40] + w5 * v[41] + w6 * v[42] + w7 * v[43] + w8 * v[44];
-    sum += p * p;
-    p = w3 * v[48] + w4 * v[49] + w5 * v[50] + w6 * v[51] + w7 * v[52] + w8 * v[53] + w9 * v[54];
-    return sum + p * p;
+/* The elements up to there. */
+/*@ requires \valid_read(root) && \valid_read(k + (0 .. GOE_STATES - 1)) && \valid(y + (0 .. GOE_STATES - 1)); */
+static GOE_INLINE float project_first(const goe_triangle_t *root, const float k[GOE_STATES], float y[GOE_STATES]) {
+    y[0] *= k[0];
+    y[1] = (y[1] - r_at(root, 0, 1) * y[0]) * k[1];
+    y[2] = (y[2] - r_at(root, 0, 2) * y[0] - r_at(root, 1, 2) * y[1]) * k[2];
+    y[3] -= taken(root, y, 3);
+    y[4] -= taken(root, y, 4);
+    y[5] -= taken(root, y, 5);
+    y[6] -= taken(root, y, 6);
+    y[7] -= taken(root, y, 7);
+    y[8] -= taken(root, y, 8);
+    y[9] -= taken(root, y, 9);
+    return y[0] * y[0] + y[1] * y[1] + y[2] * y[2];
+}
+
+/* Forward substitution, written out: it is done for every row and every quantity of every image. */
+float goe_srif_project(const goe_triangle_t *root, const float reciprocal[GOE_STATES], size_t first,
+                       float weight[GOE_STATES]) {
+    const float *k = reciprocal;
+    float *w = weight;
+    float sum = first < GOE_UNWEIGHTED ? project_first(root, k, w) : 0.0f;
+    const float y3 = w[3] * k[3];
+    const float y4 = (w[4] - r_at(root, 3, 4) * y3) * k[4];
+    const float y5 = (w[5] - r_at(root, 3, 5) * y3 - r_at(root, 4, 5) * y4) * k[5];
+    const float y6 = (w[6] - r_at(root, 3, 6) * y3 - r_at(root, 4, 6) * y4 - r_at(root, 5, 6) * y5) * k[6];
+    const float y7 =
+        (w[7] - r_at(root, 3, 7) * y3 - r_at(root, 4, 7) * y4 - r_at(root, 5, 7) * y5 - r_at(root, 6, 7) * y6) * k[7];
+    const float y8 = (w[8] - r_at(root, 3, 8) * y3 - r_at(root, 4, 8) * y4 - r_at(root, 5, 8) * y5 -
+                      r_at(root, 6, 8) * y6 - r_at(root, 7, 8) * y7) *
+                     k[8];
+    const float y9 = (w[9] - r_at(root, 3, 9) * y3 - r_at(root, 4, 9) * y4 - r_at(root, 5, 9) * y5 -
+                      r_at(root, 6, 9) * y6 - r_at(root, 7, 9) * y7 - r_at(root, 8, 9) * y8) *
+                     k[9];
+    w[3] = y3;
+    w[4] = y4;
+    w[5] = y5;
+    w[6] = y6;
+    w[7] = y7;
+    w[8] = y8;
+    w[9] = y9;
+    sum += y3 * y3;
+    sum += y4 * y4;
+    sum += y5 * y5;
+    sum += y6 * y6;
+    sum += y7 * y7;
+    sum += y8 * y8;
+    return sum + y9 * y9;
 }
 
 #if GOE_AUGMENTED
-GOE_STATIC_ASSERT(GOE_AUGMENTED == 3, augmented_states_are_cleared_by_three_writes);
+GOE_STATIC_ASSERT(GOE_AUGMENTED == 3, augmented_states_are_written_out);
 
-/* Written out, as above. */
-void goe_srif_augmented(const goe_inverse_t *inverse, const float weight[GOE_STATES], const float direct[GOE_AUGMENTED],
-                        float part[GOE_AUGMENTED]) {
-    const size_t count = goe_inverse_augmented(inverse);
+void goe_srif_augmented(const goe_triangle_t *root, const float projected[GOE_STATES], size_t first,
+                        const float direct[GOE_AUGMENTED], float part[GOE_AUGMENTED]) {
+    const size_t count = goe_srif_augmented_count(root);
+    const float *t = &root->element[goe_srif_augmented_row()];
+    float p[GOE_AUGMENTED] = {0.0f, 0.0f, 0.0f};
     part[0] = 0.0f;
     part[1] = 0.0f;
     part[2] = 0.0f;
-    for (size_t j = 0; j < count; j++) {
-        const float *v = &inverse->element[goe_inverse_column(GOE_STATES + j)];
-        float sum = weight[3] * v[3] + weight[4] * v[4] + weight[5] * v[5] + weight[6] * v[6] + weight[7] * v[7] +
-                    weight[8] * v[8] + weight[9] * v[9];
-        for (size_t k = 0; k <= j && direct; k++) {
-            sum += direct[k] * v[GOE_STATES + k];
-        }
-        part[j] = sum;
+    if (count == 0) {
+        return;
+    }
+    if (direct) {
+        p[0] = direct[0];
+        p[1] = direct[1];
+        p[2] = direct[2];
+    }
+    for (size_t i = first; i < GOE_STATES; i++) {
+        const float *r = &root->element[goe_srif_row(i) + GOE_STATES];
+        p[0] -= r[0] * projected[i];
+        p[1] -= r[1] * projected[i];
+        p[2] -= r[2] * projected[i];
+    }
+    part[0] = p[0] / t[0];
+    if (count > 1) {
+        part[1] = (p[1] - t[1] * part[0]) / t[3];
+    }
+    if (count > 2) {
+        part[2] = (p[2] - t[2] * part[0] - t[4] * part[1]) / t[5];
     }
 }
 #endif
 
-float goe_srif_last_variance(const goe_inverse_t *inverse, const float weight[GOE_STATES]) {
-    const float last = dot_run(weight, &inverse->element[goe_inverse_column(GOE_STATES - 1)], GOE_STATES);
-    return last * last;
-}
-
-/* From the last one on, as element j needs the weights up to j. */
-void goe_srif_project(const goe_inverse_t *inverse, float weight[GOE_STATES]) {
-    for (size_t j = GOE_STATES; j-- > GOE_UNWEIGHTED;) {
-        const float *column = &inverse->element[goe_inverse_column(j)];
-        weight[j] = dot_run(&weight[GOE_UNWEIGHTED], &column[GOE_UNWEIGHTED], j + 1 - GOE_UNWEIGHTED);
-    }
-}
-
-void goe_srif_marginal(const goe_inverse_t *inverse, float covariance[GOE_KEPT][GOE_KEPT]) {
-    memset(covariance, 0, GOE_KEPT * GOE_KEPT * sizeof(float));
-    const size_t count = goe_inverse_count(inverse);
-    for (size_t k = 0; k < count; k++) {
-        const float *v = &inverse->element[goe_inverse_column(k)];
-        const size_t last = k < GOE_KEPT ? k : GOE_KEPT - 1u;
-        for (size_t i = 0; i <= last; i++) {
-            for (size_t j = i; j <= last; j++) {
-                covariance[i][j] += v[i] * v[j];
+void goe_srif_marginal(const goe_triangle_t *root, float covariance[GOE_KEPT][GOE_KEPT]) {
+    float part[GOE_KEPT][GOE_UNKNOWNS];
+    for (size_t j = 0; j < GOE_KEPT; j++) {
+        covariance[j][j] = goe_srif_part(root, j, part[j]);
+        for (size_t i = 0; i < j; i++) {
+            float sum = 0.0f;
+            for (size_t k = j; k < GOE_UNKNOWNS; k++) {
+                sum += part[i][k] * part[j][k];
             }
+            covariance[i][j] = sum;
         }
     }
 }
 
 /* Cholesky from the last column, C = U U' with U upper triangular: U is the inverse of R. */
-static void factorise(float c[GOE_KEPT][GOE_KEPT], goe_inverse_t *inverse) {
+static void factorise(float c[GOE_KEPT][GOE_KEPT]) {
     for (size_t j = GOE_KEPT; j-- > 0;) {
         float pivot = c[j][j];
         for (size_t k = j + 1; k < GOE_KEPT; k++) {
@@ -415,17 +393,14 @@ static void factorise(float c[GOE_KEPT][GOE_KEPT], goe_inverse_t *inverse) {
         }
         const float least = PIVOT_MIN * c[j][j];
         const float u = sqrtf(pivot > least ? pivot : least);
-        float *column = &inverse->element[goe_inverse_column(j)];
         for (size_t i = 0; i < j; i++) {
             float s = c[i][j];
             for (size_t k = j + 1; k < GOE_KEPT; k++) {
                 s -= c[i][k] * c[j][k];
             }
             c[i][j] = s / u;
-            column[i] = c[i][j];
         }
         c[j][j] = u;
-        column[j] = u;
     }
 }
 
@@ -444,16 +419,13 @@ static void invert_kept(float u[GOE_KEPT][GOE_KEPT], goe_triangle_t *root) {
 }
 
 void goe_srif_from_covariance(float covariance[GOE_KEPT][GOE_KEPT], const float sigma[GOE_STATES - GOE_KEPT],
-                              goe_triangle_t *root, goe_inverse_t *inverse) {
+                              goe_triangle_t *root) {
     goe_srif_clear(root);
-    memset(inverse, 0, sizeof *inverse);
-    factorise(covariance, inverse);
+    factorise(covariance);
     invert_kept(covariance, root);
     for (size_t i = GOE_KEPT; i < GOE_STATES; i++) {
-        inverse->element[goe_inverse_column(i) + i] = sigma[i - GOE_KEPT];
         root->element[goe_srif_row(i) + i] = 1.0f / sigma[i - GOE_KEPT];
     }
-    invert_from(root, GOE_STATES, inverse);
 }
 
 /* ------------------------------------------------------------------------------------------------------ other states -- */

@@ -18,10 +18,6 @@
 /*@ requires i <= GOE_UNKNOWNS; */
 static inline size_t goe_srif_row(size_t i) { return i * (2u * GOE_UNKNOWNS - 1u - i) / 2u; }
 
-/* Element (i, j), i <= j, of the inverse is element[goe_inverse_column(j) + i]. */
-/*@ requires j <= GOE_UNKNOWNS; */
-static inline size_t goe_inverse_column(size_t j) { return j * (j + 1u) / 2u; }
-
 /*@ requires \valid(r) && i <= j < GOE_UNKNOWNS; */
 static inline float *goe_srif_at(goe_triangle_t *r, size_t i, size_t j) { return &r->element[goe_srif_row(i) + j]; }
 
@@ -35,20 +31,8 @@ static inline size_t goe_srif_augmented_count(const goe_triangle_t *r) {
 #endif
 }
 
-static inline size_t goe_inverse_augmented(const goe_inverse_t *inverse) {
-#if GOE_AUGMENTED
-    return inverse->estimated < GOE_AUGMENTED ? inverse->estimated : GOE_AUGMENTED;
-#else
-    (void)inverse;
-    return 0;
-#endif
-}
-
 /* ... and with the state. */
 static inline size_t goe_srif_count(const goe_triangle_t *r) { return GOE_STATES + goe_srif_augmented_count(r); }
-static inline size_t goe_inverse_count(const goe_inverse_t *inverse) {
-    return GOE_STATES + goe_inverse_augmented(inverse);
-}
 
 /* First row of the augmented states. */
 static inline size_t goe_srif_augmented_row(void) { return goe_srif_row(GOE_STATES) + GOE_STATES; }
@@ -81,7 +65,7 @@ float goe_srif_update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *m
                       float change[GOE_UNKNOWNS]);
 
 /* The same, with the last state considered, not estimated (Schmidt 1966; Bierman 1977, chapter VIII): the gain is as if it were
- * known to be 0, and its own information stays as it was; the inverse then holds its part in the variances of the others. */
+ * known to be 0, and its own information stays as it was; R then holds its part in the variances of the others. */
 float goe_srif_update_considering(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, size_t count,
                                   float change[GOE_UNKNOWNS]);
 
@@ -89,30 +73,38 @@ float goe_srif_update_considering(goe_triangle_t *root, float nuisance_root, goe
 /*@ requires \valid(root) && \valid_read(direction + (0 .. GOE_STATES - 1)) && first <= last < GOE_STATES; */
 void goe_srif_spread(goe_triangle_t *root, const float direction[GOE_STATES], size_t first, size_t last, float sigma);
 
-/* *inverse = R^-1. */
-void goe_srif_invert(const goe_triangle_t *root, goe_inverse_t *inverse);
+/* R^-1' times the unit vector of an unknown: its error in terms of independent unit errors. The covariance of two unknowns is the product
+ * of theirs. Returns its variance. */
+/*@ requires \valid_read(root) && unknown < GOE_UNKNOWNS && \valid(part + (0 .. GOE_UNKNOWNS - 1)); */
+float goe_srif_part(const goe_triangle_t *root, size_t unknown, float part[GOE_UNKNOWNS]);
 
-/* The same of a diagonal R, for less. */
-void goe_srif_invert_diagonal(const goe_triangle_t *root, goe_inverse_t *inverse);
+/* One over the diagonal of R: several projections share the divisions. */
+/*@ requires \valid_read(root) && \valid(reciprocal + (0 .. GOE_STATES - 1)); */
+void goe_srif_reciprocals(const goe_triangle_t *root, float reciprocal[GOE_STATES]);
 
-/* Variance of one state. */
-/*@ requires \valid_read(inverse) && state < GOE_STATES; */
-float goe_inverse_variance(const goe_inverse_t *inverse, size_t state);
-
-/* Variance of w' x, as if the augmented states were known. */
-float goe_srif_variance(const goe_inverse_t *inverse, const float weight[GOE_STATES]);
-
-/* The same if the first GOE_UNWEIGHTED weights are 0, for half of that. */
+/* w becomes R^-1' w: the derivative in terms of independent unit errors. Returns its squared norm, the variance of w' x, as if the
+ * augmented states were known. If the first GOE_UNWEIGHTED weights are 0, `first` may be GOE_UNWEIGHTED, for half of the cost;
+ * otherwise it is 0. */
 #define GOE_UNWEIGHTED 3
-float goe_srif_variance_of_rest(const goe_inverse_t *inverse, const float weight[GOE_STATES]);
+/*@ requires \valid_read(root) && \valid_read(reciprocal + (0 .. GOE_STATES - 1));
+    requires \valid(weight + (0 .. GOE_STATES - 1)); */
+float goe_srif_project(const goe_triangle_t *root, const float reciprocal[GOE_STATES], size_t first,
+                       float weight[GOE_STATES]);
+
+/* Of a projected w: the part of that variance that is the last state's own. */
+/*@ requires \valid_read(projected + (0 .. GOE_STATES - 1)); */
+static inline float goe_srif_last_variance(const float projected[GOE_STATES]) {
+    return projected[GOE_STATES - 1] * projected[GOE_STATES - 1];
+}
 
 #if GOE_AUGMENTED
-/* The contribution of the augmented states to the variance of w' x + direct' augmented, as its squares' sum. direct may be null. */
-/*@ requires \valid_read(inverse) && \valid_read(weight + (0 .. GOE_STATES - 1));
+/* The contribution of the augmented states to the variance of w' x + direct' augmented, as its squares' sum; of the projected w, whose
+ * elements before `first` are 0. direct may be null. */
+/*@ requires \valid_read(root) && \valid_read(projected + (0 .. GOE_STATES - 1)) && first <= GOE_STATES;
     requires direct == \null || \valid_read(direct + (0 .. GOE_AUGMENTED - 1));
     requires \valid(part + (0 .. GOE_AUGMENTED - 1)); */
-void goe_srif_augmented(const goe_inverse_t *inverse, const float weight[GOE_STATES], const float direct[GOE_AUGMENTED],
-                        float part[GOE_AUGMENTED]);
+void goe_srif_augmented(const goe_triangle_t *root, const float projected[GOE_STATES], size_t first,
+                        const float direct[GOE_AUGMENTED], float part[GOE_AUGMENTED]);
 
 /* Covariance of two such sums, or the variance of one. */
 static inline float goe_srif_augmented_dot(const float a[GOE_AUGMENTED], const float b[GOE_AUGMENTED]) {
@@ -124,21 +116,13 @@ static inline float goe_srif_augmented_dot(const float a[GOE_AUGMENTED], const f
 }
 #endif
 
-/* The part of it that is the last state's own. */
-float goe_srif_last_variance(const goe_inverse_t *inverse, const float weight[GOE_STATES]);
-
-/* w becomes R^-1' w, whose squared norm is that variance: the derivative in terms of independent unit errors. Of a w whose
- * first GOE_UNWEIGHTED elements are 0, and remain so. */
-void goe_srif_project(const goe_inverse_t *inverse, float weight[GOE_STATES]);
-
 /* Covariance of the first GOE_KEPT states; upper half. */
 #define GOE_KEPT 6
-void goe_srif_marginal(const goe_inverse_t *inverse, float covariance[GOE_KEPT][GOE_KEPT]);
+void goe_srif_marginal(const goe_triangle_t *root, float covariance[GOE_KEPT][GOE_KEPT]);
 
-/* R and its inverse from the covariance of the first states, which is used up, and the sigmas of the others, which are
- * independent of them. */
+/* R from the covariance of the first states, which is used up, and the sigmas of the others, which are independent of them. */
 void goe_srif_from_covariance(float covariance[GOE_KEPT][GOE_KEPT], const float sigma[GOE_STATES - GOE_KEPT],
-                              goe_triangle_t *root, goe_inverse_t *inverse);
+                              goe_triangle_t *root);
 
 /* Derivatives of the last GOE_CHANGED states, by as many others that take their place. */
 #define GOE_CHANGED 7

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "check.h"
+#include "inverse.h"
 #include "sighting.h"
 
 #define CASES 3000
@@ -421,12 +422,11 @@ static void an_uncertain_depth_widens_corner_quantities(void) {
     goe_shape_t shape;
     start_at(30.0);
     goe_box_edges(filter.state, &edges);
-    static const double share[] = {0.0, 0.25, 1.0, 1.9, 3.0};
+    static const double share[] = {1.0e-5, 0.25, 1.0, 1.9, 3.0};
     static const double early[] = {1.0, 1.75, 13.0, 44.32, 49.0};
     for (int i = 0; i < 5; i++) {
-        memset(&filter.inverse, 0, sizeof filter.inverse);
-        filter.inverse.element[goe_inverse_column(GOE_DEPTH_DIFFERENCE) + GOE_DEPTH_DIFFERENCE] =
-            (float)(share[i] * (double)edges.sum);
+        inverse_start(&filter.root, 1.0e-6);
+        inverse_set(&filter.root, GOE_DEPTH_DIFFERENCE, GOE_DEPTH_DIFFERENCE, share[i] * (double)edges.sum);
         goe_box_shape(&filter, &shape);
         CHECK_CLOSE(1.0e-4 * early[i], early[i], shape.early);
     }

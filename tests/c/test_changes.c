@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "check.h"
+#include "inverse.h"
 #include "refined/goe_box.h"
 #include "refined/goe_box_start.h"
 #include "refined/goe_chord.h"
@@ -30,17 +31,7 @@ void tearDown(void) {}
 
 /* --------------------------------------------------------------------------------------------------------- covariance -- */
 
-static void covariance_of(covariance_t c) {
-    const float *v = filter.inverse.element;
-    for (size_t i = 0; i < GOE_STATES; i++) {
-        for (size_t k = 0; k < GOE_STATES; k++) {
-            c[i][k] = 0.0;
-            for (size_t j = i > k ? i : k; j < GOE_STATES; j++) {
-                c[i][k] += (double)v[goe_inverse_column(j) + i] * (double)v[goe_inverse_column(j) + k];
-            }
-        }
-    }
-}
+static void covariance_of(covariance_t c) { inverse_covariance(&filter.root, c); }
 
 /* The states in some triangle, each with its uncertainty and a correlation with all that follow. */
 static void be_uncertain(const double sigma[GOE_STATES]) {
@@ -186,7 +177,6 @@ static void make_chord(bool right) {
     for (size_t i = 0; i < GOE_DEPTH_DIFFERENCE; i++) { /* idle: no image observed it */
         *goe_srif_at(&filter.root, i, GOE_DEPTH_DIFFERENCE) = 0.0f;
     }
-    goe_filter_invert(&filter);
     filter.leaving.outward = 3.0f;
     filter.leaving.turning = right ? 2.0f : -2.0f;
     sighting.sight.camera_m.x = right ? -3.0f - 25.0f : 3.0f + 25.0f; /* the bearing moves to that side */
@@ -285,7 +275,6 @@ static void a_box_by_other_names_is_known_as_well(void) {
         filter.state[GOE_FRONT_X] = (float)check_random_between(&any, 0.03, 0.05);
         filter.state[GOE_DEPTH_DIFFERENCE] = (float)check_random_between(&any, -0.08, -0.02);
         be_uncertain(sigma);
-        goe_filter_invert(&filter);
         covariance_of(before);
         read_state(was);
         TEST_ASSERT_TRUE(goe_box_change(&filter, &sighting.sight));
@@ -312,7 +301,6 @@ static void a_second_face_opens_the_length_alone(void) {
         filter.state[GOE_FRONT_X] = (float)check_random_between(&any, 0.03, 0.1);
         filter.state[GOE_DEPTH_DIFFERENCE] = (float)check_random_between(&any, 0.05, 0.1);
         be_uncertain(sigma);
-        goe_filter_invert(&filter);
         covariance_of(before);
         read_state(x);
         edges_of(x, &side_z, &front_z);
@@ -345,7 +333,6 @@ static void make_disc(bool both, goe_footprint_t *box) {
     filter.phase = GOE_PHASE_DISC;
     filter.state[GOE_FRONT_X] = 0.1f;
     be_uncertain(sigma);
-    goe_filter_invert(&filter);
     filter.due_s = filter.walk_s[0] = 0.5f;
     sighting.sight.since_s = 0.5f;
     sighting.settings.navigation.attitude_walk_sd_deg = (float)(sqrt(8.0e-5) / RAD_PER_DEG);

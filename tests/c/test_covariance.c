@@ -135,7 +135,6 @@ static void make_box(void) {
     for (size_t i = 0; i < GOE_STATES; i++) {
         *goe_srif_at(&estimator.filter.root, i, i) = 1.0e3f;
     }
-    goe_srif_invert(&estimator.filter.root, &estimator.filter.inverse);
     estimator.filter.phase = GOE_PHASE_BOX;
     estimator.filter.axes.turn_cos = 1.0f;
     estimator.estimate.fresh = true;

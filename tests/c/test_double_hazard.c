@@ -8,6 +8,7 @@
 #include "check.h"
 #include "goe_covariance.h"
 #include "goe_guard.h"
+#include "inverse.h"
 #include "refined/goe_observation.h"
 #include "refined/goe_refined.h"
 #include "scene.h"
@@ -540,7 +541,6 @@ static void draw_from_covariance(check_random_t *random, const obstacle_t *mean,
 /* A filter that holds a disc 150 m ahead, 30 m to the right and 35 m high, whose direction and top share their error. */
 static void give_disc(float shared) {
     goe_filter_t *f = &estimator.filter;
-    float *r = f->inverse.element;
     memset(f, 0, sizeof *f);
     f->phase = GOE_PHASE_DISC;
     f->axes.turn_cos = 1.0f;
@@ -548,11 +548,12 @@ static void give_disc(float shared) {
     f->state[GOE_BEARING] = 30.0f / 150.0f;
     f->state[GOE_FRONT_X] = 10.0f / 150.0f;
     f->state[GOE_TOP] = 35.0f / 150.0f;
-    r[goe_inverse_column(GOE_INVERSE_RANGE) + GOE_INVERSE_RANGE] = 1e-4f;
-    r[goe_inverse_column(GOE_FRONT_X) + GOE_FRONT_X] = 1e-3f;
-    r[goe_inverse_column(GOE_BEARING) + GOE_BEARING] = 0.02f * sqrtf(1.0f - shared * shared);
-    r[goe_inverse_column(GOE_TOP) + GOE_BEARING] = 0.02f * shared;
-    r[goe_inverse_column(GOE_TOP) + GOE_TOP] = 0.02f;
+    inverse_start(&f->root, 1.0e-9);
+    inverse_set(&f->root, GOE_INVERSE_RANGE, GOE_INVERSE_RANGE, 1.0e-4);
+    inverse_set(&f->root, GOE_FRONT_X, GOE_FRONT_X, 1.0e-3);
+    inverse_set(&f->root, GOE_BEARING, GOE_BEARING, 0.02 * sqrt(1.0 - (double)shared * (double)shared));
+    inverse_set(&f->root, GOE_BEARING, GOE_TOP, 0.02 * (double)shared);
+    inverse_set(&f->root, GOE_TOP, GOE_TOP, 0.02);
     estimator.settings.method = GOE_METHOD_FILTER;
     goe_guard_seal(&estimator);
     estimator.motion.time_us = estimator.filter.axes.start_time_us = 0;

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "check.h"
+#include "inverse.h"
 #include "maths/goe_angle.h"
 
 #define FOCAL_PX 914.0
@@ -38,9 +39,7 @@ static void add_row(size_t feature, bool along_y) {
 void setUp(void) {
     goe_settings_default(&settings);
     memset(&filter, 0, sizeof filter);
-    for (size_t i = 0; i < GOE_STATES; i++) {
-        filter.inverse.element[goe_inverse_column(i) + i] = 1.0e-6f;
-    }
+    inverse_start(&filter.root, 1.0e-6);
     goe_rows_clear(&rows, &matrix);
     rows.white_rad = settings.navigation.attitude_white_sd_deg * GOE_RAD_PER_DEG;
     for (size_t i = 0; i < GOE_FEATURES; i++) {
@@ -212,7 +211,7 @@ static void an_unsure_state_opens_the_gate(void) {
         *residual(0) = (float)(15.0 / FOCAL_PX);
         matrix.row[0][GOE_STATE_COLUMN + GOE_BEARING] = 1.0f;
         if (n == 1) {
-            filter.inverse.element[goe_inverse_column(GOE_BEARING) + GOE_BEARING] = 0.01f;
+            inverse_set(&filter.root, GOE_BEARING, GOE_BEARING, 0.01);
         } else if (n == 2) {
             settings.navigation.position_walk_sd_m = 2.0f;
             filter.state[GOE_INVERSE_RANGE] = 0.01f;

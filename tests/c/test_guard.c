@@ -6,6 +6,7 @@
 
 #include "check.h"
 #include "goe_settings_internal.h"
+#include "refined/goe_filter.h"
 #include "scene.h"
 
 #define IMAGES 12
@@ -209,7 +210,7 @@ static void no_call_returns_a_value_that_is_not_finite(void) {
     float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
     goe_hazard_t hazard;
     start();
-    estimator.filter.inverse.element[14] = check_from_bits(0x7FC00000u);
+    estimator.filter.root.element[goe_srif_row(GOE_INVERSE_RANGE) + GOE_INVERSE_RANGE] = check_from_bits(0x7FC00000u);
     CHECK_STATUS(GOE_CORRUPTED, goe_covariance(&estimator, covariance));
     TEST_ASSERT_EQUAL_FLOAT(0.0f, covariance[GOE_X0][GOE_X0]);
     CHECK_STATUS(GOE_CORRUPTED, goe_hazard(&estimator, &intent, &hazard));

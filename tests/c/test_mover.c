@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "check.h"
+#include "inverse.h"
 #include "refined/goe_chord.h"
 #include "refined/goe_disc.h"
 #include "scene.h"
@@ -136,12 +137,10 @@ static void a_change_of_states_keeps_augmented_states(void) {
 }
 
 /* [(R35), (R37)] GIVEN an estimate with augmented states THEN the variance of a quantity, on which the attitude's bias has
- * no part, is that of the whole inverse. */
+ * no part, and of a row, is that of the whole inverse. */
 static void the_variance_includes_augmented_states(void) {
     goe_triangle_t root;
-    goe_inverse_t inverse;
     memset(&root, 0, sizeof root);
-    memset(&inverse, 0, sizeof inverse);
     for (size_t i = 0; i < UNKNOWNS; i++) {
         for (size_t j = i; j < UNKNOWNS; j++) {
             *goe_srif_at(&root, i, j) = (float)(0.3 * check_random_normal(&any));
@@ -149,14 +148,16 @@ static void the_variance_includes_augmented_states(void) {
         *goe_srif_at(&root, i, i) = 3.0f;
     }
     root.estimated = GOE_AUGMENTED;
-    goe_srif_invert(&root, &inverse);
+    float reciprocal[GOE_STATES];
+    goe_srif_reciprocals(&root, reciprocal);
     for (int c = 0; c < CASES; c++) {
         float weight[GOE_STATES];
         float direct[GOE_AUGMENTED];
         float part[GOE_AUGMENTED];
         double v[UNKNOWNS];
-        for (size_t i = 0; i < UNKNOWNS; i++) { /* R'v = w: the variance is v'v */
-            const float w = i < GOE_UNWEIGHTED ? 0.0f : (float)check_random_normal(&any);
+        const size_t first = c % 2 == 0 ? GOE_UNWEIGHTED : 0; /* of a quantity, or of a row */
+        for (size_t i = 0; i < UNKNOWNS; i++) {               /* R'v = w: the variance is v'v */
+            const float w = i < first ? 0.0f : (float)check_random_normal(&any);
             *(i < GOE_STATES ? &weight[i] : &direct[i - GOE_STATES]) = w;
             v[i] = (double)w;
             for (size_t k = 0; k < i; k++) {
@@ -168,8 +169,8 @@ static void the_variance_includes_augmented_states(void) {
         for (size_t i = 0; i < UNKNOWNS; i++) {
             expected += v[i] * v[i];
         }
-        goe_srif_augmented(&inverse, weight, direct, part);
-        double sum = (double)goe_srif_variance(&inverse, weight);
+        double sum = (double)goe_srif_project(&root, reciprocal, first, weight);
+        goe_srif_augmented(&root, weight, first, direct, part);
         for (size_t i = 0; i < GOE_AUGMENTED; i++) {
             sum += (double)part[i] * (double)part[i];
         }
@@ -266,10 +267,13 @@ static goe_mover_t judge_followed(float latency_s, float velocity_m_s, float vel
     filter.mover.followed = true;
     filter.mover.augmented[GOE_AUGMENTED_LATENCY] = latency_s;
     filter.mover.augmented[GOE_AUGMENTED_VELOCITY_X] = velocity_m_s;
-    filter.root.estimated = GOE_AUGMENTED;
-    filter.inverse.estimated = GOE_AUGMENTED;
+    inverse_start(&filter.root, 1.0);
     for (size_t i = 0; i < GOE_AUGMENTED; i++) {
-        filter.inverse.element[goe_inverse_column(GOE_STATES + i) + GOE_STATES + i] = sd[i];
+        *goe_srif_at(&filter.root, GOE_STATES + i, GOE_STATES + i) = 1.0f;
+    }
+    filter.root.estimated = GOE_AUGMENTED;
+    for (size_t i = 0; i < GOE_AUGMENTED; i++) {
+        inverse_set(&filter.root, GOE_STATES + i, GOE_STATES + i, (double)sd[i]);
     }
     TEST_ASSERT_FALSE(goe_mover_judge(&filter, &s.sight, change, 0.1f));
     return filter.mover;
@@ -447,10 +451,10 @@ static void be_followed(float x_m_s, float z_m_s, float sd_m_s, float latency_s,
     judged.mover.augmented[0] = latency_s;
     judged.mover.augmented[1] = x_m_s;
     judged.mover.augmented[2] = z_m_s;
-    judged.root.estimated = judged.inverse.estimated = GOE_AUGMENTED;
+    judged.root.estimated = GOE_AUGMENTED;
     const float sigma[3] = {sd_s, sd_m_s, sd_m_s};
     for (size_t i = 0; i < 3; i++) {
-        judged.inverse.element[goe_inverse_column(GOE_STATES + i) + GOE_STATES + i] = sigma[i];
+        inverse_set(&judged.root, GOE_STATES + i, GOE_STATES + i, (double)sigma[i]);
     }
 }
 
@@ -477,8 +481,7 @@ static void a_followed_target_may_prove_to_be_late_poses(void) {
 /* GIVEN a velocity whose two parts hang together THEN its variance along any direction is that of both. */
 static void a_velocitys_variance_is_that_of_both_parts(void) {
     be_followed(3.0f, 4.0f, 1.0f, 0.0f, 0.01f);
-    float *v = judged.inverse.element;
-    v[goe_inverse_column(GOE_STATES + 2) + GOE_STATES + 1] = 0.5f;
+    inverse_set(&judged.root, GOE_STATES + 1, GOE_STATES + 2, 0.5);
     const goe_xz_t along[] = {{1.0f, 0.0f}, {0.0f, 1.0f}, {0.6f, 0.8f}, {-0.6f, 0.8f}};
     const double expected[] = {1.25, 1.0, 0.36 + (0.3 + 0.8) * (0.3 + 0.8), 0.36 + (-0.3 + 0.8) * (-0.3 + 0.8)};
     for (size_t i = 0; i < 4; i++) {

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "check.h"
+#include "inverse.h"
 #include "refined/goe_prism.h"
 #include "refined/goe_quantities.h"
 #include "scene.h"
@@ -247,9 +248,10 @@ static void a_center_that_is_nowhere_is_not_reported(void) {
         filter.known = GOE_HAS_POSITION;
         filter.state[GOE_INVERSE_RANGE] = 1.0f / range_m;
         filter.state[GOE_PRISM_HALF] = 1.0e-3f;
-        filter.inverse.element[goe_inverse_column(GOE_INVERSE_RANGE) + GOE_BEARING] = spread;
-        filter.inverse.element[goe_inverse_column(GOE_INVERSE_RANGE) + GOE_INVERSE_RANGE] =
-            (i < 2 ? errors_correlated[i] : 1.0f) * spread / range_m;
+        inverse_start(&filter.root, 1.0e-9);
+        inverse_set(&filter.root, GOE_BEARING, GOE_INVERSE_RANGE, (double)spread);
+        inverse_set(&filter.root, GOE_INVERSE_RANGE, GOE_INVERSE_RANGE,
+                    (double)((i < 2 ? errors_correlated[i] : 1.0f) * spread / range_m));
         goe_quantities_find(&filter, &settings, &motion, &quantities);
         CHECK_CLOSE(1.0e3, spread * range_m, quantities.sigma[GOE_X0]);
         CHECK_CLOSE(1.0e3, spread * range_m, quantities.sigma[GOE_Z0]);

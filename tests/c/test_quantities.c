@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "check.h"
+#include "inverse.h"
 #include "refined/goe_box.h"
 #include "refined/goe_disc.h"
 
@@ -98,21 +99,10 @@ static void be_uncertain(double share) {
             *goe_srif_at(&filter.root, i, j) = (float)(between(-0.3, 0.3) / (share * sigma_of[j]));
         }
     }
-    goe_filter_invert(&filter);
 }
 
 /* Of the states. That a disc has no skew is in its values, and so in their differences. */
-static void covariance_of(double c[GOE_STATES][GOE_STATES]) {
-    const float *v = filter.inverse.element;
-    for (size_t i = 0; i < GOE_STATES; i++) {
-        for (size_t k = 0; k < GOE_STATES; k++) {
-            c[i][k] = 0.0;
-            for (size_t j = i > k ? i : k; j < GOE_STATES; j++) {
-                c[i][k] += (double)v[goe_inverse_column(j) + i] * (double)v[goe_inverse_column(j) + k];
-            }
-        }
-    }
-}
+static void covariance_of(double c[GOE_STATES][GOE_STATES]) { inverse_covariance(&filter.root, c); }
 
 enum { NORTH = GOE_QUANTITIES, EAST, VALUES };
 
@@ -296,7 +286,7 @@ static void unobserved_depth_silences_nothing(void) {
         goe_quantities_find(&filter, &settings, &motion, &quantities);
         const goe_quantities_t with = quantities;
         for (size_t i = 0; i < GOE_STATES; i++) { /* as if it were known */
-            filter.inverse.element[goe_inverse_column(GOE_STATES - 1) + i] = 0.0f;
+            inverse_set(&filter.root, i, GOE_STATES - 1, i < GOE_STATES - 1 ? 0.0 : 1.0e-9);
         }
         goe_quantities_find(&filter, &settings, &motion, &quantities);
         for (int i = 0; i < GOE_QUANTITIES; i++) {
@@ -449,10 +439,10 @@ static void augmented_states_widen_the_sigmas(void) {
         const goe_quantities_t before = quantities;
         const double q = (double)filter.state[GOE_INVERSE_RANGE];
         const double part = 2.0 * q; /* 2 m of the place, along the bearing */
-        filter.inverse.estimated = 1;
-        memset(&filter.inverse.element[goe_inverse_column(GOE_STATES)], 0, (GOE_STATES + 1) * sizeof(float));
-        filter.inverse.element[goe_inverse_column(GOE_STATES) + GOE_BEARING] = (float)part;
-        filter.inverse.element[goe_inverse_column(GOE_STATES) + GOE_FRONT_X] = (float)(1.5 * q);
+        filter.root.estimated = 1;
+        *goe_srif_at(&filter.root, GOE_STATES, GOE_STATES) = 1.0f;
+        inverse_set(&filter.root, GOE_BEARING, GOE_STATES, part);
+        inverse_set(&filter.root, GOE_FRONT_X, GOE_STATES, 1.5 * q);
         goe_quantities_find(&filter, &settings, &motion, &quantities);
         CHECK_CLOSE(0.02, 4.0,
                     square_of(quantities.sigma[GOE_X0], quantities.sigma[GOE_Z0]) -
@@ -495,7 +485,7 @@ static void errors_of_own_motion_are_in_the_sigmas(void) {
         const double s = 10.0;
         make_any(phases[n % 5]);
         be_uncertain(CERTAIN);
-        filter.inverse.element[goe_inverse_column(GOE_SIDE_X) + GOE_SIDE_X] = 1.0e-6f; /* of a disc's condition */
+        inverse_set(&filter.root, GOE_SIDE_X, GOE_SIDE_X, 1.0e-6); /* of a disc's condition */
         settings.navigation.velocity_bias_sd_m_s = 0.2f;
         settings.navigation.position_walk_sd_m = 0.1f;
         const double path = hypot((double)motion.dx_m - (double)filter.axes.start_dx_m,
@@ -537,7 +527,7 @@ static void errors_of_own_motion_are_on_the_diagonal(void) {
         float ahead[GOE_QUANTITIES][GOE_QUANTITIES];
         make_any(phases[n % 5]);
         be_uncertain(CERTAIN);
-        filter.inverse.element[goe_inverse_column(GOE_SIDE_X) + GOE_SIDE_X] = 1.0e-6f;
+        inverse_set(&filter.root, GOE_SIDE_X, GOE_SIDE_X, 1.0e-6);
         settings.navigation.velocity_bias_sd_m_s = 0.2f;
         settings.navigation.position_walk_sd_m = 0.1f;
         goe_quantities_find(&filter, &settings, &motion, &quantities);
@@ -562,8 +552,8 @@ static void the_altimeters_error_is_not_between_camera_and_top(void) {
     for (int n = 0; n < 5; n++) {
         make_any(phases[n]);
         be_uncertain(CERTAIN);
-        filter.inverse.element[goe_inverse_column(GOE_SIDE_X) + GOE_SIDE_X] = 1.0e-6f;
-        filter.inverse.element[goe_inverse_column(GOE_GROUND) + GOE_GROUND] = 0.5f * filter.state[GOE_INVERSE_RANGE];
+        inverse_set(&filter.root, GOE_SIDE_X, GOE_SIDE_X, 1.0e-6);
+        inverse_set(&filter.root, GOE_GROUND, GOE_GROUND, 0.5 * (double)filter.state[GOE_INVERSE_RANGE]);
         goe_quantities_covariance(&filter, &settings, &motion, false, 0.0f, now);
         goe_quantities_covariance(&filter, &settings, &motion, true, 0.0f, ahead);
         CHECK_CLOSE(2.0e-2, 0.25, (double)now[GOE_HEIGHT][GOE_HEIGHT] - beyond_of(GOE_HEIGHT));
@@ -571,9 +561,9 @@ static void the_altimeters_error_is_not_between_camera_and_top(void) {
         /* and the range moves the height over the altimeter's zero, which is the height less the ground's offset */
         make_any(phases[n]);
         be_uncertain(CERTAIN);
-        filter.inverse.element[goe_inverse_column(GOE_SIDE_X) + GOE_SIDE_X] = 1.0e-6f;
+        inverse_set(&filter.root, GOE_SIDE_X, GOE_SIDE_X, 1.0e-6);
         const double q = (double)filter.state[GOE_INVERSE_RANGE];
-        filter.inverse.element[goe_inverse_column(GOE_INVERSE_RANGE) + GOE_INVERSE_RANGE] = (float)(0.01 * q);
+        inverse_set(&filter.root, GOE_INVERSE_RANGE, GOE_INVERSE_RANGE, 0.01 * q);
         const double top = (double)filter.state[GOE_TOP] / q;
         goe_quantities_covariance(&filter, &settings, &motion, true, 0.0f, ahead);
         CHECK_CLOSE(SHARE * 1.0e-4 * top * top, 1.0e-4 * top * top,

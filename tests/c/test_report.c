@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "check.h"
+#include "inverse.h"
 #include "refined/goe_disc.h"
 
 static goe_filter_t filter;
@@ -40,9 +41,7 @@ static void be_skewed(void) {
     filter.phase = GOE_PHASE_DISC;
     settings.model = GOE_MODEL_DISC;
     filter.state[GOE_SIDE_X] = 1.0f;
-    for (size_t i = 0; i < GOE_STATES; i++) {
-        filter.inverse.element[goe_inverse_column(i) + i] = 0.1f;
-    }
+    inverse_start(&filter.root, 0.1);
 }
 
 /* GIVEN more than one reason THEN the most informative one is reported: motion before a wrong corner, no disc, latency, and only then

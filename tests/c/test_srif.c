@@ -71,17 +71,6 @@ static dense_t dense_of(const goe_triangle_t *triangle) {
     return d;
 }
 
-static dense_t dense_of_inverse(const goe_inverse_t *inverse) {
-    dense_t d;
-    memset(&d, 0, sizeof d);
-    for (size_t j = 0; j < N; j++) {
-        for (size_t i = 0; i <= j; i++) {
-            d.m[i][j] = (double)inverse->element[goe_inverse_column(j) + i];
-        }
-    }
-    return d;
-}
-
 /* R'R */
 static dense_t information_of(const goe_triangle_t *root) {
     const dense_t r = dense_of(root);
@@ -276,11 +265,9 @@ static void the_squares_left_over_average_to_the_number_of_rows(void) {
     double sum = 0.0;
     any = check_random_start("innovations");
     goe_triangle_t root = no_root;
-    goe_inverse_t inverse;
     goe_matrix_t matrix;
     random_root(&root);
-    goe_srif_invert(&root, &inverse);
-    const dense_t v = dense_of_inverse(&inverse);
+    const dense_t v = inverted(dense_of(&root), N);
     random_matrix(rows, &matrix);
     for (int n = 0; n < draws; n++) {
         goe_triangle_t updated = root;
@@ -446,34 +433,32 @@ static void a_tiny_sigma_changes_nothing(void) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------ inverse, covariance -- */
+/* ---------------------------------------------------------------------------------------------------------- variances -- */
 
-static void check_inverse(const goe_triangle_t *root, const goe_inverse_t *inverse) {
-    const dense_t r = dense_of(root);
-    const dense_t v = dense_of_inverse(inverse);
-    for (int i = 0; i < N; i++) {
-        for (int j = 0; j < N; j++) {
-            double product = 0.0;
-            double size = 1.0;
-            for (int k = 0; k < N; k++) {
-                product += r.m[i][k] * v.m[k][j];
-                size += fabs(r.m[i][k] * v.m[k][j]);
-            }
-            CHECK_CLOSE(5.0e-6 * size, i == j ? 1.0 : 0.0, product);
-        }
-    }
-}
-
-/* [(R22)] */
-static void the_root_times_its_inverse_is_one(void) {
-    any = check_random_start("inverse");
+/* [(R22)] GIVEN any triangle THEN the part of each state is its column of the inverse of R', and its square is the variance. */
+static void the_root_times_a_part_is_one(void) {
+    any = check_random_start("part");
     for (int n = 0; n < CASES; n++) {
         goe_triangle_t root = no_root;
-        goe_inverse_t inverse;
         random_root(&root);
-        memset(&inverse, 0xA5, sizeof inverse); /* is written whole */
-        goe_srif_invert(&root, &inverse);
-        check_inverse(&root, &inverse);
+        const dense_t r = dense_of(&root);
+        for (size_t state = 0; state < N; state++) {
+            float part[GOE_UNKNOWNS];
+            double squares = 0.0;
+            memset(part, 0xA5, sizeof part); /* is written whole */
+            const float variance = goe_srif_part(&root, state, part);
+            for (size_t j = 0; j < N; j++) {
+                double product = 0.0;
+                double size = 1.0;
+                for (size_t i = 0; i <= j; i++) {
+                    product += r.m[i][j] * (double)part[i];
+                    size += fabs(r.m[i][j] * (double)part[i]);
+                }
+                CHECK_CLOSE(5.0e-6 * size, j == state ? 1.0 : 0.0, product);
+                squares += (double)part[j] * (double)part[j];
+            }
+            CHECK_CLOSE(1.0e-5 * squares, squares, variance);
+        }
     }
 }
 
@@ -482,13 +467,14 @@ static void a_variance_is_the_covariance_projected_along_the_weights(void) {
     any = check_random_start("variance");
     for (int n = 0; n < CASES; n++) {
         goe_triangle_t root = no_root;
-        goe_inverse_t inverse;
+        float reciprocal[N];
         float weight[N];
         float projected[N];
+        float shorter[N];
         double expected = 0.0;
         double squares = 0.0;
         random_root(&root);
-        goe_srif_invert(&root, &inverse);
+        goe_srif_reciprocals(&root, reciprocal);
         const dense_t p = covariance_of(&root);
         const bool rest = n % 2 == 0; /* weights of a quantity, or of a row */
         for (int i = 0; i < N; i++) {
@@ -500,33 +486,34 @@ static void a_variance_is_the_covariance_projected_along_the_weights(void) {
                 expected += (double)weight[i] * p.m[i][j] * (double)weight[j];
             }
         }
-        CHECK_CLOSE(SHARE * (double)N, expected, goe_srif_variance(&inverse, weight));
-        if (!rest) {
-            continue;
-        }
         memcpy(projected, weight, sizeof projected);
-        goe_srif_project(&inverse, projected);
+        const float variance = goe_srif_project(&root, reciprocal, 0, projected);
+        CHECK_CLOSE(SHARE * (double)N, expected, variance);
         for (int i = 0; i < N; i++) {
             squares += (double)projected[i] * (double)projected[i];
         }
         CHECK_CLOSE(SHARE * (double)N, expected, squares);
-        CHECK_CLOSE(1.0e-5 * (1.0 + squares), squares, goe_srif_variance_of_rest(&inverse, weight));
+        CHECK_SAME(projected[N - 1] * projected[N - 1], goe_srif_last_variance(projected));
+        if (!rest) {
+            continue;
+        }
+        memcpy(shorter, weight, sizeof shorter);
+        CHECK_SAME(variance, goe_srif_project(&root, reciprocal, GOE_UNWEIGHTED, shorter));
+        TEST_ASSERT_EQUAL_FLOAT_ARRAY(projected, shorter, N);
     }
 }
 
 /* GIVEN any triangle WHEN the covariance of its first states is taken THEN it is that block of the whole one; WHEN it is put
- * together with sigmas for the others THEN root and inverse are those of a covariance in which these stand alone. */
+ * together with sigmas for the others THEN the root is that of a covariance in which these stand alone. */
 static void a_marginal_makes_a_root_again(void) {
     any = check_random_start("marginal");
     for (int n = 0; n < CASES; n++) {
         goe_triangle_t root = no_root;
-        goe_inverse_t inverse;
         float c[GOE_KEPT][GOE_KEPT];
         float sigma[N - GOE_KEPT];
         random_root(&root);
         dense_t expected = covariance_of(&root);
-        goe_srif_invert(&root, &inverse);
-        goe_srif_marginal(&inverse, c);
+        goe_srif_marginal(&root, c);
         for (size_t i = 0; i < N; i++) {
             for (size_t j = i; j < N; j++) {
                 if (j < GOE_KEPT) {
@@ -542,28 +529,25 @@ static void a_marginal_makes_a_root_again(void) {
             sigma[i - GOE_KEPT] = (float)pow(10.0, check_random_between(&any, -3.0, 1.0));
             expected.m[i][i] = (double)sigma[i - GOE_KEPT] * (double)sigma[i - GOE_KEPT];
         }
-        goe_srif_from_covariance(c, sigma, &root, &inverse);
+        goe_srif_from_covariance(c, sigma, &root);
         const dense_t actual = covariance_of(&root);
         check_equal(20.0 * SHARE, &expected, &actual); /* squaring doubled the digits that the condition takes */
-        check_inverse(&root, &inverse);
     }
 }
 
-/* GIVEN a covariance without any rank left THEN root and inverse are finite all the same. */
+/* GIVEN a covariance without any rank left THEN the root is finite all the same. */
 static void a_singular_covariance_gives_a_finite_root(void) {
     float c[GOE_KEPT][GOE_KEPT];
     const float sigma[N - GOE_KEPT] = {1.0f, 1.0f, 1.0f, 1.0f};
     goe_triangle_t root = no_root;
-    goe_inverse_t inverse;
     for (size_t i = 0; i < GOE_KEPT; i++) {
         for (size_t j = 0; j < GOE_KEPT; j++) {
             c[i][j] = 1.0f; /* all states are the same one */
         }
     }
-    goe_srif_from_covariance(c, sigma, &root, &inverse);
+    goe_srif_from_covariance(c, sigma, &root);
     for (size_t i = 0; i < sizeof root.element / sizeof(float); i++) {
         TEST_ASSERT_TRUE(check_is_finite(root.element[i]));
-        TEST_ASSERT_TRUE(check_is_finite(inverse.element[i]));
     }
 }
 
@@ -625,7 +609,7 @@ int main(void) {
     RUN_TEST(the_signs_of_the_rows_are_free);
     RUN_TEST(spreading_adds_to_the_covariance);
     RUN_TEST(a_tiny_sigma_changes_nothing);
-    RUN_TEST(the_root_times_its_inverse_is_one);
+    RUN_TEST(the_root_times_a_part_is_one);
     RUN_TEST(a_variance_is_the_covariance_projected_along_the_weights);
     RUN_TEST(a_marginal_makes_a_root_again);
     RUN_TEST(a_singular_covariance_gives_a_finite_root);

@@ -1,4 +1,4 @@
-/* The library: Householder reflections of the triangle. WITH_INVERSE: 1 and the triangle's inverse, whose rows' squared
+/* The library: Householder reflections of the triangle. WITH_INVERSE: 1 and the triangle's inverse, row by row, whose squared
  * norms are the variances. SPDX-License-Identifier: MIT */
 #include <string.h>
 
@@ -10,7 +10,7 @@ _Static_assert(GOE_STATES == PEER_STATES && GOE_NUISANCES == PEER_NUISANCES && G
 
 typedef struct {
     goe_triangle_t root;
-    goe_inverse_t inverse;
+    float inverse[PEER_TRIANGLE]; /* column by column */
     goe_matrix_t rows;
     size_t count; /* of rows that are not 0 */
     float nuisance_root;
@@ -37,7 +37,13 @@ void peer_solve(int slot) {
     state_t *state = &states[slot];
     state->nis = goe_srif_update(&state->root, state->nuisance_root, &state->rows, state->count, state->change);
 #if WITH_INVERSE
-    goe_srif_invert(&state->root, &state->inverse);
+    for (size_t i = 0; i < GOE_STATES; i++) {
+        float part[GOE_UNKNOWNS];
+        (void)goe_srif_part(&state->root, i, part);
+        for (size_t j = i; j < GOE_STATES; j++) {
+            state->inverse[j * (j + 1) / 2 + i] = part[j];
+        }
+    }
 #endif
 }
 
@@ -47,7 +53,7 @@ void peer_answer(int slot, peer_answer_t *answer) {
     memcpy(answer->change, state->change, sizeof answer->change);
     answer->nis = state->nis;
 #if WITH_INVERSE
-    memcpy(answer->held, state->inverse.element, sizeof state->inverse.element);
+    memcpy(answer->held, state->inverse, sizeof state->inverse);
 #else
     memcpy(answer->held, state->root.element, sizeof state->root.element);
 #endif
