@@ -253,7 +253,6 @@ typedef struct {
     goe_side_memory_t side[4]; /* by goe_box_side_t */
     float state[GOE_STATES];   /* by goe_state_index_t */
     goe_triangle_t root;       /* R: R'R is the information of the state, as of the latest image that gave rows */
-    goe_matrix_t rows;         /* of the image at hand */
 } goe_filter_t;
 
 /* ------------------------------------------------------------------------------------------------------- estimator -- */

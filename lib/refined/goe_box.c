@@ -408,7 +408,7 @@ static void exchange_root(goe_filter_t *filter, const float was[GOE_STATES]) {
     old.by[GOE_OF_BEARING][GOE_OF_BEARING] = scale;
     old.by[GOE_OF_RANGE][GOE_OF_RANGE] = scale;
     old.by[GOE_OF_TOP][GOE_OF_TOP] = scale;
-    goe_srif_substitute(&filter->root, &old, &filter->rows);
+    goe_srif_substitute(&filter->root, &old);
 }
 
 static void exchange_names(goe_filter_t *filter, const goe_observation_t *obs) {

@@ -255,8 +255,8 @@ static bool set_box(const faces_t *faces, float x[GOE_STATES]) {
 
 /* (R21): derivatives of the chord by the box. The chord's middle is half a side behind that of the front; its idle state represents
  * the corner's place on the circle: twice the angle between chord and front, tan = side over front. */
-static void differentiate(const float was[GOE_STATES], const float is[GOE_STATES], float side_sign,
-                          goe_substitution_t *old) {
+static GOE_NOINLINE void differentiate(const float was[GOE_STATES], const float is[GOE_STATES], float side_sign,
+                                       goe_substitution_t *old) {
     goe_box_edges_t box;
     goe_box_edges(is, &box);
     const float depth = box.side.along.z;
@@ -290,7 +290,7 @@ static void become_box(goe_filter_t *filter, const float is[GOE_STATES], float s
     inflate(filter, GOE_FRONT_X, WIDTH_UNNOTICED * length);
     *goe_srif_at(&filter->root, GOE_DEPTH_DIFFERENCE, GOE_DEPTH_DIFFERENCE) = 1.0f / CORNER_RAD;
     differentiate(was, is, side_sign, &old);
-    goe_srif_substitute(&filter->root, &old, &filter->rows);
+    goe_srif_substitute(&filter->root, &old);
     memcpy(filter->state, is, sizeof filter->state);
     inflate(filter, GOE_SIDE_X, BOX_FREEDOM * length);
     inflate(filter, GOE_FRONT_X, BOX_FREEDOM * length);

@@ -12,7 +12,7 @@
 #if GOE_WITH_FILTER
 
 typedef struct {
-    size_t row[GOE_ROWS_MAX]; /* by residual */
+    uint8_t row[GOE_ROWS_MAX]; /* by residual */
     size_t count;
     size_t middle; /* row */
 } group_t;
@@ -36,7 +36,7 @@ static void gather(const goe_rows_t *rows, bool along_x, group_t *group) {
         for (; at > 0 && residual_of(rows, group->row[at - 1]) > residual_of(rows, i); at--) {
             group->row[at] = group->row[at - 1];
         }
-        group->row[at] = i;
+        group->row[at] = (uint8_t)i;
     }
     const size_t half = group->count / 2;
     const bool even = group->count > 0 && group->count % 2 == 0;

@@ -64,20 +64,24 @@ static void doubt(goe_filter_t *filter, const goe_observation_t *obs) {
     goe_model_doubt(filter, obs);
 }
 
-static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t *verdict, float change[GOE_UNKNOWNS]) {
-    goe_rows_t rows;
-    goe_rows_clear(&rows, &filter->rows);
-    rows.white_rad = obs->white_rad;
-    goe_model_rows(filter, obs, &rows);
-    goe_rows_end(&rows, obs);
+/* The rows of the image, before the gate. */
+static void find_rows(goe_filter_t *filter, goe_observation_t *obs, goe_matrix_t *matrix, goe_rows_t *rows) {
+    goe_rows_clear(rows, matrix);
+    rows->white_rad = obs->white_rad;
+    goe_model_rows(filter, obs, rows);
+    goe_rows_end(rows, obs);
 #if GOE_AUGMENTED
-    goe_mover_columns(obs, &rows);
+    goe_mover_columns(obs, rows);
 #endif
-    allow_for_curvature(obs, &rows);
-    goe_model_recall(filter, obs, &rows);
-    *verdict = goe_gate_apply(obs->settings, filter, &rows);
-    goe_scatter_take(&filter->scatter, &rows);
-    goe_model_learn(filter, &rows, verdict);
+    allow_for_curvature(obs, rows);
+    goe_model_recall(filter, obs, rows);
+}
+
+static bool measure(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows, goe_verdict_t *verdict,
+                    float change[GOE_UNKNOWNS]) {
+    *verdict = goe_gate_apply(obs->settings, filter, rows);
+    goe_scatter_take(&filter->scatter, rows);
+    goe_model_learn(filter, rows, verdict);
     if (verdict->rows == 0) {
         goe_health_take_refused(&filter->health, *verdict);
         return false;
@@ -86,8 +90,8 @@ static bool measure(goe_filter_t *filter, goe_observation_t *obs, goe_verdict_t 
     filter->measured.dx_m = obs->camera_m.x;
     filter->measured.dz_m = obs->camera_m.z;
     doubt(filter, obs);
-    verdict->rows += goe_ground_row(filter, obs, &rows);
-    const float nis = goe_model_update(filter, 1.0f / rows.white_rad, &rows, change);
+    verdict->rows += goe_ground_row(filter, obs, rows);
+    const float nis = goe_model_update(filter, 1.0f / rows->white_rad, rows, change);
     /* Variances were inflated by (1+r)/(1-r) for the correlation in time, the scatter within one image is not: undone for the
      * NIS. */
     goe_health_take(&filter->health, *verdict, nis * goe_gate_repeated(obs->settings, filter));
@@ -151,11 +155,11 @@ static bool starts_to_move(goe_filter_t *filter, const goe_observation_t *obs, c
 #endif
 }
 
-GOE_NOINLINE static bool use_image(goe_filter_t *filter, goe_observation_t *obs) {
+/* What the rows bring; its locals are not on the stack while they are made. */
+GOE_NOINLINE static bool use_rows(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
     goe_verdict_t verdict;
     float change[GOE_UNKNOWNS];
-    (void)goe_count_image(&filter->phase_images);
-    const bool measured = measure(filter, obs, &verdict, change);
+    const bool measured = measure(filter, obs, rows, &verdict, change);
     if (goe_filter_is_box(filter)) {
         goe_box_clip(filter);
     }
@@ -171,6 +175,14 @@ GOE_NOINLINE static bool use_image(goe_filter_t *filter, goe_observation_t *obs)
         goe_box_name(filter);
     }
     return true;
+}
+
+GOE_NOINLINE static bool use_image(goe_filter_t *filter, goe_observation_t *obs) {
+    goe_matrix_t matrix;
+    goe_rows_t rows;
+    (void)goe_count_image(&filter->phase_images);
+    find_rows(filter, obs, &matrix, &rows);
+    return use_rows(filter, obs, &rows);
 }
 
 bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, const goe_view_t *view,

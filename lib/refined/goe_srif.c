@@ -433,10 +433,11 @@ void goe_srif_from_covariance(float covariance[GOE_KEPT][GOE_KEPT], const float 
 GOE_STATIC_ASSERT(GOE_CHANGED <= GOE_ROWS_MAX && GOE_CHANGED < GOE_STATES, the_changed_states_fit_into_the_rows);
 
 /* R times the derivative is square from the changed states on: these rows go in again, as if they were measured. */
-void goe_srif_substitute(goe_triangle_t *root, const goe_substitution_t *old, goe_matrix_t *rows) {
+void goe_srif_substitute(goe_triangle_t *root, const goe_substitution_t *old) {
     const size_t kept = GOE_STATES - GOE_CHANGED;
+    goe_matrix_t rows;
     float change[GOE_UNKNOWNS];
-    memset(rows, 0, sizeof *rows);
+    memset(&rows, 0, sizeof rows);
     for (size_t i = 0; i < GOE_STATES; i++) {
         float *r = &root->element[goe_srif_row(i)];
         float row[GOE_CHANGED] = {0.0f};
@@ -450,20 +451,20 @@ void goe_srif_substitute(goe_triangle_t *root, const goe_substitution_t *old, go
             continue;
         }
         for (size_t j = 0; j < GOE_CHANGED; j++) {
-            rows->row[i - kept][GOE_STATE_COLUMN + kept + j] = row[j];
+            rows.row[i - kept][GOE_STATE_COLUMN + kept + j] = row[j];
         }
         for (size_t j = GOE_STATES; j < GOE_UNKNOWNS; j++) {
-            rows->row[i - kept][GOE_STATE_COLUMN + j] = r[j];
+            rows.row[i - kept][GOE_STATE_COLUMN + j] = r[j];
         }
         memset(&r[i], 0, (GOE_UNKNOWNS - i) * sizeof r[0]);
     }
 #if GOE_AUGMENTED
     const uint8_t estimated = root->estimated; /* the augmented states keep their pending change */
     root->estimated = 0;
-    (void)goe_srif_update(root, 1.0f, rows, GOE_CHANGED, change);
+    (void)goe_srif_update(root, 1.0f, &rows, GOE_CHANGED, change);
     root->estimated = estimated;
 #else
-    (void)goe_srif_update(root, 1.0f, rows, GOE_CHANGED, change);
+    (void)goe_srif_update(root, 1.0f, &rows, GOE_CHANGED, change);
 #endif
 }
 

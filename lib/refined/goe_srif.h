@@ -130,7 +130,7 @@ typedef struct {
     float by[GOE_CHANGED][GOE_CHANGED]; /* [old][new] */
 } goe_substitution_t;
 
-/* (R21): R in the new states; *rows is used up. */
-void goe_srif_substitute(goe_triangle_t *root, const goe_substitution_t *old, goe_matrix_t *rows);
+/* (R21): R in the new states. */
+void goe_srif_substitute(goe_triangle_t *root, const goe_substitution_t *old);
 
 #endif

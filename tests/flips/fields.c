@@ -44,7 +44,6 @@ const field_t fields[] = {
     NUMBER(filter.mover.unlike_s) DECIDES(filter.mover.images) DECIDES(filter.mover.moves)
     DECIDES(filter.mover.followed) DECIDES(filter.mover.late) NUMBER(filter.side) NUMBER(filter.state)
     NUMBER(filter.root.element) NUMBER(filter.root.right) DECIDES(filter.root.estimated)
-    NUMBER(filter.rows)
     NUMBER(window.orientation.filtered_deg) NUMBER(window.orientation.raw_deg)
     NUMBER(window.orientation.variance_deg2) DECIDES(window.orientation.count)
     NUMBER(window.length.value) DECIDES(window.length.next) DECIDES(window.length.count)
