@@ -104,8 +104,9 @@ typedef struct {
     goe_disc_doubt_t doubt;
 } widening_t;
 
+/* Of projected derivatives, whose first elements are 0. */
 static float dot(const float a[GOE_STATES], const float b[GOE_STATES], float sum) {
-    for (size_t k = 0; k < GOE_STATES; k++) {
+    for (size_t k = GOE_UNWEIGHTED; k < GOE_STATES; k++) {
         sum += a[k] * b[k];
     }
     return sum;
@@ -139,6 +140,15 @@ static void augmented_scale(augmented_t *augmented, float factor) {
         augmented->part[i] *= factor;
     }
 }
+
+/* x a + z b */
+static augmented_t augmented_sum(const augmented_t *a, float x, const augmented_t *b, float z) {
+    augmented_t sum;
+    for (size_t i = 0; i < GOE_AUGMENTED; i++) {
+        sum.part[i] = x * a->part[i] + z * b->part[i];
+    }
+    return sum;
+}
 #else
 typedef char augmented_t; /* nothing is */
 
@@ -168,6 +178,13 @@ static void augmented_scale(const augmented_t *augmented, float factor) {
     (void)augmented;
     (void)factor;
 }
+
+static augmented_t augmented_sum(const augmented_t *a, float x, const augmented_t *b, float z) {
+    (void)x;
+    (void)b;
+    (void)z;
+    return *a;
+}
 #endif
 
 /* ------------------------------------------------------------------------------------------------------- projection -- */
@@ -184,18 +201,27 @@ static counted_t counted_of(int quantity, float at_s) {
     return counted;
 }
 
-/* The derivatives become those in terms of independent unit errors, with those of the augmented states: their squared norm is the
- * variance, which it returns. *moved: what the condition that makes a disc moves the quantity by, (R7). */
-static float project(const goe_filter_t *filter, const widening_t *wider, const counted_t *counted,
-                     float by[GOE_STATES], augmented_t *augmented, float *moved) {
-    float variance = goe_srif_project(&filter->root, wider->reciprocal, GOE_UNWEIGHTED, by);
-    *moved = 0.0f;
-    augmented_of(filter, by, counted->x, counted->z, counted->at_s, augmented);
+/* The error of a quantity in terms of independent unit errors. */
+typedef struct {
+    float *by; /* of the state: the projected derivatives */
+    augmented_t augmented;
+    float moved; /* by the condition that makes a disc, (R7): a sum of its own, which no scatter widens */
+} error_t;
+
+/* The derivatives error->by become the error. Returns its squared norm, the variance, without what moves. */
+static float project(const goe_filter_t *filter, const widening_t *wider, counted_t counted, error_t *error) {
+    float variance = goe_srif_project(&filter->root, wider->reciprocal, GOE_UNWEIGHTED, error->by);
+    error->moved = 0.0f;
+    augmented_of(filter, error->by, counted.x, counted.z, counted.at_s, &error->augmented);
     if (filter->phase == GOE_PHASE_DISC) {
-        *moved = goe_disc_condition(&wider->doubt, by);
-        variance = dot(by, by, 0.0f);
+        error->moved = goe_disc_condition(&wider->doubt, error->by);
+        variance = dot(error->by, error->by, 0.0f);
     }
-    return variance + augmented_dot(augmented, augmented);
+    return variance + augmented_dot(&error->augmented, &error->augmented);
+}
+
+static float covariance_of(const widening_t *wider, const error_t *a, const error_t *b) {
+    return wider->scatter * dot(a->by, b->by, augmented_dot(&a->augmented, &b->augmented)) + a->moved * b->moved;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- validity -- */
@@ -251,60 +277,84 @@ static unsigned known_now(const goe_filter_t *filter, const goe_quantities_t *q,
 
 /* --------------------------------------------------------------------------------------------------------- quantities -- */
 
+/* Orientation and length are 0 but of a box. */
+static bool has(const goe_quantities_t *q, int quantity) {
+    return q->box || (quantity != GOE_ORIENTATION && quantity != GOE_LENGTH);
+}
+
+GOE_STATIC_ASSERT(GOE_X0 == 0 && GOE_Z0 == 1, the_place_comes_first);
+
 /* The scatter widens the sigmas; validity is decided without it, as doubt must
- * not silence an answer. */
+ * not silence an answer. The errors are those of the derivatives in shape, which are used up; place: of X0 and Z0. */
+/*@ requires \valid_read(filter) && \valid_read(motion) && \valid(shape) && \valid_read(wider) && \valid(q);
+    requires \valid(place + (0 .. 1)); */
 static void set_quantities(const goe_filter_t *filter, const goe_motion_t *motion, goe_shape_t *shape, drift_t drift,
-                           const widening_t *wider, goe_quantities_t *q) {
+                           const widening_t *wider, goe_quantities_t *q, error_t place[2]) {
     const float elapsed_s = since_start_s(filter, motion);
     for (int i = 0; i < GOE_QUANTITIES; i++) {
-        float *by = shape->quantity[i].by;
-        const counted_t counted = counted_of(i, elapsed_s);
-        augmented_t augmented;
-        float moved;
-        const float found =
-            project(filter, wider, &counted, by, &augmented, &moved) * (depends_on_corner(i) ? shape->early : 1.0f);
-        const float excluded = q->prism ? goe_srif_last_variance(by) : 0.0f;
+        error_t other;
+        error_t *error = i <= GOE_Z0 ? &place[i] : &other;
+        error->by = shape->quantity[i].by;
+        error->moved = 0.0f;
+        float found = has(q, i) ? project(filter, wider, counted_of(i, elapsed_s), error) : 0.0f;
+        found *= depends_on_corner(i) ? shape->early : 1.0f;
+        const float excluded = q->prism ? goe_srif_last_variance(error->by) : 0.0f;
         float turns; /* with the orientation, whose own sigma comes first */
         const float given = drift_variance(motion, drift, shape, q->box, i) +
                             goe_box_outline_variance(filter, shape, drift.camera_m, i, &turns);
         q->value[i] = shape->quantity[i].value;
-        q->sigma[i] =
-            sqrtf(wider->scatter * found + given + turns * goe_square(q->sigma[GOE_ORIENTATION]) + moved * moved);
+        q->sigma[i] = sqrtf(wider->scatter * found + given + turns * goe_square(q->sigma[GOE_ORIENTATION]) +
+                            goe_square(error->moved));
         q->worked_out[i] =
             sqrtf(goe_larger(found + given + turns * goe_square(q->worked_out[GOE_ORIENTATION]) - excluded, 0.0f));
     }
 }
 
-/* The middle of the base, in north and east. */
+/* Of the middle of the base along a direction, T axes; error->by: where the part of the state goes. But of a box it is the reference
+ * point, whose errors along X and Z are known: place. */
+/*@ requires \valid_read(filter) && \valid_read(shape) && \valid_read(wider) && \valid_read(place + (0 .. 1));
+    requires \valid(error) && \valid(error->by + (0 .. GOE_STATES - 1)); */
+static void find_middle(const goe_filter_t *filter, const goe_shape_t *shape, const widening_t *wider,
+                        const error_t place[2], counted_t along, error_t *error) {
+    float *by = error->by;
+    if (goe_filter_is_box(filter)) {
+        const goe_xz_t in_trajectory = {along.x, along.z};
+        const goe_xz_t in_axes = goe_xz_into(in_trajectory, filter->axes.turn_cos, filter->axes.turn_sin);
+        memset(by, 0, GOE_STATES * sizeof by[0]);
+        goe_shape_place(&shape->middle, shape->scale_m, in_axes.x, in_axes.z, by);
+        (void)project(filter, wider, along, error);
+        return;
+    }
+    error->augmented = augmented_sum(&place[GOE_X0].augmented, along.x, &place[GOE_Z0].augmented, along.z);
+    error->moved = along.x * place[GOE_X0].moved + along.z * place[GOE_Z0].moved;
+    for (size_t k = GOE_UNWEIGHTED; k < GOE_STATES; k++) {
+        by[k] = along.x * place[GOE_X0].by[k] + along.z * place[GOE_Z0].by[k];
+    }
+}
+
+/* The middle of the base, in north and east. place: errors of X0 and Z0. */
+/*@ requires \valid_read(filter) && \valid_read(motion) && \valid_read(shape) && \valid_read(wider) && \valid(q);
+    requires \valid_read(place + (0 .. 1)); */
 static void set_center(const goe_filter_t *filter, const goe_motion_t *motion, const goe_shape_t *shape, drift_t drift,
-                       const widening_t *wider, goe_quantities_t *q) {
-    const goe_xz_t place = goe_filter_into_trajectory(filter, shape->middle.at);
+                       const widening_t *wider, const error_t place[2], goe_quantities_t *q) {
+    const goe_xz_t middle = goe_filter_into_trajectory(filter, shape->middle.at);
     const goe_xz_t gone = goe_filter_moved(filter, motion);
     const float elapsed_s = since_start_s(filter, motion);
-    augmented_t augmented[3];
-    /* from the state's axes to north: the heading of T and the turn */
-    const float c = motion->heading_cos * filter->axes.turn_cos - motion->heading_sin * filter->axes.turn_sin;
-    const float s = motion->heading_sin * filter->axes.turn_cos + motion->heading_cos * filter->axes.turn_sin;
-    goe_motion_place(motion, place.x * shape->scale_m + filter->axes.start_dx_m + gone.x,
-                     place.z * shape->scale_m + filter->axes.start_dz_m + gone.z, &q->center_m[0], &q->center_m[1]);
+    const counted_t to_north = {-motion->heading_sin, motion->heading_cos, elapsed_s};
+    const counted_t to_east = {motion->heading_cos, motion->heading_sin, elapsed_s};
+    float by[2][GOE_STATES];
+    error_t north;
+    error_t east;
+    north.by = by[0];
+    east.by = by[1];
+    goe_motion_place(motion, middle.x * shape->scale_m + filter->axes.start_dx_m + gone.x,
+                     middle.z * shape->scale_m + filter->axes.start_dz_m + gone.z, &q->center_m[0], &q->center_m[1]);
     const float drifted = drift_variance(motion, drift, shape, q->box, GOE_Z0);
-    float variance[3] = {0.0f, 0.0f, 0.0f}; /* along north, east, and (1, 1), which gives their correlation */
-    float moved[3] = {0.0f, 0.0f, 0.0f};
-    float by[3][GOE_STATES] = {{0.0f}};
-    const bool disc = filter->phase == GOE_PHASE_DISC; /* its derivatives suffice */
-    for (int i = 0; i < (disc ? 2 : 3); i++) {
-        const goe_xz_t along = {i == 0 ? -s : (i == 1 ? c : c - s), i == 0 ? c : (i == 1 ? s : c + s)};
-        const goe_xz_t in_trajectory = goe_filter_into_trajectory(filter, along);
-        const counted_t counted = {in_trajectory.x, in_trajectory.z, elapsed_s};
-        goe_shape_place(&shape->middle, shape->scale_m, along.x, along.z, by[i]);
-        const float found = project(filter, wider, &counted, by[i], &augmented[i], &moved[i]);
-        variance[i] = wider->scatter * found + moved[i] * moved[i];
-    }
-    q->center_sd_m[0] = sqrtf(variance[0] + drifted);
-    q->center_sd_m[1] = sqrtf(variance[1] + drifted);
-    q->center_ne_m2 =
-        disc ? wider->scatter * dot(by[0], by[1], augmented_dot(&augmented[0], &augmented[1])) + moved[0] * moved[1]
-             : 0.5f * (variance[2] - variance[0] - variance[1]);
+    find_middle(filter, shape, wider, place, to_north, &north);
+    find_middle(filter, shape, wider, place, to_east, &east);
+    q->center_sd_m[0] = sqrtf(covariance_of(wider, &north, &north) + drifted);
+    q->center_sd_m[1] = sqrtf(covariance_of(wider, &east, &east) + drifted);
+    q->center_ne_m2 = covariance_of(wider, &north, &east);
     if (goe_within(q->center_sd_m[0], METERS_MAX) && goe_within(q->center_sd_m[1], METERS_MAX)) {
         q->known |= GOE_HAS_CENTER;
     }
@@ -364,6 +414,7 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
                          goe_quantities_t *quantities) {
     goe_quantities_t *q = quantities;
     goe_shape_t shape;
+    error_t place[2];
     q->now = 0;
     q->known = 0;
     q->sigma[GOE_ORIENTATION] = 0.0f;
@@ -378,7 +429,7 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
     q->box = goe_filter_is_box(filter);
     q->prism = filter->phase == GOE_PHASE_PRISM;
     q->length_axis = shape.length_axis;
-    set_quantities(filter, motion, &shape, drift, &wider, q);
+    set_quantities(filter, motion, &shape, drift, &wider, q, place);
     const goe_xz_t gone = goe_filter_moved(filter, motion);
     const goe_xz_t from = {filter->axes.start_dx_m + gone.x, filter->axes.start_dz_m + gone.z};
     q->now = known_now(filter, q, from, settings->filter.range_sd_rel_max);
@@ -387,7 +438,7 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
     q->value[GOE_Z0] += from.z;
     set_velocity(filter, settings, motion, &wider, q);
     if ((q->known & GOE_HAS_POSITION) && (!q->box || (q->known & GOE_HAS_LENGTH))) {
-        set_center(filter, motion, &shape, drift, &wider, q);
+        set_center(filter, motion, &shape, drift, &wider, place, q);
     }
 }
 
@@ -427,20 +478,20 @@ void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t 
     const float scatter = sqrtf(wider.scatter);
     const float early = sqrtf(shape.early) * scatter;
     const float elapsed_s = since_start_s(filter, motion) + ahead_s;
-    float moved[GOE_QUANTITIES];
-    augmented_t augmented[GOE_QUANTITIES];
+    error_t error[GOE_QUANTITIES];
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         float *by = shape.quantity[i].by;
-        const counted_t counted = counted_of(i, elapsed_s);
-        (void)project(filter, &wider, &counted, by, &augmented[i], &moved[i]);
+        error[i].by = by;
+        (void)project(filter, &wider, counted_of(i, elapsed_s), &error[i]);
         const float factor = depends_on_corner(i) ? early : scatter;
         for (int k = 0; k < GOE_STATES; k++) {
             by[k] *= factor;
         }
-        augmented_scale(&augmented[i], factor);
+        augmented_scale(&error[i].augmented, factor);
         for (int j = 0; j <= i; j++) {
             const float drifted = i == j ? drift_variance(motion, drift, &shape, goe_filter_is_box(filter), i) : 0.0f;
-            const float shared = drifted + moved[i] * moved[j] + augmented_dot(&augmented[i], &augmented[j]);
+            const float shared =
+                drifted + error[i].moved * error[j].moved + augmented_dot(&error[i].augmented, &error[j].augmented);
             const float sum = dot(by, shape.quantity[j].by, shared);
             covariance[i][j] = sum;
             covariance[j][i] = sum;
