@@ -294,7 +294,7 @@ bool goe_disc_is_skewed(const goe_filter_t *filter) {
 /* (R7): conditions the state on zero skew, which is what a disc has. Its covariance with the states is R^-1 times its part; no quantity
  * depends on the first states. */
 static void condition_state(const goe_filter_t *filter, float x[GOE_STATES]) {
-    float with_skew[GOE_UNKNOWNS];
+    float with_skew[GOE_UNKNOWNS] = {0.0f};
     const float share = filter->state[GOE_SIDE_X] / skew_of(filter, with_skew);
     memcpy(x, filter->state, sizeof filter->state);
     for (size_t i = GOE_STATES; i-- > GOE_UNWEIGHTED;) {
@@ -325,7 +325,7 @@ goe_disc_doubt_t goe_disc_doubt(const goe_filter_t *filter, bool wanted, goe_xz_
     const float variance = skew_of(filter, part);
     const float skew2 = goe_square(filter->state[GOE_SIDE_X]);
     doubt.skew_variance = variance;
-    memcpy(doubt.part, part, sizeof doubt.part);
+    memcpy(&doubt.part[GOE_SIDE_X], &part[GOE_SIDE_X], sizeof doubt.part - GOE_SIDE_X * sizeof part[0]);
     if (wanted) {
         doubt.spread = sqrtf(goe_larger(skew2 - CHANCE_SHARE * variance, 0.0f));
         return doubt;

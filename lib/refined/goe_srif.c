@@ -251,10 +251,14 @@ void goe_srif_spread(goe_triangle_t *root, const float direction[GOE_STATES], si
 /* A row of R takes its element of the solution out of those behind it. */
 float goe_srif_part(const goe_triangle_t *root, size_t unknown, float part[GOE_UNKNOWNS]) {
     const size_t count = goe_srif_count(root);
-    float variance = 0.0f;
-    goe_srif_zero(part, 0);
-    part[unknown] = 1.0f;
-    for (size_t i = unknown; i < count; i++) {
+    const float *first = &root->element[goe_srif_row(unknown)];
+    const float own = 1.0f / first[unknown];
+    float variance = own * own;
+    part[unknown] = own;
+    for (size_t j = unknown + 1; j < count; j++) {
+        part[j] = -(first[j] * own);
+    }
+    for (size_t i = unknown + 1; i < count; i++) {
         const float *r = &root->element[goe_srif_row(i)];
         const float solved = part[i] / r[i];
         part[i] = solved;
@@ -274,7 +278,7 @@ void goe_srif_reciprocals(const goe_triangle_t *root, float reciprocal[GOE_STATE
 
 GOE_STATIC_ASSERT(GOE_STATES == 10 && GOE_UNWEIGHTED == 3, the_projection_is_written_out_for_ten_states);
 
-/*@ requires \valid_read(root) && i <= j < GOE_STATES; */
+/*@ requires \valid_read(root) && i <= j < GOE_UNKNOWNS; */
 static GOE_INLINE float r_at(const goe_triangle_t *root, size_t i, size_t j) {
     return root->element[goe_srif_row(i) + j];
 }
@@ -338,6 +342,14 @@ float goe_srif_project(const goe_triangle_t *root, const float reciprocal[GOE_ST
 #if GOE_AUGMENTED
 GOE_STATIC_ASSERT(GOE_AUGMENTED == 3, augmented_states_are_written_out);
 
+/* What element i takes out of those of the augmented states. */
+/*@ requires \valid_read(root) && i < GOE_STATES && \valid(p + (0 .. GOE_AUGMENTED - 1)); */
+static GOE_INLINE void take_out(const goe_triangle_t *root, size_t i, float y, float p[GOE_AUGMENTED]) {
+    p[0] -= r_at(root, i, GOE_STATES) * y;
+    p[1] -= r_at(root, i, GOE_STATES + 1) * y;
+    p[2] -= r_at(root, i, GOE_STATES + 2) * y;
+}
+
 void goe_srif_augmented(const goe_triangle_t *root, const float projected[GOE_STATES], size_t first,
                         const float direct[GOE_AUGMENTED], float part[GOE_AUGMENTED]) {
     const size_t count = goe_srif_augmented_count(root);
@@ -354,12 +366,18 @@ void goe_srif_augmented(const goe_triangle_t *root, const float projected[GOE_ST
         p[1] = direct[1];
         p[2] = direct[2];
     }
-    for (size_t i = first; i < GOE_STATES; i++) {
-        const float *r = &root->element[goe_srif_row(i) + GOE_STATES];
-        p[0] -= r[0] * projected[i];
-        p[1] -= r[1] * projected[i];
-        p[2] -= r[2] * projected[i];
+    if (first < GOE_UNWEIGHTED) {
+        take_out(root, 0, projected[0], p);
+        take_out(root, 1, projected[1], p);
+        take_out(root, 2, projected[2], p);
     }
+    take_out(root, 3, projected[3], p);
+    take_out(root, 4, projected[4], p);
+    take_out(root, 5, projected[5], p);
+    take_out(root, 6, projected[6], p);
+    take_out(root, 7, projected[7], p);
+    take_out(root, 8, projected[8], p);
+    take_out(root, 9, projected[9], p);
     part[0] = p[0] / t[0];
     if (count > 1) {
         part[1] = (p[1] - t[1] * part[0]) / t[3];
@@ -372,11 +390,12 @@ void goe_srif_augmented(const goe_triangle_t *root, const float projected[GOE_ST
 
 void goe_srif_marginal(const goe_triangle_t *root, float covariance[GOE_KEPT][GOE_KEPT]) {
     float part[GOE_KEPT][GOE_UNKNOWNS];
+    const size_t count = goe_srif_count(root);
     for (size_t j = 0; j < GOE_KEPT; j++) {
         covariance[j][j] = goe_srif_part(root, j, part[j]);
         for (size_t i = 0; i < j; i++) {
             float sum = 0.0f;
-            for (size_t k = j; k < GOE_UNKNOWNS; k++) {
+            for (size_t k = j; k < count; k++) {
                 sum += part[i][k] * part[j][k];
             }
             covariance[i][j] = sum;

@@ -73,8 +73,8 @@ float goe_srif_update_considering(goe_triangle_t *root, float nuisance_root, goe
 /*@ requires \valid(root) && \valid_read(direction + (0 .. GOE_STATES - 1)) && first <= last < GOE_STATES; */
 void goe_srif_spread(goe_triangle_t *root, const float direction[GOE_STATES], size_t first, size_t last, float sigma);
 
-/* R^-1' times the unit vector of an unknown: its error in terms of independent unit errors. The covariance of two unknowns is the product
- * of theirs. Returns its variance. */
+/* R^-1' times the unit vector of an unknown, state or estimated augmented state: its error in terms of independent unit errors. It is written
+ * from the unknown on, and is 0 before it. The covariance of two unknowns is the product of theirs. Returns the variance. */
 /*@ requires \valid_read(root) && unknown < GOE_UNKNOWNS && \valid(part + (0 .. GOE_UNKNOWNS - 1)); */
 float goe_srif_part(const goe_triangle_t *root, size_t unknown, float part[GOE_UNKNOWNS]);
 
@@ -99,8 +99,8 @@ static inline float goe_srif_last_variance(const float projected[GOE_STATES]) {
 
 #if GOE_AUGMENTED
 /* The contribution of the augmented states to the variance of w' x + direct' augmented, as its squares' sum; of the projected w, whose
- * elements before `first` are 0. direct may be null. */
-/*@ requires \valid_read(root) && \valid_read(projected + (0 .. GOE_STATES - 1)) && first <= GOE_STATES;
+ * elements before `first`, 0 or GOE_UNWEIGHTED, are 0. direct may be null. */
+/*@ requires \valid_read(root) && \valid_read(projected + (0 .. GOE_STATES - 1));
     requires direct == \null || \valid_read(direct + (0 .. GOE_AUGMENTED - 1));
     requires \valid(part + (0 .. GOE_AUGMENTED - 1)); */
 void goe_srif_augmented(const goe_triangle_t *root, const float projected[GOE_STATES], size_t first,

