@@ -33,6 +33,7 @@
 #define SHEAR_FREEDOM 0.6f     /* ... of the shear, in half widths */
 #define DEPTH_FREEDOM 1.0f   /* ... of the log of the depth: a population of masts, cars and houses, in any direction */
 #define DEPTH_TURNED 0.3f    /* sine of the turn of the line of sight from which on images give the depth */
+#define BENT_MIN 0.01f        /* sigma of the log of the depth below which its exponential is a line */
 #define DISC_FREEDOM 1.0e-3f /* both, where a disc is configured */
 #define NEAR_MIN 1.0e-9f     /* of the footprint, and of its distance, units of Z0 */
 #define GROUND_MIN 1.0e-6f   /* one sigma of the ground's offset, units of Z0 */
@@ -315,6 +316,13 @@ void goe_prism_shape(const goe_filter_t *filter, goe_shape_t *shape) {
 
 bool goe_prism_knows_depth(const goe_filter_t *filter) {
     return goe_absolute(goe_shape_turned(filter, goe_filter_measured(filter))) > DEPTH_TURNED;
+}
+
+/* The last state's sigma is that of its own row. */
+float goe_prism_bend(const goe_filter_t *filter) {
+    const float last = filter->root.element[goe_srif_row(GOE_PRISM_DEPTH) + GOE_PRISM_DEPTH];
+    const float sd = 1.0f / goe_larger(goe_absolute(last), 1.0f / DEPTH_MAX);
+    return sd > BENT_MIN ? (goe_exp(sd) - 1.0f) / sd : 1.0f;
 }
 
 /* (R25) along the line of sight. */

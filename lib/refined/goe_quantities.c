@@ -101,6 +101,7 @@ static float drift_variance(const goe_motion_t *motion, drift_t drift, const goe
 typedef struct {
     float scatter;                /* factor on the variance of what it found, (R34) */
     float reciprocal[GOE_STATES]; /* of R, for the projections */
+    float bend; /* factor on a prism's depth, goe_prism_bend() */
     goe_disc_doubt_t doubt;
 } widening_t;
 
@@ -216,6 +217,11 @@ static float project(const goe_filter_t *filter, const widening_t *wider, counte
     if (filter->phase == GOE_PHASE_DISC) {
         error->moved = goe_disc_condition(&wider->doubt, error->by);
         variance = dot(error->by, error->by, 0.0f);
+    }
+    if (filter->phase == GOE_PHASE_PRISM) {
+        float *depth = &error->by[GOE_PRISM_DEPTH];
+        variance += (goe_square(wider->bend) - 1.0f) * goe_square(*depth);
+        *depth *= wider->bend;
     }
     return variance + augmented_dot(&error->augmented, &error->augmented);
 }
@@ -424,7 +430,8 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
         return;
     }
     const drift_t drift = drift_of(filter, &settings->navigation, motion);
-    const widening_t wider = widening_of(filter, settings, motion, drift, &shape);
+    widening_t wider = widening_of(filter, settings, motion, drift, &shape);
+    wider.bend = goe_prism_bend(filter);
     q->early_m2 = early_variance(filter, &settings->navigation, motion);
     q->box = goe_filter_is_box(filter);
     q->prism = filter->phase == GOE_PHASE_PRISM;
@@ -474,7 +481,8 @@ void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t 
         count_from_datum(&shape);
         meet_near_side(filter, drift.camera_m, &shape);
     }
-    const widening_t wider = widening_of(filter, settings, motion, drift, &shape);
+    widening_t wider = widening_of(filter, settings, motion, drift, &shape);
+    wider.bend = for_hazard ? 1.0f : goe_prism_bend(filter);
     const float scatter = sqrtf(wider.scatter);
     const float early = sqrtf(shape.early) * scatter;
     const float elapsed_s = since_start_s(filter, motion) + ahead_s;
