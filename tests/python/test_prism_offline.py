@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 from goe_tools.flights.boxes import BUILDING, EXACT, MAST, BoxOptions, Solid, box_flight
 from goe_tools.flights.flight import Flight
+from goe_tools.models import prism_offline
 from goe_tools.models.prism import (
     AXIS,
     STATES,
     UNKNOWNS,
     A,
+    D,
     E,
     ErrorModel,
     Q,
@@ -25,6 +27,7 @@ from goe_tools.models.prism import (
     sights,
 )
 from goe_tools.models.prism_bound import VX, VZ, bound_of
+from goe_tools.models.prism_filter import SHEAR_SHARE
 from goe_tools.models.prism_offline import Track, fit
 
 X0, Z0, WIDTH, HEIGHT = 0, 1, 3, 5
@@ -71,15 +74,17 @@ def test_sides_are_those_of_one_image(change: dict[str, float], most: float, slo
     flight = box_flight(MAST, BoxOptions(roll_deg=25.0), 3)
     track = Track(replace(flight, camera=replace(flight.camera, **change)), ErrorModel())
     state = track.start()
-    state[:3], state[S], state[Q] = [0.01, -0.005, 0.008], 0.4, 0.9 * state[Q]
+    state[:3], state[S], state[D] = [0.01, -0.005, 0.008], 0.3 * state[W], 0.2
+    state[Q] *= 0.9
     predicted, slope = track.predicted(state)
+    size = np.where(np.arange(UNKNOWNS) == S, 3.0, 1.0)  # the shear is most sensitive to the touching point
     unknowns = np.append(state[: len(STATES)], np.zeros(UNKNOWNS - len(STATES)))
     for n in range(0, len(track.side), 7):
         sight, side = track.sight[n], track.side[n]
         at = exact_side(sight, unknowns, side, track.measured[n])
         row = row_of(sight, state[: len(STATES)], side, at)
         assert predicted[n] == pytest.approx(at, abs=most)
-        assert slope[n] == pytest.approx(row.slope, rel=slope_most, abs=slope_most)
+        assert slope[n] / size == pytest.approx(row.slope / size, rel=slope_most, abs=slope_most)
 
 
 def test_a_velocity_error_moves_the_camera() -> None:
@@ -102,11 +107,13 @@ def test_derivatives_of_all_that_counts(configured: ErrorModel) -> None:
     track = Track(box_flight(MAST, BoxOptions(roll_deg=25.0), 2), configured)
     state = track.start()
     state[:3], state[[VX, VZ]], state[3] = [0.01, -0.005, 0.008], [0.1, -0.2], 0.003
+    state[S], state[D] = 0.3 * state[W], 0.2
+    assert (track.decide(state) == state).all() and track.estimates_depth
     whitening = np.eye(len(track.side))
     slope = track.residuals(state, whitening)[1]
     step = np.full(len(state), 1e-5)
     step[Q] = 1e-7
-    for i in np.flatnonzero(np.arange(len(state)) != len(STATES) - 1):  # c is kept constant
+    for i in range(len(state)):
         move = np.eye(len(state))[i] * step[i]
         after, before = (track.residuals(state + m, whitening)[0] for m in (move, -move))
         size = max(1.0, np.abs(slope[:, i]).max())
@@ -129,17 +136,38 @@ def test_exact_boxes_give_the_truth(roll: float, configured: ErrorModel) -> None
     assert found.cost < 1e-6 and np.isnan(found.values[[2, 4]]).all()
 
 
-def test_a_depth_that_roll_shows() -> None:
-    """An ellipse three times as deep as wide; the initial guess is wrong by 3.7 sigma."""
-    configured = replace(GAUSS, disc=False, box_noise_px=0.05)
-    flight = box_flight(MAST, replace(EXACT, roll_deg=25.0), 2)
-    track = Track(flight, configured)
+UNEQUAL = replace(GAUSS, disc=False, box_noise_px=0.05)
+
+
+@pytest.mark.parametrize("roll", [0.0, 25.0])
+@pytest.mark.parametrize(("depth", "shear"), [(3.0, 0.0), (2.0, 0.6), (0.6, -0.6)])
+def test_a_footprint_that_a_turn_shows(depth: float, shear: float, roll: float) -> None:
+    """An ellipse with another depth than its width, turned; shear in half widths."""
+    flight = box_flight(MAST, replace(EXACT, roll_deg=roll), 2)
+    track = Track(flight, UNEQUAL)
     state = true_place(flight, track)
-    state[S] = np.log(3.0)
-    found = fit(framed(flight, configured, state), configured)
+    state[S], state[D] = shear * state[W], np.log(depth)
+    found = fit(framed(flight, UNEQUAL, state), UNEQUAL)
     wanted = quantities(state[: len(STATES)], track.turn)
-    assert found.state[S] == pytest.approx(state[S], abs=0.02)
+    assert found.state[D] == pytest.approx(state[D], abs=0.02)
+    assert found.state[S] == pytest.approx(state[S], abs=0.02 * state[W])
     assert found.values[ESTIMATED] == pytest.approx(wanted, abs=0.1)
+
+
+def test_a_depth_that_no_turn_shows_is_considered(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its part of the variances is what a small true depth moves the fit by, times its sigma (1) over that depth."""
+    flight = box_flight(MAST, replace(EXACT, roll_deg=25.0), 2).first(60)
+    track = Track(flight, UNEQUAL)
+    state = true_place(flight, track)
+    state[D] = 0.02
+    boxes = framed(flight, UNEQUAL, state)
+    found = fit(boxes, UNEQUAL)
+    moved = found.values[ESTIMATED] - quantities(state[: len(STATES)], track.turn)
+    monkeypatch.setattr(prism_offline, "footprint_sds", lambda errors, half: (SHEAR_SHARE * half, 0.0))
+    known = fit(boxes, UNEQUAL)
+    assert found.state[D] == 0.0
+    considered = np.sqrt(found.sigma[ESTIMATED] ** 2 - known.sigma[ESTIMATED] ** 2)
+    assert considered == pytest.approx(np.abs(moved) / state[D], rel=0.05, abs=0.01)
 
 
 @pytest.mark.parametrize(("solid", "configured"), [(MAST, GAUSS), (BUILDING, ErrorModel())], ids=["mast", "building"])

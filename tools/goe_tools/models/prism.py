@@ -1,11 +1,20 @@
 """Model of the sides of an upright bounding box around an upright obstacle, in float64, independent of the library.
 
-The obstacle is a prism over an ellipse with the half widths w across the axes' Z and w e^(s + c) along Z. A side of
-the box is an image line; the plane through it and the camera touches the prism at its foot or its roof. With the
-plane's outward normal n, in level axes (X, Y down, Z) at the camera, u = (nX, nZ)/|(nX, nZ)|, and the middle M of the
-footprint, the touching point is
+The obstacle is a prism over a horizontal ellipse. Its footprint about the middle M, (X, Z) in the axes, is the image of
+the unit disc under a triangular matrix,
 
-    (X, Z) = M + h(u) u + (a part along the line)           h(u) = sqrt((w uX)^2 + (w e^(s + c) uZ)^2)
+    {M + L v: |v| <= 1}         L = [[w, 0], [s, D]]         D = w e^d
+
+w is the half width across the axes' Z. The shear s is how much deeper the right end (v = (1, 0)) lies than the middle.
+D is the half depth along Z where s = 0. Every ellipse has one such L with w, D > 0, the Cholesky root of L L': for half
+axes l1, l2 along the columns of a rotation R, L L' = R diag(l1^2, l2^2) R'. The footprint may therefore be turned.
+
+A side of the box is an image line; the plane through it and the camera touches the prism at its foot or its roof. With
+the plane's outward normal n, in level axes (X, Y down, Z) at the camera, and u = (nX, nZ)/|(nX, nZ)|, the touching
+point is
+
+    (X, Z) = M + L L' u/h(u)                     h(u) = |L' u| = sqrt((w uX + s uZ)^2 + (D uZ)^2)
+           = M + h(u) u + (a part along the line)
     Y      = ground if nY > 0, otherwise roof
 
 h is the support function of the ellipse; to first order the point moves with it along u. All lengths are in units
@@ -21,10 +30,10 @@ States (``STATES``):
     bx by bz  attitude: true = estimated, turned by the rotation vector b in body axes, rad; to first order
     g         true minus given height of the camera, over Z0
     a q       X0/Z0 and 1/Z0 (1/m) of the middle
-    s         log of the depth along Z over the width
-    w         half width over Z0
     e         top above the altimeter's zero, over Z0
-    c         like s, but not estimated
+    s         shear, over Z0
+    w         half width over Z0
+    d         log of the depth D over the half width
 
 The position error of the camera (``PX``, ``PY``, ``PZ``: m, same axes) is not a state, but derivatives by it are
 given, too. All derivatives use complex steps, to detect errors in the library's formulas."""
@@ -41,8 +50,8 @@ from ..library import MODEL_AUTO, MODEL_DISC
 from ..logs.obslog import Camera
 from .model import COMPLEX_STEP, distorted, lens_slope
 
-STATES = ("bx", "by", "bz", "g", "a", "q", "s", "w", "e", "c")
-BX, BY, BZ, G, A, Q, S, W, E, C, PX, PY, PZ = range(13)
+STATES = ("bx", "by", "bz", "g", "a", "q", "e", "s", "w", "d")
+BX, BY, BZ, G, A, Q, E, S, W, D, PX, PY, PZ = range(13)
 UNKNOWNS = 13  # states and position
 BOX_LEFT, BOX_TOP, BOX_RIGHT, BOX_BOTTOM = range(4)
 AXIS = np.array([0, 1, 0, 1])  # of each side's image coordinate
@@ -175,18 +184,25 @@ class Touch:
     along: np.ndarray  # (2,)
 
 
+def _reach(unknowns: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """L' u of the footprint, (...) each; ``unknowns``: (..., 13), ``u``: (..., 2)."""
+    across = unknowns[..., W] * u[..., 0] + unknowns[..., S] * u[..., 1]
+    return across, unknowns[..., W] * np.exp(unknowns[..., D]) * u[..., 1]
+
+
 def support(unknowns: np.ndarray, u: np.ndarray) -> np.ndarray:
-    """h(u) of the footprint; ``unknowns``: (..., 13), also complex."""
-    half = unknowns[..., W]
-    deep = half * np.exp(unknowns[..., S] + unknowns[..., C])
-    return np.sqrt((half * u[0]) ** 2 + (deep * u[1]) ** 2)
+    """h(u) = |L' u| of the footprint; ``unknowns``: (..., 13), also complex."""
+    across, along = _reach(unknowns, u)
+    return np.sqrt(across**2 + along**2)
 
 
-def _rim_point(state: np.ndarray, u: np.ndarray) -> np.ndarray:
-    """(2,): the ellipse's farthest point along u, from its middle: the gradient of the support function."""
-    half = state[W]
-    deep = half * np.exp(state[S] + state[C])
-    return np.array([half**2 * u[0], deep**2 * u[1]]) / np.hypot(half * u[0], deep * u[1])
+def rim_point(unknowns: np.ndarray, u: np.ndarray) -> np.ndarray:
+    """(..., 2): the ellipse's farthest point along u, from its middle: L L' u/h, the gradient of the support
+    function. Also for complex unknowns."""
+    across, along = _reach(unknowns, u)
+    deep = unknowns[..., W] * np.exp(unknowns[..., D])
+    point = np.stack([unknowns[..., W] * across, unknowns[..., S] * across + deep * along], -1)
+    return point / np.sqrt(across**2 + along**2)[..., None]
 
 
 def in_camera(sight: Sight, unknowns: np.ndarray, touch: Touch) -> np.ndarray:
@@ -208,7 +224,7 @@ def _touch(sight: Sight, state: np.ndarray, normal: np.ndarray, foot: bool | Non
     n = n - np.cross(sight.axes_from_body @ state[:3], n)
     level = np.hypot(n[0], n[2])
     u = n[[0, 2]] / level if level > LEVEL_MIN else np.array([0.0, -1.0])
-    return Touch(u, bool(n[1] > 0) if foot is None else foot, _rim_point(state, u) - support(state, u) * u)
+    return Touch(u, bool(n[1] > 0) if foot is None else foot, rim_point(state, u) - support(state, u) * u)
 
 
 def has_lens(camera: Camera) -> bool:
@@ -303,6 +319,14 @@ def box_size(sight: Sight, state: np.ndarray, axis: int) -> float:
         return float(measured)
     ahead = max(1 - sight.moved_m[2] * state[Q], AHEAD_MIN)
     return max(state[E] + state[G] if axis else 2 * state[W], 0.0) / ahead
+
+
+def turned(sight: Sight, state: np.ndarray) -> float:
+    """Sine of the angle by which the line of sight to the middle has turned since the axes' start; negative for
+    a camera that passes to the right."""
+    first = np.array([state[A], 1.0])
+    now = first - sight.moved_m[[0, 2]] * state[Q]
+    return float((now[0] * first[1] - now[1] * first[0]) / (np.linalg.norm(first) * np.linalg.norm(now)))
 
 
 def quantities(state: np.ndarray, turn: np.ndarray) -> np.ndarray:

@@ -30,7 +30,7 @@ from .prism import (
     STATES,
     UNKNOWNS,
     A,
-    C,
+    D,
     E,
     ErrorModel,
     G,
@@ -99,11 +99,12 @@ def noise_of_rows(rows: list[tuple[Sight, Row]], state: np.ndarray, errors: Erro
 
 
 def prior_sigmas(state: np.ndarray, errors: ErrorModel) -> np.ndarray:
-    """(12,): sigmas of the states and the velocity over ground; a disc is as deep as it is wide."""
+    """(12,): sigmas of the states and the velocity over ground; a mast is known to be as deep as it is wide, without
+    shear."""
     sigma = np.full(COUNT, WEAK_SIGMA)
     sigma[:3] = max(np.radians(errors.attitude_bias_sd_deg), KNOWN_SIGMA)
     sigma[G] = max(errors.height_sd_m * state[Q], KNOWN_SIGMA)
-    sigma[[S, C]] = KNOWN_SIGMA
+    sigma[[S, D]] = KNOWN_SIGMA
     sigma[[VX, VZ]] = max(errors.velocity_bias_sd_m_s, KNOWN_SIGMA)
     return sigma
 

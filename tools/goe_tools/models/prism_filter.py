@@ -14,10 +14,18 @@ m - F (x' - x) if the state becomes x', with the remaining variance V.
     whiten      r <- r - m  J <- J - F  N = V + white
     update      k = V/(N + common variance of the image's rows)    m <- m + k r    F <- F + k J    V <- V - k V
 
-The state c has a prior and is never estimated (a consider parameter, Schmidt): P is the covariance of the others for
-c = 0, and z c is the effect of another c on the estimate. The gain K uses P alone.
+The depth d comes last. P is the covariance of the other states if d were known, and z d' the effect of an error d' of
+d on them, so
 
-    P <- (I - K J) P (I - K J)' + K N K'        z <- z - K (J z + J_c)          all others' covariance: P + z z' var(c)
+    covariance of all states = [[P + z z' var(d), z var(d)], [z' var(d), var(d)]]
+
+While the line of sight has turned by an angle whose sine is at most ``DEPTH_TURNED`` since the filter's start, d has
+its prior and is not estimated (a consider parameter, Schmidt): the gain K uses P alone.
+
+    P <- (I - K J) P (I - K J)' + K N K'        z <- z - K (J z + J_d)        d, var(d): unchanged
+
+Later images estimate it: K, for all states, uses the covariance of all states, and P, z, var(d) follow from the
+updated one.
 
 If the residuals of a track are larger than configured, or correlated from image to image, the filter widens its sigmas:
 it multiplies the variance by ``Scatter.factor``.
@@ -37,7 +45,7 @@ from .prism import (
     PX,
     STATES,
     A,
-    C,
+    D,
     E,
     ErrorModel,
     G,
@@ -50,6 +58,7 @@ from .prism import (
     quantities,
     quantity_slopes,
     sights,
+    turned,
     visible_row_of,
 )
 
@@ -57,7 +66,7 @@ COUNT = len(STATES)
 SCATTER_SHARE = 0.01  # white part of a side's error, of the box's size
 EARLY_SHARE = 0.08  # of tau: images at a shorter distance from the last one are not used
 GAP_MAX_S = 1000.0  # longer gaps count as this
-DEPTH_LIMIT = 2.0  # of |s|
+DEPTH_LIMIT = 2.0  # of |d|
 AHEAD_MIN = 0.02  # of the middle, units of Z0
 RAY_AHEAD_MIN = 0.02
 GROUND_SIGMAS = 3.0  # least distance of the foot below the horizon for a range from flat ground
@@ -68,12 +77,10 @@ NO_ALTIMETER_M = 50.0  # from this sigma of the height on the first box determin
 HEADING_ARM = 0.08  # rad/(m/s): a yaw bias looks like a velocity bias
 GROUND_MIN = 1e-6  # units of Z0
 PATH_MIN_M = 0.1
-DEPTH_SD = 0.3  # of s
-CONSIDER_SD = 3.0  # of c
+SHEAR_SHARE = 0.6  # sigma of s, of the first half width
+DEPTH_SD = 1.0  # of d
 DISC_SD = 1e-3  # of both if the model is a disc
-# Change of the width per radian that the line of sight turns, up to an angle; and depth beyond the width, in which
-# the roof point of the top may be.
-TURNED_SHARE, TURNED_MAX, ROOF_SHARE = (float(np.float32(share)) for share in (1.3, 0.15, 0.15))
+DEPTH_TURNED = float(np.float32(0.3))  # sine of the turn of the line of sight above which an image estimates d
 
 SCATTER_KEPT, CORRELATION_MOST = (float(np.float32(share)) for share in (0.985, 0.9))  # as in the library
 SCATTER_CLIP, SCATTER_SEED = 10.0, 10.0
@@ -81,9 +88,14 @@ MEAN_SEEDS, MEAN_IMAGES, RATIO_MOST = 8, 64, 20.0
 CHANCE = float(np.float32(0.07))  # one sigma of both means: only an excess widens the sigmas
 
 
-def depth_sds(errors: ErrorModel) -> tuple[float, float]:
-    """Sigmas of s and of c before the first image."""
-    return (DISC_SD, DISC_SD) if errors.disc else (DEPTH_SD, CONSIDER_SD)
+def footprint_sds(errors: ErrorModel, half: float) -> tuple[float, float]:
+    """Sigmas of s and of d before the first image, for the first half width."""
+    return (DISC_SD * half, DISC_SD) if errors.disc else (SHEAR_SHARE * half, DEPTH_SD)
+
+
+def knows_depth(sight: Sight, state: np.ndarray) -> bool:
+    """Whether an image estimates d."""
+    return abs(turned(sight, state)) > DEPTH_TURNED
 
 
 @dataclass
@@ -221,7 +233,7 @@ class PrismFilter:
             state[G] = foot[1] - sight.height_m / range_m
         self.state = state
         sd = self._prior_sd(size)
-        self.covariance, self.by_c, self.c_sd = np.diag(sd[:C] ** 2), np.zeros(C), float(sd[C])
+        self._divide(np.diag(sd**2))
         self.memory = [Memory(0.0, np.zeros(COUNT), 0.0) for _ in range(4)]
         self.flown_m, self.last_m = 0.0, in_t.moved_m  # along the path since the start
         self.settled, self.gained = self.full_covariance(), np.zeros(COUNT)  # after the latest image, and since
@@ -237,32 +249,39 @@ class PrismFilter:
         sd[G] = max(errors.height_sd_m * q, GROUND_MIN)
         sd[[A, Q, W]] = 1.0, 2.0 * q, 2.5 * width
         sd[E] = 10 * max(abs(self.state[E]), width)
-        sd[[S, C]] = depth_sds(errors)
+        sd[[S, D]] = footprint_sds(errors, self.state[W])
         return sd
 
     # ------------------------------------------------------------------------------------------------------- an image
 
+    def _divide(self, covariance: np.ndarray) -> None:
+        """Keeps the covariance (10, 10) of all states as P, z, var(d)."""
+        self.depth_variance = float(covariance[D, D])
+        self.by_depth = covariance[:D, D] / self.depth_variance
+        self.covariance = covariance[:D, :D] - self.depth_variance * np.outer(self.by_depth, self.by_depth)
+
     def full_covariance(self) -> np.ndarray:
-        """(10, 10), including c."""
-        by_c = np.append(self.by_c, 1.0)
-        result = self.c_sd**2 * np.outer(by_c, by_c)
-        result[:C, :C] += self.covariance
+        """(10, 10), of all states."""
+        by_depth = np.append(self.by_depth, 1.0)
+        result = self.depth_variance * np.outer(by_depth, by_depth)
+        result[:D, :D] += self.covariance
         return result
 
     def _pass_time(self, span_s: float) -> None:
-        """The position walks along X and Z in turn: a step along Z rescales the lengths, which are in units of Z0."""
+        """The position walks along X and Z in turn: a step along Z rescales the lengths, which are in units of Z0. The
+        depth d is a ratio of lengths."""
         drift, walk = np.radians(self.errors.attitude_walk_sd_deg), self.errors.position_walk_sd_m * self.state[Q]
-        noise = np.zeros(C)
+        noise = np.zeros(D)
         noise[BX : BX + 3] = drift**2
         self.gained[BX : BX + 3] += drift**2 * span_s
         self.gained[A] += walk**2 * span_s
         self.walked_s += span_s
         axis = int(self.walked_s[1] > self.walked_s[0])
-        direction = np.zeros(C)
+        direction = np.zeros(D)
         if axis == 0:
             direction[A] = 1.0
         else:
-            direction[[G, A, Q, W, E]] = self.state[[G, A, Q, W, E]]
+            direction[G:D] = self.state[G:D]
         waited_s, self.walked_s[axis] = float(self.walked_s[axis]), 0.0
         self.covariance = (
             self.covariance + np.diag(noise * span_s) + walk**2 * waited_s * np.outer(direction, direction)
@@ -336,24 +355,29 @@ class PrismFilter:
             memory.variance -= gain * memory.variance
             memory.measured = True
 
-    def _nis(self, rows: Rows, shared: np.ndarray) -> float:
-        slope = rows.slope[:, :C]
-        expected = slope @ self.covariance @ slope.T + shared + np.diag(rows.own)
+    def _update(self, rows: Rows, shared: np.ndarray, estimate_depth: bool) -> float:
+        """Returns the normalized square of the residuals (nis) as expected with the depth as it is, or estimated."""
+        count = COUNT if estimate_depth else D
+        slope, noise = rows.slope[:, :count], shared + np.diag(rows.own)
+        covariance = self.full_covariance() if estimate_depth else self.covariance
+        expected = slope @ covariance @ slope.T + noise
+        gain = np.linalg.solve(expected, slope @ covariance).T
+        rest = np.eye(count) - gain @ slope
+        covariance = rest @ covariance @ rest.T + gain @ noise @ gain.T
+        if estimate_depth:
+            self._divide(covariance)
+        else:
+            self.covariance = covariance
+            self.by_depth = rest @ self.by_depth - gain @ rows.slope[:, D]
+        self._move(gain @ rows.residual)
         return float(rows.residual @ np.linalg.solve(expected, rows.residual))
 
-    def _update(self, rows: Rows, shared: np.ndarray) -> None:
-        slope, by_c = rows.slope[:, :C], rows.slope[:, C]
-        noise = shared + np.diag(rows.own)
-        cross = self.covariance @ slope.T
-        gain = np.linalg.solve(slope @ cross + noise, cross.T).T
-        change = gain @ rows.residual
-        rest = np.eye(C) - gain @ slope
-        self.covariance = rest @ self.covariance @ rest.T + gain @ noise @ gain.T
-        self.by_c = self.by_c - gain @ (slope @ self.by_c + by_c)
-        self.state = self.state + np.append(change, 0.0)
-        self.state[S] = np.clip(self.state[S], -DEPTH_LIMIT, DEPTH_LIMIT)
+    def _move(self, change: np.ndarray) -> None:
+        """Changes the first states, and what the sides' errors are at them."""
+        self.state = self.state + np.append(change, np.zeros(COUNT - len(change)))
+        self.state[D] = np.clip(self.state[D], -DEPTH_LIMIT, DEPTH_LIMIT)
         for memory in self.memory:
-            memory.value -= memory.by[:C] @ change
+            memory.value -= memory.by[: len(change)] @ change
 
     def take(self, in_t: Sight) -> bool:
         """Takes an image; returns whether it was used."""
@@ -391,9 +415,8 @@ class PrismFilter:
         white = np.radians(self.errors.attitude_white_sd_deg)
         shared = white**2 * rows.about @ rows.about.T + rows.shift @ rows.shift.T
         self._learn(rows, shared)
-        nis = self._nis(rows, shared)
+        nis = self._update(rows, shared, knows_depth(sight, self.state))
         self.scatter.take_fit(RATIO_MOST if poor else nis / len(rows.side))
-        self._update(rows, shared)
         self.settled, self.gained = self.full_covariance(), np.zeros(COUNT)
         return True
 
@@ -418,22 +441,8 @@ class PrismFilter:
         variance[:2] += (
             errors.position_walk_sd_m**2 * (span_s + before_s) + (errors.velocity_bias_sd_m_s * before_s) ** 2
         )
-        variance += self._no_ellipse(values, in_t)
         values[:2] += self.origin_m[[0, 2]]
         return values, np.sqrt(variance)
-
-    def _no_ellipse(self, values: np.ndarray, in_t: Sight) -> np.ndarray:
-        """(4,) variances, m^2: error of an ellipse across the first line of sight for obstacles other than a disc."""
-        variance = np.zeros(4)
-        if not self.errors.disc:
-            first, now = values[:2], values[:2] - (in_t.moved_m - self.origin_m)[[0, 2]]
-            range_m = float(np.linalg.norm(now))
-            turned = abs(first[0] * now[1] - first[1] * now[0]) / (float(np.linalg.norm(first)) * range_m)
-            below_m = in_t.given_height_m - values[3]
-            deeper_m = max(values[2] * (np.exp(self.state[S]) - 1.0), 0.0)
-            variance[2] = (TURNED_SHARE * values[2] * min(turned, TURNED_MAX)) ** 2
-            variance[3] = (ROOF_SHARE * deeper_m * below_m) ** 2 / (range_m**2 + below_m**2)
-        return variance
 
 
 def follow(flight: Flight, errors: ErrorModel) -> PrismTrack:

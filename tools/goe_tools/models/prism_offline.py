@@ -11,11 +11,12 @@ until the fit converges. It is the covariance of ``prism_bound`` plus the random
 
     + position_walk^2 min(t_i, t_j) J_p J_p' + attitude_drift^2 min(t_i, t_j) J_b J_b'      t: since the first image
 
-so each side's errors are whitened over its whole series. Errors of attitude, height and velocity and the depth s have
-the library's priors; place and sizes have almost none, while the library has a weak first guess. The depth c is a
-consider parameter fixed at 0: with z = d state / d c of the fit,
+so each side's errors are whitened over its whole series. Errors of attitude, height and velocity, the shear s and the
+depth d have the library's priors; place and sizes have almost none, while the library has a weak first guess. The fit
+estimates d if at the last image the line of sight has turned as far as the library requires (``DEPTH_TURNED``).
+Otherwise d is a consider parameter fixed at 0: with z = d state / d d of the fit,
 
-    covariance of the states = (J' N^-1 J + diag(p^-2))^-1 + z z' var(c)
+    covariance of the states = (J' N^-1 J + diag(p^-2))^-1 + z z' var(d)
 
 Three margins of the library are left out: a white share of each side, a yaw error that represents the velocity error,
 and the reduced weight of sides that do not fit."""
@@ -37,7 +38,7 @@ from .prism import (
     STATES,
     UNKNOWNS,
     A,
-    C,
+    D,
     E,
     ErrorModel,
     G,
@@ -48,10 +49,11 @@ from .prism import (
     W,
     quantities,
     quantity_slopes,
+    rim_point,
     sights,
 )
 from .prism_bound import COUNT, ORDER, VX, VZ, noise_of_rows, prior_sigmas
-from .prism_filter import PrismFilter, depth_sds
+from .prism_filter import PrismFilter, footprint_sds, knows_depth
 
 ROUNDS = 4  # most rounds of computing the covariance and fitting
 MAX_STEPS = 60  # in a round
@@ -89,6 +91,8 @@ class Track:
             raise ValueError(f"{flight.name}: no image measures left and right of a box ahead")
         self.turn, self.origin_m, self.start_s = prism.turn, prism.origin_m, prism.start_s
         self.first_guess = np.append(prism.state, [0.0, 0.0])
+        self.footprint_sd = footprint_sds(errors, self.first_guess[W])  # of s, d
+        self.estimates_depth = False
         self.camera = flight.camera
         used = [sight.turned(self.turn, self.origin_m) for sight in images if sight.time_s >= self.start_s]
         self.sight: list[Sight] = [s for s in used for _ in range(int(np.isfinite(s.side).sum()))]
@@ -112,6 +116,13 @@ class Track:
             state[Q] *= FARTHER
         return state
 
+    def decide(self, state: np.ndarray) -> np.ndarray:
+        """Decides at a state whether to estimate the depth. Returns the state, with d = 0 if not."""
+        self.estimates_depth = knows_depth(self.sight[-1], state)
+        result = state.copy()
+        result[D] *= self.estimates_depth
+        return result
+
     # --------------------------------------------------------------------------------------------------- measurements
 
     def unknowns(self, state: np.ndarray) -> np.ndarray:
@@ -124,13 +135,11 @@ class Track:
     def _rim_point(self, unknowns: np.ndarray, u: np.ndarray, foot: np.ndarray) -> np.ndarray:
         """(..., n, 3): the rim's farthest point along u (..., n, 2), in the camera's axes; also for complex
         unknowns."""
-        a, q, g, e, half = (unknowns[..., i] for i in (A, Q, G, E, W))
-        deep = half * np.exp(unknowns[..., S] + unknowns[..., C])
-        reach = np.sqrt((half * u[..., 0]) ** 2 + (deep * u[..., 1]) ** 2)
-        shift = unknowns[..., PX:]
+        a, q, g, e = (unknowns[..., i] for i in (A, Q, G, E))
+        rim, shift = rim_point(unknowns, u), unknowns[..., PX:]
         height = (self.height_m - shift[..., 1]) * q
-        x = a - (self.moved_m[:, 0] + shift[..., 0]) * q + half**2 * u[..., 0] / reach
-        z = 1 - (self.moved_m[:, 2] + shift[..., 2]) * q + deep**2 * u[..., 1] / reach
+        x = a - (self.moved_m[:, 0] + shift[..., 0]) * q + rim[..., 0]
+        z = 1 - (self.moved_m[:, 2] + shift[..., 2]) * q + rim[..., 1]
         point = np.stack([x, np.where(foot, height + g, height - e), z], -1)
         turn = np.einsum("nij,...nj->...ni", self.axes_from_body, unknowns[..., :3])
         return np.einsum("...ni,nij->...nj", point + np.cross(turn, point), self.axes_from_camera)
@@ -194,17 +203,19 @@ class Track:
         """Residuals (12,) of the priors, and their derivatives (12, 12). The height's sigma is configured in meters, g
         is in units of Z0."""
         sigma = prior_sigmas(state[: len(STATES)], self.errors)
-        sigma[S] = depth_sds(self.errors)[0]
+        sigma[S] = self.footprint_sd[0]
+        if self.estimates_depth:
+            sigma[D] = self.footprint_sd[1]
         slope = np.diag(1 / sigma)
         if sigma[G] > KNOWN_SIGMA:
             slope[G, Q] = -state[G] / (sigma[G] * state[Q])
         return state / sigma, slope
 
     def by_states(self, slope: np.ndarray) -> np.ndarray:
-        """(n, 12) from derivatives (n, 13) by the unknowns; c is not a state."""
+        """(n, 12) from derivatives (n, 13) by the unknowns; 0 by a depth that is not estimated."""
         result = np.zeros((len(slope), COUNT))
         result[:, : len(STATES)] = slope[:, : len(STATES)]
-        result[:, C] = 0.0
+        result[:, D] *= self.estimates_depth
         result[:, [VX, VZ]] = -self.since_s[:, None] * slope[:, [PX, PX + 2]]
         return result
 
@@ -267,6 +278,7 @@ def fit(flight: Flight, errors: ErrorModel, start: np.ndarray | None = None) -> 
     state = track.start() if start is None else np.array(start, float)
     steps = 0
     for _ in range(ROUNDS):
+        state = track.decide(state)
         before, whitening = state, track.whitening(state)
         state, more = _settle(track, before, whitening)
         steps += more
@@ -276,14 +288,22 @@ def fit(flight: Flight, errors: ErrorModel, start: np.ndarray | None = None) -> 
     return _fit_result(track, state, steps)
 
 
+def _considering(
+    track: Track, state: np.ndarray, whitening: np.ndarray, slope: np.ndarray, inner: np.ndarray
+) -> np.ndarray:
+    """(12, 12) covariance with the depth considered. ``inner``: the covariance for a known depth, of the fit with the
+    derivatives ``slope``."""
+    by_depth = whitening @ track.predicted(state)[1][:, D]
+    change = -inner @ (slope[: len(by_depth)].T @ by_depth)
+    change[D] = 1.0
+    return inner + track.footprint_sd[1] ** 2 * np.outer(change, change)
+
+
 def _fit_result(track: Track, state: np.ndarray, steps: int) -> PrismFit:
     whitening = track.whitening(state)
     left, slope = track.residuals(state, whitening)
     inner = inverse(slope.T @ slope)
-    by_c = whitening @ track.predicted(state)[1][:, C]
-    change = -inner @ (slope[: len(by_c)].T @ by_c)
-    change[C] = 1.0
-    covariance = inner + depth_sds(track.errors)[1] ** 2 * np.outer(change, change)
+    covariance = inner if track.estimates_depth else _considering(track, state, whitening, slope, inner)
     outer = np.zeros((len(ORDER), COUNT))
     outer[:, : len(STATES)] = quantity_slopes(state[: len(STATES)], track.turn)
     values, sigma = np.full(6, np.nan), np.full(6, np.nan)
