@@ -1,24 +1,29 @@
 """The rows of upright bounding boxes: four sides in each image, about the prism that fits them all.
 
-The unknowns of the prism are place, width, height and depth. With the truth, place and height are known; the residuals
-then also contain errors that are constant over all images. Images with a box cut by the image border are left out."""
+The unknowns of the prism are place, width, height, shear and depth. With the truth, place and height are known; the
+residuals then also contain errors that are constant over all images. Images with a box cut by the image border are left
+out."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from ..flights.flight import Flight
-from ..models.prism import PX, STATES, A, E, ErrorModel, G, Q, S, W, box_size, focal_px
+from ..models.prism import PX, STATES, A, D, E, ErrorModel, G, Q, S, W, box_size, focal_px
 from ..models.prism_offline import Track
 from .rows import Effect, Fading, Rows
 
 LEAST_IMAGES = 8
-UNKNOWN, UNKNOWN_WITH_TRUTH = [A, Q, W, E, S], [W, S]
+UNKNOWN, UNKNOWN_WITH_TRUTH = [A, Q, W, E, S, D], [W, S, D]
 MOST_STEPS = 60
 SETTLED = 1e-3  # sigmas
 WHITE, SHARE = 1e-3, 0.05  # weights of the sides: focal lengths, and share of the box
-DEEPEST = 2.0  # largest absolute value of S
+DEEPEST = 2.0  # largest absolute values of D, and of S in half widths
 DEG = np.pi / 180.0
+
+
+def _is_plausible(state: np.ndarray) -> bool:
+    return abs(state[D]) <= DEEPEST and abs(state[S]) <= DEEPEST * state[W]
 
 
 def _settled(track: Track, state: np.ndarray, free: list[int], size: np.ndarray) -> np.ndarray:
@@ -34,7 +39,7 @@ def _settled(track: Track, state: np.ndarray, free: list[int], size: np.ndarray)
         step = np.linalg.solve(by.T @ by + damping * np.eye(len(free)), by.T @ left) / scale
         tried = state.copy()
         tried[free] += step
-        better = track.predicted(tried) if abs(tried[S]) <= DEEPEST else None
+        better = track.predicted(tried) if _is_plausible(tried) else None
         if better is not None and np.sum((weight * (track.measured - better[0])) ** 2) < left @ left:
             state, found, damping = tried, better, max(0.2 * damping, 1e-9)
             if np.abs(step * scale).max() < SETTLED:
