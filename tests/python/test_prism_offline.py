@@ -189,6 +189,7 @@ def test_errors_are_near_the_bound_and_the_cost_is_the_least() -> None:
         flight = box_flight(MAST, options, seed)
         found, bound = fit(flight, configured), bound_of(flight, configured)
         track = Track(flight, configured)
+        assert (track.decide(found.state) == found.state).all()
         whitening = track.whitening(found.state)
         assert track.cost(found.state, whitening) <= track.cost(true_place(flight, track), whitening)
         ratio.append((found.values - flight.truth.values)[ESTIMATED] / bound[ESTIMATED])
