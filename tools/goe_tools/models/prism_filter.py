@@ -237,7 +237,7 @@ class PrismFilter:
         self.memory = [Memory(0.0, np.zeros(COUNT), 0.0) for _ in range(4)]
         self.flown_m, self.last_m = 0.0, in_t.moved_m  # along the path since the start
         self.settled, self.gained = self.full_covariance(), np.zeros(COUNT)  # after the latest image, and since
-        self.walked_s = np.zeros(2)  # since the walk was added along X, and along Z
+        self.due_s, self.walked_s = 0.0, np.zeros(2)  # since the walk was added along X, and along Z
         return True
 
     def _prior_sd(self, width: float) -> np.ndarray:
@@ -260,32 +260,36 @@ class PrismFilter:
         self.by_depth = covariance[:D, D] / self.depth_variance
         self.covariance = covariance[:D, :D] - self.depth_variance * np.outer(self.by_depth, self.by_depth)
 
-    def full_covariance(self) -> np.ndarray:
-        """(10, 10), of all states."""
+    def full_covariance(self, bend: float = 1.0) -> np.ndarray:
+        """(10, 10), of all states. ``bend``: factor on the part of the depth, as a sigma."""
         by_depth = np.append(self.by_depth, 1.0)
-        result = self.depth_variance * np.outer(by_depth, by_depth)
+        result = bend**2 * self.depth_variance * np.outer(by_depth, by_depth)
         result[:D, :D] += self.covariance
         return result
 
-    def _pass_time(self, span_s: float) -> None:
-        """The position walks along X and Z in turn: a step along Z rescales the lengths, which are in units of Z0. The
-        depth d is a ratio of lengths."""
+    def _wait(self, span_s: float) -> None:
+        """Process noise waits for the next image that gives rows."""
         drift, walk = np.radians(self.errors.attitude_walk_sd_deg), self.errors.position_walk_sd_m * self.state[Q]
-        noise = np.zeros(D)
-        noise[BX : BX + 3] = drift**2
         self.gained[BX : BX + 3] += drift**2 * span_s
         self.gained[A] += walk**2 * span_s
         self.walked_s += span_s
-        axis = int(self.walked_s[1] > self.walked_s[0])
-        direction = np.zeros(D)
-        if axis == 0:
-            direction[A] = 1.0
-        else:
-            direction[G:D] = self.state[G:D]
-        waited_s, self.walked_s[axis] = float(self.walked_s[axis]), 0.0
-        self.covariance = (
-            self.covariance + np.diag(noise * span_s) + walk**2 * waited_s * np.outer(direction, direction)
-        )
+        self.due_s += span_s
+
+    def _age(self, span_s: float) -> None:
+        """The position walks along X and Z in turn, or along both after images without rows: a step along Z rescales
+        the lengths, which are in units of Z0. The depth d is a ratio of lengths."""
+        drift, walk = np.radians(self.errors.attitude_walk_sd_deg), self.errors.position_walk_sd_m * self.state[Q]
+        self.covariance[:G, :G] += np.diag(np.full(G, drift**2 * self.due_s))
+        first = int(self.walked_s[1] > self.walked_s[0])
+        for axis in (first, 1 - first)[: 2 if self.due_s > span_s else 1]:
+            direction = np.zeros(D)
+            if axis == 0:
+                direction[A] = 1.0
+            else:
+                direction[G:D] = self.state[G:D]
+            self.covariance += walk**2 * self.walked_s[axis] * np.outer(direction, direction)
+            self.walked_s[axis] = 0.0
+        self.due_s = 0.0
 
     def _rows(self, sight: Sight, q_variance: float) -> Rows | None:
         """Residuals and derivatives as measured, and white variances that include the linearization error."""
@@ -394,7 +398,7 @@ class PrismFilter:
         span_s = min(in_t.time_s - self.time_s, GAP_MAX_S)
         self.time_s = in_t.time_s
         q_variance = self.full_covariance()[Q, Q]
-        self._pass_time(span_s)
+        self._wait(span_s)
         rows = self._rows(sight, q_variance)
         self._whiten(sight, span_s, rows)
         if rows is None:
@@ -412,6 +416,7 @@ class PrismFilter:
         if not kept.any():
             self.scatter.take_fit(RATIO_MOST)
             return False
+        self._age(span_s)
         white = np.radians(self.errors.attitude_white_sd_deg)
         shared = white**2 * rows.about @ rows.about.T + rows.shift @ rows.shift.T
         self._learn(rows, shared)
@@ -428,7 +433,9 @@ class PrismFilter:
         errors = self.errors
         values = quantities(self.state, self.turn)
         slopes = quantity_slopes(self.state, self.turn)
-        variance = np.einsum("ij,jk,ik->i", slopes, self.full_covariance(), slopes) * self.scatter.factor()
+        depth_sd = float(np.sqrt(self.depth_variance))
+        reported = self.full_covariance(np.expm1(depth_sd) / depth_sd)  # the depth is exponential in its state
+        variance = np.einsum("ij,jk,ik->i", slopes, reported, slopes) * self.scatter.factor()
         span_s = in_t.time_s - self.start_s
         path_m = max(float(np.linalg.norm((in_t.moved_m - self.origin_m)[[0, 2]])), PATH_MIN_M)
         share = errors.velocity_bias_sd_m_s * span_s / path_m
