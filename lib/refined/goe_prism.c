@@ -33,7 +33,7 @@
 #define SHEAR_FREEDOM 0.6f     /* ... of the shear, in half widths */
 #define DEPTH_FREEDOM 1.0f   /* ... of the log of the depth: a population of masts, cars and houses, in any direction */
 #define DEPTH_TURNED 0.3f    /* sine of the turn of the line of sight from which on images give the depth */
-#define BENT_MIN 0.01f        /* sigma of the log of the depth below which its exponential is a line */
+#define BENT_MIN 0.01f       /* sigma of the log of the depth below which its exponential is a line */
 #define DISC_FREEDOM 1.0e-3f /* both, where a disc is configured */
 #define NEAR_MIN 1.0e-9f     /* of the footprint, and of its distance, units of Z0 */
 #define GROUND_MIN 1.0e-6f   /* one sigma of the ground's offset, units of Z0 */

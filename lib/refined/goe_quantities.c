@@ -101,7 +101,7 @@ static float drift_variance(const goe_motion_t *motion, drift_t drift, const goe
 typedef struct {
     float scatter;                /* factor on the variance of what it found, (R34) */
     float reciprocal[GOE_STATES]; /* of R, for the projections */
-    float bend; /* factor on a prism's depth, goe_prism_bend() */
+    float bend;                   /* factor on a prism's depth, goe_prism_bend() */
     goe_disc_doubt_t doubt;
 } widening_t;
 

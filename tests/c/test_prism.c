@@ -922,6 +922,19 @@ static void a_height_s_own_error_counts_in_the_first_image(void) {
     CHECK_SAME(plain, height_sigma_with(0.0f, 3.0f, GOE_MODEL_DISC, &estimate));
 }
 
+/* [(R33)] GIVEN any sigma of the log of the depth THEN its part in a sigma counts by the secant over a sigma, up to the largest depth. */
+static void the_depth_counts_by_its_secant(void) {
+    static const double sd[] = {1.0e-3, 0.011, 0.3, 1.0, 2.0, 50.0};
+    goe_filter_t filter;
+    goe_filter_clear(&filter);
+    for (size_t i = 0; i < sizeof sd / sizeof sd[0]; i++) {
+        const double counts = fmin(sd[i], 2.0);
+        const double secant = expm1(counts) / counts;
+        *goe_srif_at(&filter.root, GOE_PRISM_DEPTH, GOE_PRISM_DEPTH) = (float)(i % 2 == 0 ? 1.0 / sd[i] : -1.0 / sd[i]);
+        CHECK_CLOSE(6.0e-3 * secant, secant, goe_prism_bend(&filter));
+    }
+}
+
 /* [(R33)] GIVEN the same boxes WHEN a disc is configured THEN the range is known better: a prism's sigma includes unobservable
  * depth, and that keeps no answer back. */
 static void a_prism_reports_unobserved_depth(void) {
@@ -994,6 +1007,7 @@ int main(void) {
     RUN_TEST(every_side_that_is_visible_is_checked);
     RUN_TEST(the_width_of_slender_things_is_not_confidently_wrong);
     RUN_TEST(a_height_s_own_error_counts_in_the_first_image);
+    RUN_TEST(the_depth_counts_by_its_secant);
     RUN_TEST(a_prism_reports_unobserved_depth);
     RUN_TEST(unobserved_depth_keeps_no_answer_back);
     RUN_TEST(boxes_that_come_too_soon_are_not_used);
