@@ -107,7 +107,7 @@ float goe_filter_variance(const goe_filter_t *filter, goe_state_index_t state);
  * Time passes. */
 void goe_filter_wait(goe_filter_t *filter, float since_s);
 
-/* What is due goes into R. since_s: after the image before. */
+/* The noise that is due goes into R. since_s: after the image before. */
 void goe_filter_age(goe_filter_t *filter, const goe_navigation_t *navigation, float since_s);
 
 /* Variance that is due: of each attitude bias, and of the bearing. */

@@ -90,7 +90,6 @@ static inline float goe_observation_height_variance(const goe_observation_t *obs
 }
 
 /* The process noise that is due goes into the filter: before rows do, and before the model changes. */
-/*@ requires \valid(filter) && goe_observation_is_open(obs); */
 static inline void goe_observation_age(goe_filter_t *filter, const goe_observation_t *obs) {
     goe_filter_age(filter, &obs->settings->navigation, obs->since_s);
 }

@@ -141,7 +141,7 @@ static void an_image_without_a_detection_takes_no_warning_back(void) {
     TEST_ASSERT_TRUE(moved_sigma < 0.1);
 }
 
-/* Whether the outline is within the margin, whichever way the obstacle stands: the middle is ahead, or just behind the camera. */
+/* Whether the outline is within the margin, whatever the orientation of the obstacle: the middle is ahead, or just behind the camera. */
 static bool is_violated(int k) {
     const double behind_m = scene.speed_mps * k / HZ - scene.z0_m;
     const double least_m = scene.length_m > 0.0 ? fmin(scene.width_m, scene.length_m) : scene.width_m;

@@ -37,7 +37,7 @@ static void wait_s(double s) {
     (void)goe_update(&estimator, &last, &estimate);
 }
 
-/* With what is due by now, as the rows of the next image would find it. */
+/* With the noise that is due by now, as the rows of the next image would find it. */
 static double variance(goe_state_index_t state) {
     goe_filter_t filter = estimator.filter;
     goe_filter_age(&filter, &estimator.settings.navigation, 0.0f);
