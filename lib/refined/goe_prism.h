@@ -43,7 +43,6 @@ void goe_prism_follow(goe_filter_t *filter, const float change[GOE_UNKNOWNS]);
 
 /* Factor on the part of the depth in a sigma: the depth is exponential in its state, and a sigma more adds more than the derivative
  * says, (R33). */
-/*@ requires \valid_read(filter); */
 float goe_prism_bend(const goe_filter_t *filter);
 
 /* By how much the footprint reaches nearer to the camera than a circle of its half width about its middle: negative of a flat one,
