@@ -292,8 +292,6 @@ GOE_STATIC_ASSERT(GOE_X0 == 0 && GOE_Z0 == 1, the_place_comes_first);
 
 /* The scatter widens the sigmas; validity is decided without it, as doubt must
  * not silence an answer. The errors are those of the derivatives in shape, which are used up; place: of X0 and Z0. */
-/*@ requires \valid_read(filter) && \valid_read(motion) && \valid(shape) && \valid_read(wider) && \valid(q);
-    requires \valid(place + (0 .. 1)); */
 static void set_quantities(const goe_filter_t *filter, const goe_motion_t *motion, goe_shape_t *shape, drift_t drift,
                            const widening_t *wider, goe_quantities_t *q, error_t place[2]) {
     const float elapsed_s = since_start_s(filter, motion);
@@ -339,8 +337,6 @@ static void find_middle(const goe_filter_t *filter, const goe_shape_t *shape, co
 }
 
 /* The middle of the base, in north and east. place: errors of X0 and Z0. */
-/*@ requires \valid_read(filter) && \valid_read(motion) && \valid_read(shape) && \valid_read(wider) && \valid(q);
-    requires \valid_read(place + (0 .. 1)); */
 static void set_center(const goe_filter_t *filter, const goe_motion_t *motion, const goe_shape_t *shape, drift_t drift,
                        const widening_t *wider, const error_t place[2], goe_quantities_t *q) {
     const goe_xz_t middle = goe_filter_into_trajectory(filter, shape->middle.at);

@@ -290,7 +290,6 @@ static GOE_INLINE float taken(const goe_triangle_t *root, const float y[GOE_STAT
 }
 
 /* The elements up to there. */
-/*@ requires \valid_read(root) && \valid_read(k + (0 .. GOE_STATES - 1)) && \valid(y + (0 .. GOE_STATES - 1)); */
 static GOE_INLINE float project_first(const goe_triangle_t *root, const float k[GOE_STATES], float y[GOE_STATES]) {
     y[0] *= k[0];
     y[1] = (y[1] - r_at(root, 0, 1) * y[0]) * k[1];

@@ -79,20 +79,16 @@ void goe_srif_spread(goe_triangle_t *root, const float direction[GOE_STATES], si
 float goe_srif_part(const goe_triangle_t *root, size_t unknown, float part[GOE_UNKNOWNS]);
 
 /* One over the diagonal of R: several projections share the divisions. */
-/*@ requires \valid_read(root) && \valid(reciprocal + (0 .. GOE_STATES - 1)); */
 void goe_srif_reciprocals(const goe_triangle_t *root, float reciprocal[GOE_STATES]);
 
 /* w becomes R^-1' w: the derivative in terms of independent unit errors. Returns its squared norm, the variance of w' x, as if the
  * augmented states were known. If the first GOE_UNWEIGHTED weights are 0, `first` may be GOE_UNWEIGHTED, for half of the cost;
  * otherwise it is 0. */
 #define GOE_UNWEIGHTED 3
-/*@ requires \valid_read(root) && \valid_read(reciprocal + (0 .. GOE_STATES - 1));
-    requires \valid(weight + (0 .. GOE_STATES - 1)); */
 float goe_srif_project(const goe_triangle_t *root, const float reciprocal[GOE_STATES], size_t first,
                        float weight[GOE_STATES]);
 
 /* Of a projected w: the part of that variance that is the last state's own. */
-/*@ requires \valid_read(projected + (0 .. GOE_STATES - 1)); */
 static inline float goe_srif_last_variance(const float projected[GOE_STATES]) {
     return projected[GOE_STATES - 1] * projected[GOE_STATES - 1];
 }
