@@ -319,20 +319,18 @@ static float unlikeness(const goe_filter_t *filter, float variance, float turned
     return odds / (1.0f + odds);
 }
 
-goe_disc_doubt_t goe_disc_doubt(const goe_filter_t *filter, bool wanted, goe_xz_t camera_m, goe_shape_t *shape) {
-    goe_disc_doubt_t doubt;
-    float part[GOE_UNKNOWNS];
-    const float variance = skew_of(filter, part);
+void goe_disc_doubt(const goe_filter_t *filter, bool wanted, goe_xz_t camera_m, goe_shape_t *shape,
+                    goe_disc_doubt_t *doubt) {
+    const float variance = skew_of(filter, doubt->part);
     const float skew2 = goe_square(filter->state[GOE_SIDE_X]);
-    doubt.skew_variance = variance;
-    memcpy(&doubt.part[GOE_SIDE_X], &part[GOE_SIDE_X], sizeof doubt.part - GOE_SIDE_X * sizeof part[0]);
+    doubt->skew_variance = variance;
     if (wanted) {
-        doubt.spread = sqrtf(goe_larger(skew2 - CHANCE_SHARE * variance, 0.0f));
-        return doubt;
+        doubt->spread = sqrtf(goe_larger(skew2 - CHANCE_SHARE * variance, 0.0f));
+        return;
     }
     const float unlike = unlikeness(filter, variance, goe_shape_turned(filter, camera_m));
     const float width_m = shape->quantity[GOE_WIDTH].value;
-    doubt.spread = sqrtf(unlike * (skew2 + variance + goe_square(KINK_SHARE * filter->state[GOE_FRONT_X])));
+    doubt->spread = sqrtf(unlike * (skew2 + variance + goe_square(KINK_SHARE * filter->state[GOE_FRONT_X])));
     if (filter->candidate.stand_in) {
         shape->place_m2 = goe_square(STAND_IN_PLACE * width_m);
         shape->roof_m2 = shape->place_m2;
@@ -341,7 +339,6 @@ goe_disc_doubt_t goe_disc_doubt(const goe_filter_t *filter, bool wanted, goe_xz_
         shape->roof_m2 = shape->place_m2;
         shape->width_m2 = unlike * goe_square(WIDTH_SHARE * width_m);
     }
-    return doubt;
 }
 
 float goe_disc_condition(const goe_disc_doubt_t *doubt, float projected[GOE_STATES]) {

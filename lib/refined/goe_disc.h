@@ -21,13 +21,14 @@ void goe_disc_shape(const goe_filter_t *filter, goe_shape_t *shape);
 
 /* What the condition leaves open: the obstacle may be no disc. */
 typedef struct {
-    float part[GOE_STATES]; /* the skew's error in terms of independent unit errors (goe_srif_part) ... */
-    float skew_variance;    /* ... of all of them */
-    float spread;           /* one sigma of the skew that is left out, by how likely it is that it is no disc */
+    float part[GOE_UNKNOWNS]; /* the skew's error in terms of independent unit errors (goe_srif_part) ... */
+    float skew_variance;      /* ... of all of them */
+    float spread;             /* one sigma of the skew that is left out, by how likely it is that it is no disc */
 } goe_disc_doubt_t;
 
 /* (R40), of the latest image; the shape's place and width learn of it. asked: the settings ask for a disc, and it is one. */
-goe_disc_doubt_t goe_disc_doubt(const goe_filter_t *filter, bool wanted, goe_xz_t camera_m, goe_shape_t *shape);
+void goe_disc_doubt(const goe_filter_t *filter, bool wanted, goe_xz_t camera_m, goe_shape_t *shape,
+                    goe_disc_doubt_t *doubt);
 
 /* The same condition on a derivative in terms of independent unit errors (goe_srif_project). Returns what it moves the quantity
  * by, one sigma, if the obstacle is no disc. */

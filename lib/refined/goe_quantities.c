@@ -398,24 +398,23 @@ static void doubt_far_roof(const goe_filter_t *filter, const goe_settings_t *set
 }
 
 /* What the answer is less certain by; of a disc its shape learns of it, too. */
-static widening_t widening_of(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
-                              drift_t drift, goe_shape_t *shape) {
-    widening_t wider;
-    wider.scatter = goe_scatter_factor(filter, goe_gate_repeated(settings, filter));
-    goe_srif_reciprocals(&filter->root, wider.reciprocal);
+static void widening_of(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
+                        drift_t drift, goe_shape_t *shape, widening_t *wider) {
+    wider->scatter = goe_scatter_factor(filter, goe_gate_repeated(settings, filter));
+    goe_srif_reciprocals(&filter->root, wider->reciprocal);
     if (filter->phase == GOE_PHASE_DISC) {
-        wider.doubt = goe_disc_doubt(filter, settings->model == GOE_MODEL_DISC, goe_filter_measured(filter), shape);
+        goe_disc_doubt(filter, settings->model == GOE_MODEL_DISC, goe_filter_measured(filter), shape, &wider->doubt);
     }
     goe_box_face_doubt(filter, shape);
     doubt_far_roof(filter, settings, shape);
     shape->top_m2 = shape->roof_m2 > 0.0f ? top_variance(motion, drift, shape) : 0.0f;
-    return wider;
 }
 
 void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
                          goe_quantities_t *quantities) {
     goe_quantities_t *q = quantities;
     goe_shape_t shape;
+    widening_t wider;
     error_t place[2];
     q->now = 0;
     q->known = 0;
@@ -426,7 +425,7 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
         return;
     }
     const drift_t drift = drift_of(filter, &settings->navigation, motion);
-    widening_t wider = widening_of(filter, settings, motion, drift, &shape);
+    widening_of(filter, settings, motion, drift, &shape, &wider);
     wider.bend = goe_prism_bend(filter);
     q->early_m2 = early_variance(filter, &settings->navigation, motion);
     q->box = goe_filter_is_box(filter);
@@ -471,13 +470,14 @@ static void meet_near_side(const goe_filter_t *filter, goe_xz_t camera_m, goe_sh
 void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
                                bool for_hazard, float ahead_s, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]) {
     goe_shape_t shape;
+    widening_t wider;
     const drift_t drift = drift_of(filter, &settings->navigation, motion);
     goe_model_shape(filter, &shape);
     if (for_hazard) {
         count_from_datum(&shape);
         meet_near_side(filter, drift.camera_m, &shape);
     }
-    widening_t wider = widening_of(filter, settings, motion, drift, &shape);
+    widening_of(filter, settings, motion, drift, &shape, &wider);
     wider.bend = for_hazard ? 1.0f : goe_prism_bend(filter);
     const float scatter = sqrtf(wider.scatter);
     const float early = sqrtf(shape.early) * scatter;
