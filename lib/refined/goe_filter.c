@@ -96,12 +96,12 @@ static void walk_along(goe_filter_t *filter, size_t axis, float walk) {
 
 /* The walk along X and Z in turn, image by image; after images without rows along both, as much is due. */
 void goe_filter_age(goe_filter_t *filter, const goe_navigation_t *navigation, float since_s) {
-    const float drift = sqrtf(goe_filter_due_drift2(filter, navigation));
-    const float walk = navigation->position_walk_sd_m * filter->state[GOE_INVERSE_RANGE];
-    const size_t first = filter->walk_s[1] > filter->walk_s[0] ? 1u : 0u;
     if (!(filter->due_s > 0.0f)) {
         return;
     }
+    const float drift = sqrtf(goe_filter_due_drift2(filter, navigation));
+    const float walk = navigation->position_walk_sd_m * filter->state[GOE_INVERSE_RANGE];
+    const size_t first = filter->walk_s[1] > filter->walk_s[0] ? 1u : 0u;
     if (drift > 0.0f) {
         goe_filter_inflate(filter, GOE_BIAS_X, drift);
         goe_filter_inflate(filter, GOE_BIAS_Y, drift);

@@ -207,10 +207,10 @@ typedef struct {
     float *by; /* of the state: the projected derivatives */
     augmented_t augmented;
     float moved; /* by the condition that makes a disc, (R7): a sum of its own, which no scatter widens */
-} error_t;
+} deviation_t;
 
 /* The derivatives error->by become the error. Returns its squared norm, the variance, without what moves. */
-static float project(const goe_filter_t *filter, const widening_t *wider, counted_t counted, error_t *error) {
+static float project(const goe_filter_t *filter, const widening_t *wider, counted_t counted, deviation_t *error) {
     float variance = goe_srif_project(&filter->root, wider->reciprocal, GOE_UNWEIGHTED, error->by);
     error->moved = 0.0f;
     augmented_of(filter, error->by, counted.x, counted.z, counted.at_s, &error->augmented);
@@ -226,7 +226,7 @@ static float project(const goe_filter_t *filter, const widening_t *wider, counte
     return variance + augmented_dot(&error->augmented, &error->augmented);
 }
 
-static float covariance_of(const widening_t *wider, const error_t *a, const error_t *b) {
+static float covariance_of(const widening_t *wider, const deviation_t *a, const deviation_t *b) {
     return wider->scatter * dot(a->by, b->by, augmented_dot(&a->augmented, &b->augmented)) + a->moved * b->moved;
 }
 
@@ -293,11 +293,11 @@ GOE_STATIC_ASSERT(GOE_X0 == 0 && GOE_Z0 == 1, the_place_comes_first);
 /* The scatter widens the sigmas; validity is decided without it, as doubt must
  * not silence an answer. The errors are those of the derivatives in shape, which are used up; place: of X0 and Z0. */
 static void set_quantities(const goe_filter_t *filter, const goe_motion_t *motion, goe_shape_t *shape, drift_t drift,
-                           const widening_t *wider, goe_quantities_t *q, error_t place[2]) {
+                           const widening_t *wider, goe_quantities_t *q, deviation_t place[2]) {
     const float elapsed_s = since_start_s(filter, motion);
     for (int i = 0; i < GOE_QUANTITIES; i++) {
-        error_t other;
-        error_t *error = i <= GOE_Z0 ? &place[i] : &other;
+        deviation_t other;
+        deviation_t *error = i <= GOE_Z0 ? &place[i] : &other;
         error->by = shape->quantity[i].by;
         error->moved = 0.0f;
         float found = has(q, i) ? project(filter, wider, counted_of(i, elapsed_s), error) : 0.0f;
@@ -319,7 +319,7 @@ static void set_quantities(const goe_filter_t *filter, const goe_motion_t *motio
 /*@ requires \valid_read(filter) && \valid_read(shape) && \valid_read(wider) && \valid_read(place + (0 .. 1));
     requires \valid(error) && \valid(error->by + (0 .. GOE_STATES - 1)); */
 static void find_middle(const goe_filter_t *filter, const goe_shape_t *shape, const widening_t *wider,
-                        const error_t place[2], counted_t along, error_t *error) {
+                        const deviation_t place[2], counted_t along, deviation_t *error) {
     float *by = error->by;
     if (goe_filter_is_box(filter)) {
         const goe_xz_t in_trajectory = {along.x, along.z};
@@ -338,15 +338,15 @@ static void find_middle(const goe_filter_t *filter, const goe_shape_t *shape, co
 
 /* The middle of the base, in north and east. place: errors of X0 and Z0. */
 static void set_center(const goe_filter_t *filter, const goe_motion_t *motion, const goe_shape_t *shape, drift_t drift,
-                       const widening_t *wider, const error_t place[2], goe_quantities_t *q) {
+                       const widening_t *wider, const deviation_t place[2], goe_quantities_t *q) {
     const goe_xz_t middle = goe_filter_into_trajectory(filter, shape->middle.at);
     const goe_xz_t gone = goe_filter_moved(filter, motion);
     const float elapsed_s = since_start_s(filter, motion);
     const counted_t to_north = {-motion->heading_sin, motion->heading_cos, elapsed_s};
     const counted_t to_east = {motion->heading_cos, motion->heading_sin, elapsed_s};
     float by[2][GOE_STATES];
-    error_t north;
-    error_t east;
+    deviation_t north;
+    deviation_t east;
     north.by = by[0];
     east.by = by[1];
     goe_motion_place(motion, middle.x * shape->scale_m + filter->axes.start_dx_m + gone.x,
@@ -415,7 +415,7 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
     goe_quantities_t *q = quantities;
     goe_shape_t shape;
     widening_t wider;
-    error_t place[2];
+    deviation_t place[2];
     q->now = 0;
     q->known = 0;
     q->sigma[GOE_ORIENTATION] = 0.0f;
@@ -482,7 +482,7 @@ void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t 
     const float scatter = sqrtf(wider.scatter);
     const float early = sqrtf(shape.early) * scatter;
     const float elapsed_s = since_start_s(filter, motion) + ahead_s;
-    error_t error[GOE_QUANTITIES];
+    deviation_t error[GOE_QUANTITIES];
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         float *by = shape.quantity[i].by;
         error[i].by = by;
