@@ -212,8 +212,8 @@ typedef struct {
 } goe_place_t;
 
 typedef struct {         /* refined/goe_refined.c: what of the latest answer outlives the state that gave it */
-    float reach_m;       /* half of the extent about the reference point, m */
-    float nearer_m;      /* prism: by how much it reaches nearer to the camera than a circle of that, m */
+    float reach_m;       /* half of the extent about the reference point, m; prism: across the line of sight */
+    float nearer_m;      /* prism: by how much it reaches nearer to the camera than that, m */
     float least_m;       /* the same before the filter started again; 0 once the new filter knows a width */
     float height_bias_m; /* constant error of the camera's height that the answer is freed of, m */
     goe_flag_t outdated; /* the state has changed since, other than by time */

@@ -113,7 +113,9 @@ static void meet_near_side(const goe_estimator_t *estimator, goe_outline_t *outl
     const float share = (nearer_m < range_m ? nearer_m : range_m) / goe_larger(range_m, RANGE_MIN_M);
     outline->reference.x -= share * at.x;
     outline->reference.z -= share * at.z;
-    outline->half = goe_larger(outline->half, goe_bounded(goe_latest_reach(estimator)));
+    const float reach_m = goe_bounded(goe_latest_reach(estimator));
+    const bool turns = estimator->estimate.model == GOE_MODEL_PRISM && reach_m > 0.0f; /* the width is an earlier one */
+    outline->half = turns ? reach_m : goe_larger(outline->half, reach_m);
 }
 
 /* The obstacle from where the camera is now. */

@@ -325,23 +325,28 @@ float goe_prism_bend(const goe_filter_t *filter) {
     return sd > BENT_MIN ? (goe_exp(sd) - 1.0f) / sd : 1.0f;
 }
 
-/* (R25) along the line of sight. */
-float goe_prism_nearer(const goe_filter_t *filter, goe_xz_t camera_m, goe_xz_t *towards, float by[GOE_STATES]) {
+/* (R25). */
+static void support(const float x[GOE_STATES], goe_xz_t outward, goe_support_t *to) {
+    const float half = x[GOE_PRISM_HALF];
+    const float across = half * outward.x + x[GOE_PRISM_SHEAR] * outward.z;
+    const float along = half * goe_exp(x[GOE_PRISM_DEPTH]) * outward.z;
+    to->reach = goe_larger(sqrtf(across * across + along * along), NEAR_MIN);
+    to->by_shear = across * outward.z / to->reach;
+    to->by_half = (across * outward.x + along * along / goe_larger(half, NEAR_MIN)) / to->reach;
+    to->by_depth = along * along / to->reach;
+}
+
+void goe_prism_face_camera(const goe_filter_t *filter, goe_xz_t camera_m, goe_aspect_t *aspect) {
     const float *x = filter->state;
     const float q = x[GOE_INVERSE_RANGE];
-    const float half = x[GOE_PRISM_HALF];
     const goe_xz_t middle = {x[GOE_BEARING] - camera_m.x * q, 1.0f - camera_m.z * q};
     const float range = goe_larger(sqrtf(goe_xz_dot(middle, middle)), NEAR_MIN);
-    towards->x = -middle.x / range;
-    towards->z = -middle.z / range;
-    const float across = half * towards->x + x[GOE_PRISM_SHEAR] * towards->z;
-    const float along = half * goe_exp(x[GOE_PRISM_DEPTH]) * towards->z;
-    const float reach = goe_larger(sqrtf(across * across + along * along), NEAR_MIN);
-    memset(by, 0, GOE_STATES * sizeof by[0]);
-    by[GOE_PRISM_SHEAR] = across * towards->z / reach;
-    by[GOE_PRISM_HALF] = (across * towards->x + along * along / goe_larger(half, NEAR_MIN)) / reach - 1.0f;
-    by[GOE_PRISM_DEPTH] = along * along / reach;
-    return (reach < range ? reach : range) - half;
+    const goe_xz_t towards = {-middle.x / range, -middle.z / range};
+    const goe_xz_t right = {towards.z, -towards.x};
+    aspect->towards = towards;
+    support(x, towards, &aspect->before);
+    support(x, right, &aspect->across);
+    aspect->before.reach = aspect->before.reach < range ? aspect->before.reach : range;
 }
 
 #endif

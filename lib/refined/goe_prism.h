@@ -45,10 +45,19 @@ void goe_prism_follow(goe_filter_t *filter, const float change[GOE_UNKNOWNS]);
  * says, (R33). */
 float goe_prism_bend(const goe_filter_t *filter);
 
-/* By how much the footprint reaches nearer to the camera than a circle of its half width about its middle: negative of a flat one,
- * units of Z0. towards: unit vector to the camera, the state's axes. by: derivatives by the states, for a constant towards. */
-/*@ requires \valid_read(filter) && \valid(towards) && \valid(by + (0 .. GOE_STATES - 1)); */
-float goe_prism_nearer(const goe_filter_t *filter, goe_xz_t camera_m, goe_xz_t *towards, float by[GOE_STATES]);
+/* How far the footprint reaches from its middle, units of Z0, and the derivatives by its three states. */
+typedef struct {
+    float reach, by_shear, by_half, by_depth;
+} goe_support_t;
+
+/* The footprint from the camera: towards it along the line of sight, which is that unit vector in the state's axes, and across. */
+typedef struct {
+    goe_xz_t towards;
+    goe_support_t before, across;
+} goe_aspect_t;
+
+/* camera_m: since the filter's start. What lies behind the camera reaches up to it. */
+void goe_prism_face_camera(const goe_filter_t *filter, goe_xz_t camera_m, goe_aspect_t *aspect);
 
 /* Quantities. */
 void goe_prism_shape(const goe_filter_t *filter, goe_shape_t *shape);

@@ -451,20 +451,31 @@ static void count_from_datum(goe_shape_t *shape) {
     shape->quantity[GOE_HEIGHT].by[GOE_INVERSE_RANGE] += shape->datum_by_range;
 }
 
+/* by += factor times the derivatives of one reach, less those of another, of a length in units of Z0. */
+static void add_to_footprint(float factor, float scale_m, const goe_support_t *reach, const goe_support_t *less,
+                             float by[GOE_STATES]) {
+    by[GOE_PRISM_SHEAR] += factor * (reach->by_shear - (less ? less->by_shear : 0.0f));
+    by[GOE_PRISM_HALF] += factor * (reach->by_half - (less ? less->by_half : 0.0f));
+    by[GOE_PRISM_DEPTH] += factor * (reach->by_depth - (less ? less->by_depth : 0.0f));
+    by[GOE_INVERSE_RANGE] -= factor * scale_m * (reach->reach - (less ? less->reach : 0.0f));
+}
+
 /* What decides a warning is the near side, which images show, not the middle, which hangs on the depth. */
 static void meet_near_side(const goe_filter_t *filter, goe_xz_t camera_m, goe_shape_t *shape) {
-    goe_xz_t towards;
-    float by[GOE_STATES];
+    goe_aspect_t aspect;
     if (filter->phase != GOE_PHASE_PRISM) {
         return;
     }
-    const float nearer = goe_prism_nearer(filter, camera_m, &towards, by);
-    by[GOE_INVERSE_RANGE] = -shape->scale_m * nearer;
-    towards = goe_filter_into_trajectory(filter, towards);
-    for (int k = 0; k < GOE_STATES; k++) {
-        shape->quantity[GOE_X0].by[k] += towards.x * shape->scale_m * by[k];
-        shape->quantity[GOE_Z0].by[k] += towards.z * shape->scale_m * by[k];
-    }
+    goe_prism_face_camera(filter, camera_m, &aspect);
+    const goe_support_t *before = &aspect.before;
+    const goe_support_t *across = &aspect.across;
+    const goe_xz_t towards = goe_filter_into_trajectory(filter, aspect.towards);
+    const float scale_m = shape->scale_m;
+    add_to_footprint(scale_m * towards.x, scale_m, before, across, shape->quantity[GOE_X0].by);
+    add_to_footprint(scale_m * towards.z, scale_m, before, across, shape->quantity[GOE_Z0].by);
+    memset(shape->quantity[GOE_WIDTH].by, 0, sizeof shape->quantity[GOE_WIDTH].by);
+    add_to_footprint(2.0f * scale_m, scale_m, across, NULL, shape->quantity[GOE_WIDTH].by);
+    shape->quantity[GOE_WIDTH].value = 2.0f * scale_m * across->reach;
 }
 
 void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,

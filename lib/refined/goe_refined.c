@@ -212,23 +212,19 @@ bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, co
 
 /* ------------------------------------------------------------------------------------------------------------- answer -- */
 
-/* Half of the visible extent about the reference point, m, also while the width is not valid. */
-static float reach_of(const goe_filter_t *filter) {
+/* Half of the visible extent about the reference point, m, also while the width is not valid; and by how much a prism reaches nearer to
+ * the camera than that. */
+static float reach_of(const goe_filter_t *filter, float *nearer_m) {
     const float *x = filter->state;
+    *nearer_m = 0.0f;
     if (filter->phase == GOE_PHASE_PRISM) {
-        return x[GOE_PRISM_HALF] / x[GOE_INVERSE_RANGE];
+        goe_aspect_t aspect;
+        goe_prism_face_camera(filter, goe_filter_measured(filter), &aspect);
+        *nearer_m = (aspect.before.reach - aspect.across.reach) / x[GOE_INVERSE_RANGE];
+        return aspect.across.reach / x[GOE_INVERSE_RANGE];
     }
     const float side = goe_filter_is_box(filter) ? goe_absolute(x[GOE_SIDE_X]) : 0.0f;
     return 0.5f * (x[GOE_FRONT_X] + side) / x[GOE_INVERSE_RANGE];
-}
-
-/* By how much a prism reaches nearer to the camera than that, m. */
-static float nearer_of(const goe_filter_t *filter) {
-    goe_xz_t towards;
-    float by[GOE_STATES];
-    return filter->phase == GOE_PHASE_PRISM
-               ? goe_prism_nearer(filter, goe_filter_measured(filter), &towards, by) / filter->state[GOE_INVERSE_RANGE]
-               : 0.0f;
 }
 
 /* One coordinate of the place. */
@@ -260,8 +256,7 @@ static bool keeps_previous(const goe_filter_t *filter, const goe_motion_t *motio
 /* Keeps what goe_hazard() needs of an answer when no new one follows. */
 static void keep_answer(goe_filter_t *filter, const goe_navigation_t *navigation, unsigned valid) {
     goe_answer_t *answer = &filter->answer;
-    const float reach_m = reach_of(filter);
-    answer->nearer_m = nearer_of(filter);
+    const float reach_m = reach_of(filter, &answer->nearer_m);
     answer->least_m = (valid & GOE_HAS_WIDTH) != 0u ? 0.0f : answer->least_m;
     if (goe_within(reach_m, REACH_MAX_M)) {
         answer->reach_m = goe_larger(reach_m, answer->least_m);
@@ -274,8 +269,10 @@ static void keep_answer(goe_filter_t *filter, const goe_navigation_t *navigation
 
 /* Whether a position lies behind the camera, with all of its extent, in an image that shows the obstacle ahead. */
 static bool lies_behind(const goe_filter_t *filter, const goe_quantities_t *quantities, const goe_motion_t *motion) {
-    const float reach_m = reach_of(filter) + (quantities->box ? quantities->value[GOE_LENGTH] : 0.0f);
-    return quantities->value[GOE_Z0] - motion->dz_m < -reach_m;
+    float nearer_m;
+    const float reach_m = reach_of(filter, &nearer_m) + goe_larger(nearer_m, 0.0f);
+    return quantities->value[GOE_Z0] - motion->dz_m <
+           -(reach_m + (quantities->box ? quantities->value[GOE_LENGTH] : 0.0f));
 }
 
 bool goe_refined_report(goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,

@@ -219,7 +219,19 @@ static double reach_by_state(void) {
     const float *x = estimator.filter.state;
     const double q = (double)x[GOE_INVERSE_RANGE];
     if (estimator.filter.phase == GOE_PHASE_PRISM) {
-        return (double)x[GOE_PRISM_HALF] / q;
+        const goe_xz_t camera = goe_filter_measured(&estimator.filter);
+        const double ahead_x = (double)x[GOE_BEARING] - (double)camera.x * q;
+        const double ahead_z = 1.0 - (double)camera.z * q;
+        const double range = hypot(ahead_x, ahead_z);
+        double reach = 0.0;
+        for (int i = 0; i < 3600; i++) { /* of the rim, across the line of sight */
+            const double at = i * (6.283185307179586 / 3600.0);
+            const double across = (double)x[GOE_PRISM_HALF] * sin(at);
+            const double along = (double)x[GOE_PRISM_SHEAR] * sin(at) +
+                                 (double)x[GOE_PRISM_HALF] * exp((double)x[GOE_PRISM_DEPTH]) * cos(at);
+            reach = fmax(reach, (across * ahead_z - along * ahead_x) / range);
+        }
+        return reach / q;
     }
     const double side = estimator.filter.phase >= GOE_PHASE_BOX_FACE ? fabs((double)x[GOE_SIDE_X]) : 0.0;
     return 0.5 * ((double)x[GOE_FRONT_X] + side) / q;

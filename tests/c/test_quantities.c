@@ -297,10 +297,8 @@ static void unobserved_depth_silences_nothing(void) {
     }
 }
 
-/* X and Z, T axes, m, of the middle of the circle of a prism's width that reaches as near along (nx, nz), the state's axes, as the
- * farthest of many points of its rim does. */
-static void near_circle_of(double nx, double nz, double place[2]) {
-    const double q = (double)filter.state[GOE_INVERSE_RANGE];
+/* How far the rim of a prism reaches along (nx, nz), the state's axes, units of Z0: by many points. */
+static double rim_along(double nx, double nz) {
     const double half = (double)filter.state[GOE_PRISM_HALF];
     double reach = 0.0;
     for (int i = 0; i < 20000; i++) {
@@ -309,63 +307,81 @@ static void near_circle_of(double nx, double nz, double place[2]) {
                          half * exp((double)filter.state[GOE_PRISM_DEPTH]) * cos(at);
         reach = fmax(reach, nx * half * sin(at) + nz * z);
     }
-    const double x = ((double)filter.state[GOE_BEARING] + nx * (reach - half)) / q;
-    const double z = (1.0 + nz * (reach - half)) / q;
+    return reach;
+}
+
+enum { MET_X, MET_Z, MET_WIDTH, MET };
+
+/* X and Z, T axes, and diameter, m, of the circle that is as wide across the line of sight, and as near, as the rim of a prism. */
+static void met_circle(goe_xz_t towards, double met[MET]) {
+    const double q = (double)filter.state[GOE_INVERSE_RANGE];
+    const double nx = (double)towards.x;
+    const double nz = (double)towards.z;
+    const double across = rim_along(nz, -nx);
+    const double nearer = rim_along(nx, nz) - across;
+    const double x = ((double)filter.state[GOE_BEARING] + nx * nearer) / q;
+    const double z = (1.0 + nz * nearer) / q;
     const double c = (double)filter.axes.turn_cos;
     const double s = (double)filter.axes.turn_sin;
-    place[0] = c * x + s * z;
-    place[1] = c * z - s * x;
+    met[MET_X] = c * x + s * z;
+    met[MET_Z] = c * z - s * x;
+    met[MET_WIDTH] = 2.0 * across / q;
+}
+
+/* Its derivatives by the states, for a constant line of sight. */
+static void differentiate_circle(goe_xz_t towards, double slope[MET][GOE_STATES]) {
+    for (size_t k = 0; k < GOE_STATES; k++) {
+        double up[MET];
+        double down[MET];
+        const float at = filter.state[k];
+        const float step = (float)(0.05 * sigma_of[k]);
+        filter.state[k] = at + step;
+        const double above = (double)filter.state[k];
+        met_circle(towards, up);
+        filter.state[k] = at - step;
+        met_circle(towards, down);
+        const double wide = above - (double)filter.state[k];
+        filter.state[k] = at;
+        for (size_t i = 0; i < MET; i++) {
+            slope[i][k] = (up[i] - down[i]) / wide;
+        }
+    }
 }
 
 /* [goe_hazard]
- * GIVEN any prism THEN a hazard's covariance of its place is that of the circle of its width that reaches as near to the camera as its
- * footprint does, for a constant line of sight; and so near it does reach. */
+ * GIVEN any prism THEN a hazard's covariance of its place and its width is that of the circle that is as wide across the line of sight, and
+ * as near to the camera, as its footprint. */
 static void a_hazard_meets_the_near_side_of_a_prism(void) {
+    static const int quantity[MET] = {GOE_X0, GOE_Z0, GOE_WIDTH};
     any = check_random_start("near side");
     for (int n = 0; n < CASES; n++) {
         double c[GOE_STATES][GOE_STATES];
-        double slope[2][GOE_STATES];
+        double slope[MET][GOE_STATES];
         float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
-        float unused[GOE_STATES];
-        goe_xz_t towards;
+        goe_aspect_t aspect;
         make_any(GOE_PHASE_PRISM);
         be_uncertain(CERTAIN);
         covariance_of(c);
-        const double nearer = (double)goe_prism_nearer(&filter, goe_filter_camera(&filter, &motion), &towards, unused);
-        for (size_t k = 0; k < GOE_STATES; k++) {
-            double up[2];
-            double down[2];
-            const float at = filter.state[k];
-            const float step = (float)(0.05 * sigma_of[k]);
-            filter.state[k] = at + step;
-            const double above = (double)filter.state[k];
-            near_circle_of((double)towards.x, (double)towards.z, up);
-            filter.state[k] = at - step;
-            near_circle_of((double)towards.x, (double)towards.z, down);
-            const double wide = above - (double)filter.state[k];
-            filter.state[k] = at;
-            slope[0][k] = (up[0] - down[0]) / wide;
-            slope[1][k] = (up[1] - down[1]) / wide;
-        }
+        goe_prism_face_camera(&filter, goe_filter_camera(&filter, &motion), &aspect);
+        differentiate_circle(aspect.towards, slope);
         goe_quantities_covariance(&filter, &settings, &motion, true, 0.0f, covariance);
-        for (int i = 0; i < 2; i++) {
-            for (int j = 0; j < 2; j++) {
+        for (int i = 0; i < MET; i++) {
+            for (int j = 0; j < MET; j++) {
                 double expected = 0.0;
                 for (size_t k = 0; k < GOE_STATES; k++) {
                     for (size_t l = 0; l < GOE_STATES; l++) {
                         expected += slope[i][k] * c[k][l] * slope[j][l];
                     }
                 }
-                const double size = sqrt((double)covariance[i][i] * (double)covariance[j][j]);
-                CHECK_CLOSE(2.0 * SHARE * size, expected, covariance[i][j]);
+                const double size =
+                    sqrt((double)covariance[quantity[i]][quantity[i]] * (double)covariance[quantity[j]][quantity[j]]);
+                CHECK_CLOSE(2.0 * SHARE * size, expected, covariance[quantity[i]][quantity[j]]);
             }
         }
-        double place[2];
-        const double q = (double)filter.state[GOE_INVERSE_RANGE];
-        near_circle_of((double)towards.x, (double)towards.z, place);
-        const goe_xz_t middle = {filter.state[GOE_BEARING], 1.0f};
-        const goe_xz_t in_t = goe_filter_into_trajectory(&filter, middle);
-        CHECK_CLOSE(1.0e-3, fabs(nearer) / q, hypot(place[0] - (double)in_t.x / q, place[1] - (double)in_t.z / q));
+        const double nx = (double)aspect.towards.x;
+        const double nz = (double)aspect.towards.z;
+        CHECK_CLOSE(1.0e-6, rim_along(nx, nz), aspect.before.reach);
+        CHECK_CLOSE(1.0e-6, rim_along(nz, -nx), aspect.across.reach);
     }
 }
 
@@ -518,6 +534,16 @@ static void errors_of_own_motion_are_in_the_sigmas(void) {
     }
 }
 
+/* The width that a hazard meets, across the present line of sight, over the one that is reported. */
+static double met_share(void) {
+    goe_aspect_t aspect;
+    if (filter.phase != GOE_PHASE_PRISM) {
+        return 1.0;
+    }
+    goe_prism_face_camera(&filter, goe_filter_camera(&filter, &motion), &aspect);
+    return (double)aspect.across.reach / (double)filter.state[GOE_PRISM_HALF];
+}
+
 /* GIVEN the same THEN that is on the covariance's diagonal alone; for X0 and Z0 including the time before the filter's start, but not
  * for a hazard, as the camera now has no part in that. */
 static void errors_of_own_motion_are_on_the_diagonal(void) {
@@ -537,7 +563,8 @@ static void errors_of_own_motion_are_on_the_diagonal(void) {
             const double variance = (double)quantities.sigma[i] * (double)quantities.sigma[i];
             const double early = i <= GOE_Z0 ? (double)quantities.early_m2 : 0.0;
             CHECK_CLOSE(SHARE * (variance + 1.0e-6), variance + early, now[i][i]);
-            CHECK_CLOSE(SHARE * (variance + 1.0e-6), variance, ahead[i][i]);
+            const double met = i == GOE_WIDTH ? variance * squared(met_share()) : variance;
+            CHECK_CLOSE(SHARE * (met + 1.0e-6), met, ahead[i][i]);
             CHECK_CLOSE(SHARE * variance + 1.0e-4, 0.0, i > 0 ? now[i][i - 1] : 0.0f);
         }
     }
