@@ -77,6 +77,11 @@ static bool is_superseded(const goe_estimator_t *estimator) {
 #endif
 }
 
+/* Whether the position is known to be wrong: the obstacle moves, and no velocity of it is estimated. */
+static bool is_misplaced(const goe_estimate_t *estimate) {
+    return estimate->reason == GOE_REASON_MOVES && (estimate->valid & GOE_HAS_VELOCITY) == 0u;
+}
+
 /* Between the two bounds of the time, and between a small probability and a distance that is kept, too little is known to clear. */
 static goe_decision_t decision_of(const goe_hazard_t *met, const goe_intent_t *intent, const goe_rule_t *rule) {
     if (met->conflict_probability < rule->conflict_probability_max) {
@@ -106,7 +111,8 @@ static GOE_NOINLINE goe_decision_t judge(const goe_estimator_t *estimator, const
         return status == GOE_CONVERGING ? GOE_DECISION_UNKNOWN : GOE_DECISION_KEEP;
     }
     const goe_decision_t decision = decision_of(met, &wide, rule);
-    return decision == GOE_DECISION_CLEAR && is_superseded(estimator) ? GOE_DECISION_UNKNOWN : decision;
+    const bool clears = !is_superseded(estimator) && !is_misplaced(&estimator->estimate);
+    return decision == GOE_DECISION_CLEAR && !clears ? GOE_DECISION_UNKNOWN : decision;
 }
 
 /* The caller may not know that images are refused, and since when. So the rule also judges the time of the newest of them. That

@@ -106,6 +106,22 @@ static void an_old_answer_clears_nothing_after_new_detections(void) {
 #endif
 }
 
+/* [goe_decide, GOE_REASON_MOVES]
+ * GIVEN an obstacle that moves without an estimated velocity THEN its position is wrong and clears nothing; it still orders. */
+static void a_wrong_position_clears_nothing(void) {
+    place(60.0);
+    estimator.estimate.suspect = true;
+    estimator.estimate.reason = GOE_REASON_NOISE;
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_CLEAR, decide());
+    estimator.estimate.reason = GOE_REASON_MOVES;
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_UNKNOWN, decide());
+    estimator.estimate.valid |= GOE_HAS_VELOCITY;
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_CLEAR, decide());
+    place(0.0);
+    estimator.estimate.reason = GOE_REASON_MOVES;
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_ACT, decide());
+}
+
 /* [goe_decide]
  * GIVEN a suspect estimate THEN margin and clearance count `doubt` times; GIVEN one that is some seconds old, by its own age and the
  * intent's THEN they have grown by the drift. The hazard is that of these distances. */
@@ -262,6 +278,7 @@ int main(void) {
     RUN_TEST(probability_and_time_decide);
     RUN_TEST(a_poorly_known_obstacle_is_not_clear);
     RUN_TEST(an_old_answer_clears_nothing_after_new_detections);
+    RUN_TEST(a_wrong_position_clears_nothing);
     RUN_TEST(doubt_and_age_widen);
     RUN_TEST(a_refused_image_moves_the_aircraft_on);
     RUN_TEST(without_a_position_nothing_is_known);
