@@ -421,7 +421,7 @@ static void exchange_names(goe_filter_t *filter, const goe_observation_t *obs) {
 }
 
 bool goe_box_change(goe_filter_t *filter, const goe_observation_t *obs) {
-    if (filter->phase == GOE_PHASE_BOX_FACE && obs->base && obs->point[GOE_POINT_BASE_NEAR].usable) {
+    if (goe_filter_traits(filter)->one_face && obs->base && obs->point[GOE_POINT_BASE_NEAR].usable) {
         free_length(filter, obs);
         return true;
     }
@@ -509,7 +509,7 @@ void goe_box_shape(const goe_filter_t *filter, goe_shape_t *shape) {
 }
 
 void goe_box_face_doubt(const goe_filter_t *filter, goe_shape_t *shape) {
-    if (filter->phase != GOE_PHASE_BOX_FACE) {
+    if (!goe_filter_traits(filter)->one_face) {
         return;
     }
     const float size_m = goe_larger(shape->quantity[GOE_WIDTH].value, shape->quantity[GOE_LENGTH].value);
@@ -536,7 +536,7 @@ static float side_share2(const goe_filter_t *filter, goe_xz_t camera_m) {
 float goe_box_outline_variance(const goe_filter_t *filter, const goe_shape_t *shape, goe_xz_t camera_m, int quantity,
                                float *by_orientation) {
     *by_orientation = 0.0f;
-    if (filter->phase != GOE_PHASE_BOX_OUTLINE || quantity < GOE_ORIENTATION || quantity > GOE_LENGTH) {
+    if (!goe_filter_traits(filter)->by_outline || quantity < GOE_ORIENTATION || quantity > GOE_LENGTH) {
         return 0.0f;
     }
     if (quantity == GOE_ORIENTATION) {

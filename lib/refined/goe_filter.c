@@ -11,14 +11,31 @@
 
 #if GOE_WITH_FILTER
 
-GOE_STATIC_ASSERT(GOE_PHASE_BOX_OUTLINE <= UINT8_MAX, a_phase_fits_its_byte);
+GOE_STATIC_ASSERT(GOE_PHASES <= UINT8_MAX, a_phase_fits_its_byte);
 GOE_STATIC_ASSERT((GOE_HAS_POSITION | GOE_HAS_LENGTH | GOE_HAS_HEIGHT | GOE_HAS_ORIENTATION | GOE_HAS_CENTER |
                    GOE_HAS_WIDTH) <= UINT8_MAX,
                   known_mask_fits_its_byte);
 GOE_STATIC_ASSERT(GOE_BIAS_Y == GOE_BIAS_X + 1 && GOE_BIAS_Z == GOE_BIAS_X + 2, the_biases_follow_each_other);
 
+static const goe_traits_t traits_of[GOE_PHASES] = {
+    [GOE_PHASE_NONE] = {.model = GOE_MODEL_DISC},
+    [GOE_PHASE_PRISM] = {.model = GOE_MODEL_PRISM,
+                         .remembers_sides = true,
+                         .has_steady_height = true,
+                         .foot_gives_range = true,
+                         .is_ellipse = true},
+    [GOE_PHASE_DISC] = {.model = GOE_MODEL_DISC, .is_conditioned = true, .can_stand_in = true},
+    [GOE_PHASE_CHORD] = {.model = GOE_MODEL_DISC, .can_lose_an_end = true},
+    [GOE_PHASE_BOX_FACE] = {.model = GOE_MODEL_BOX, .is_box = true, .by_corners = true, .one_face = true},
+    [GOE_PHASE_BOX] = {.model = GOE_MODEL_BOX, .is_box = true, .by_corners = true},
+    [GOE_PHASE_BOX_OUTLINE] = {.model = GOE_MODEL_BOX, .is_box = true, .by_outline = true}};
+
+const goe_traits_t *goe_filter_traits(const goe_filter_t *filter) {
+    return &traits_of[filter->phase < GOE_PHASES ? filter->phase : GOE_PHASE_NONE];
+}
+
 bool goe_filter_reports(const goe_filter_t *filter, const goe_settings_t *settings) {
-    return filter->phase >= (settings->model == GOE_MODEL_LINE ? GOE_PHASE_BOX_FACE : GOE_PHASE_PRISM);
+    return settings->model == GOE_MODEL_LINE ? goe_filter_is_box(filter) : goe_filter_has_started(filter);
 }
 
 void goe_filter_clear(goe_filter_t *filter) {
@@ -69,11 +86,11 @@ float goe_filter_due_walk2(const goe_filter_t *filter, const goe_navigation_t *n
     return goe_square(navigation->position_walk_sd_m * filter->state[GOE_INVERSE_RANGE]) * filter->due_s;
 }
 
-/* A step of the own position along Z rescales every length in units of Z0. Of a prism, the depth is a ratio of two. */
+/* A step of the own position along Z rescales every length in units of Z0. Of an ellipse, the depth is a ratio of two. */
 static GOE_NOINLINE void walk_along_z(goe_filter_t *filter, float sigma) {
     float direction[GOE_STATES];
     memcpy(direction, filter->state, sizeof direction);
-    if (filter->phase == GOE_PHASE_PRISM) {
+    if (goe_filter_traits(filter)->is_ellipse) {
         direction[GOE_PRISM_DEPTH] = 0.0f;
     }
     goe_srif_spread(&filter->root, direction, GOE_GROUND, GOE_STATES - 1u, sigma);

@@ -72,8 +72,29 @@ typedef enum {
     GOE_PHASE_BOX_OUTLINE /* a box by its silhouette alone */
 } goe_phase_t;
 
+#define GOE_PHASES (GOE_PHASE_BOX_OUTLINE + 1)
+
+/* What the model of a phase is like, for all that does not know the models. */
+typedef struct {
+    goe_model_t model;      /* as it is reported */
+    bool is_box;            /* two edges, with orientation and length */
+    bool by_corners;        /* ... by base corners */
+    bool by_outline;        /* ... by its silhouette alone: corners change unnoticed */
+    bool one_face;          /* ... of which one face is visible: its length is held, not estimated */
+    bool is_conditioned;    /* an answer takes it as free of skew, and doubts that */
+    bool can_stand_in;      /* it substitutes for a box whose orientation is not known yet */
+    bool can_lose_an_end;   /* a face that comes into view leaves it */
+    bool remembers_sides;   /* upright boxes show it, and the errors of their sides are modeled */
+    bool has_steady_height; /* it counts the camera's height by the changes of down */
+    bool foot_gives_range;  /* by the height, from the first image on; not base corners */
+    bool is_ellipse;        /* its last state is a ratio, and may be considered; GOE_FRONT_X is half a width */
+} goe_traits_t;
+
+const goe_traits_t *goe_filter_traits(const goe_filter_t *filter);
+
 static inline goe_phase_t goe_filter_phase(const goe_filter_t *filter) { return (goe_phase_t)filter->phase; }
-static inline bool goe_filter_is_box(const goe_filter_t *filter) { return filter->phase >= GOE_PHASE_BOX_FACE; }
+static inline bool goe_filter_has_started(const goe_filter_t *filter) { return filter->phase != GOE_PHASE_NONE; }
+static inline bool goe_filter_is_box(const goe_filter_t *filter) { return goe_filter_traits(filter)->is_box; }
 
 /* Whether the phase is one that the settings let be reported: a forced line is a box, and no disc before it. */
 bool goe_filter_reports(const goe_filter_t *filter, const goe_settings_t *settings);

@@ -176,7 +176,7 @@ static void scale_row(float row[GOE_COLUMNS], float weight) {
 GOE_STATIC_ASSERT(GOE_FEATURES == 6, every_feature_begins_with_full_weight);
 
 float goe_gate_repeated(const goe_settings_t *settings, const goe_filter_t *filter) {
-    const float correlation = filter->phase == GOE_PHASE_PRISM ? 0.0f : settings->detector.point_correlation;
+    const float correlation = goe_filter_traits(filter)->remembers_sides ? 0.0f : settings->detector.point_correlation;
     return (1.0f + correlation) / (1.0f - correlation);
 }
 

@@ -78,7 +78,7 @@ void goe_health_take_refused(goe_health_t *health, goe_verdict_t verdict) {
 /* A point that is refused image after image: the state was captured by an outlier, not the other way round. */
 static bool is_captured(goe_filter_t *filter, goe_verdict_t verdict) {
     goe_health_t *health = &filter->health;
-    const bool chord = filter->phase == GOE_PHASE_CHORD;
+    const bool chord = goe_filter_traits(filter)->can_lose_an_end;
     const unsigned most = chord ? REFUSED_ENDS : REFUSED_IMAGES;
     bool captured = false;
     for (size_t i = 0; i < GOE_FEATURES; i++) {
@@ -104,7 +104,7 @@ static bool is_captured(goe_filter_t *filter, goe_verdict_t verdict) {
 /* The top alone hangs on nothing else. */
 static void free_top(goe_filter_t *filter) {
     const float *x = filter->state;
-    const float depth = filter->phase == GOE_PHASE_PRISM ? 0.0f : goe_absolute(x[GOE_DEPTH_DIFFERENCE]);
+    const float depth = goe_filter_traits(filter)->is_ellipse ? 0.0f : goe_absolute(x[GOE_DEPTH_DIFFERENCE]);
     const float size = goe_larger(goe_absolute(x[GOE_TOP]), goe_larger(x[GOE_FRONT_X], depth));
     goe_filter_inflate(filter, GOE_TOP, TOP_FREEDOM * size);
     filter->health.refused[GOE_POINT_TOP] = 0;
@@ -122,8 +122,8 @@ static bool is_sane(const goe_filter_t *filter) {
 /* A box of base corners that proved wrong more than once: they are those of something else. Residuals alone do not decide:
  * noise that is given too small must not cost a true box its corners. */
 static void count_failure(goe_filter_t *filter, const goe_settings_t *settings) {
-    const bool by_corners = filter->phase == GOE_PHASE_BOX || filter->phase == GOE_PHASE_BOX_FACE;
-    if (by_corners && settings->model == GOE_MODEL_AUTO && filter->health.images >= EARLY_IMAGES) {
+    if (goe_filter_traits(filter)->by_corners && settings->model == GOE_MODEL_AUTO &&
+        filter->health.images >= EARLY_IMAGES) {
         filter->health.base_refused = goe_count_image(&filter->health.failed) >= FAILURES_MAX;
     }
 }

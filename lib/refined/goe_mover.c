@@ -153,7 +153,7 @@ static bool fit_augmented(const goe_filter_t *filter, const goe_observation_t *o
 
 /* The image gives a scale that does not require a static obstacle: its foot, by the height. */
 static bool has_scale(const goe_filter_t *filter, const goe_observation_t *obs) {
-    return filter->phase == GOE_PHASE_PRISM ? goe_sides_see(obs->sides, GOE_SIDE_BOTTOM) : obs->base;
+    return goe_filter_traits(filter)->foot_gives_range ? goe_sides_see(obs->sides, GOE_SIDE_BOTTOM) : obs->base;
 }
 
 /* Of the covariance (x, both; both, z). One too close to singular for float is taken as wide as it may be. */
@@ -173,7 +173,7 @@ static bool is_unlike_static(const fit_t *fit, float least) {
 static bool is_moving(goe_filter_t *filter, const fit_t *fit, float since_s) {
     goe_mover_t *m = &filter->mover;
     if (!(m->observed_s > SETTLED_S) ||
-        !is_unlike_static(fit, filter->phase == GOE_PHASE_PRISM ? BOXES_CHI2 : MOVES_CHI2)) {
+        !is_unlike_static(fit, goe_filter_traits(filter)->remembers_sides ? BOXES_CHI2 : MOVES_CHI2)) {
         m->unlike_s = 0.0f;
         m->images = 0;
         return false;

@@ -105,7 +105,8 @@ void goe_prism_rows(const goe_observation_t *obs, goe_rows_t *rows) {
 
 bool goe_prism_is_early(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion) {
     const float since_s = goe_time_between_s(filter->time_us, motion->time_us, GAP_MAX_US);
-    return filter->phase == GOE_PHASE_PRISM && since_s < EARLY_SHARE * settings->detector.box_correlation_time_s;
+    return goe_filter_traits(filter)->remembers_sides &&
+           since_s < EARLY_SHARE * settings->detector.box_correlation_time_s;
 }
 
 void goe_prism_recall(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {

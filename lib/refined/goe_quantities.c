@@ -214,7 +214,7 @@ static float project(const goe_filter_t *filter, const widening_t *wider, counte
     float variance = goe_srif_project(&filter->root, wider->reciprocal, GOE_UNWEIGHTED, error->by);
     error->moved = 0.0f;
     augmented_of(filter, error->by, counted.x, counted.z, counted.at_s, &error->augmented);
-    if (filter->phase == GOE_PHASE_DISC) {
+    if (goe_filter_traits(filter)->is_conditioned) {
         error->moved = goe_disc_condition(&wider->doubt, error->by);
         variance = dot(error->by, error->by, 0.0f);
     }
@@ -254,7 +254,7 @@ static bool is_position(const goe_quantities_t *q, goe_xz_t from, float share) {
 
 /* The extents of a box by its outline count only after some images, and if these fit. */
 static bool knows_extents(const goe_filter_t *filter) {
-    return filter->phase != GOE_PHASE_BOX_OUTLINE ||
+    return !goe_filter_traits(filter)->by_outline ||
            !(filter->phase_images < OUTLINE_IMAGES || filter->health.recent_nis > OUTLINE_NIS);
 }
 
@@ -263,7 +263,7 @@ static unsigned known_extents(const goe_filter_t *filter, const goe_quantities_t
     if ((q->box || !filter->candidate.stand_in) && is_extent(q, GOE_WIDTH, 0.0f)) {
         known |= GOE_HAS_WIDTH;
     }
-    if (q->box && filter->phase != GOE_PHASE_BOX_FACE && is_extent(q, GOE_LENGTH, 0.0f)) {
+    if (q->box && !goe_filter_traits(filter)->one_face && is_extent(q, GOE_LENGTH, 0.0f)) {
         known |= GOE_HAS_LENGTH;
     }
     if (q->box && goe_within(q->worked_out[GOE_ORIENTATION], ORIENTATION_MAX_RAD)) {
@@ -302,7 +302,7 @@ static void set_quantities(const goe_filter_t *filter, const goe_motion_t *motio
         error->moved = 0.0f;
         float found = has(q, i) ? project(filter, wider, counted_of(i, elapsed_s), error) : 0.0f;
         found *= depends_on_corner(i) ? shape->early : 1.0f;
-        const float excluded = q->prism ? goe_srif_last_variance(error->by) : 0.0f;
+        const float excluded = goe_filter_traits(filter)->is_ellipse ? goe_srif_last_variance(error->by) : 0.0f;
         float turns; /* with the orientation, whose own sigma comes first */
         const float given = drift_variance(motion, drift, shape, q->box, i) +
                             goe_box_outline_variance(filter, shape, drift.camera_m, i, &turns);
@@ -389,8 +389,8 @@ static void set_velocity(const goe_filter_t *filter, const goe_settings_t *setti
  * substitutes for the box. */
 static void doubt_far_roof(const goe_filter_t *filter, const goe_settings_t *settings, goe_shape_t *shape) {
     const bool highest = settings->filter.top_is_highest;
-    const bool is_substitute = filter->phase == GOE_PHASE_DISC && filter->candidate.stand_in && highest;
-    const bool is_face = filter->phase == GOE_PHASE_BOX_FACE && (filter->datum.boxes || highest);
+    const bool is_substitute = goe_filter_traits(filter)->can_stand_in && filter->candidate.stand_in && highest;
+    const bool is_face = goe_filter_traits(filter)->one_face && (filter->datum.boxes || highest);
     if (is_substitute || is_face) {
         const float size_m = goe_larger(shape->quantity[GOE_WIDTH].value, shape->quantity[GOE_LENGTH].value);
         shape->roof_m2 = goe_square(FAR_ROOF * size_m);
@@ -402,7 +402,7 @@ static void widening_of(const goe_filter_t *filter, const goe_settings_t *settin
                         drift_t drift, goe_shape_t *shape, widening_t *wider) {
     wider->scatter = goe_scatter_factor(filter, goe_gate_repeated(settings, filter));
     goe_srif_reciprocals(&filter->root, wider->reciprocal);
-    if (filter->phase == GOE_PHASE_DISC) {
+    if (goe_filter_traits(filter)->is_conditioned) {
         goe_disc_doubt(filter, settings->model == GOE_MODEL_DISC, goe_filter_measured(filter), shape, &wider->doubt);
     }
     goe_box_face_doubt(filter, shape);
@@ -428,8 +428,8 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
     widening_of(filter, settings, motion, drift, &shape, &wider);
     wider.bend = goe_prism_bend(filter);
     q->early_m2 = early_variance(filter, &settings->navigation, motion);
+    q->model = goe_filter_traits(filter)->model;
     q->box = goe_filter_is_box(filter);
-    q->prism = filter->phase == GOE_PHASE_PRISM;
     q->length_axis = shape.length_axis;
     set_quantities(filter, motion, &shape, drift, &wider, q, place);
     const goe_xz_t gone = goe_filter_moved(filter, motion);
@@ -463,7 +463,7 @@ static void add_to_footprint(float factor, float scale_m, const goe_support_t *r
 /* What decides a warning is the near side, which images show, not the middle, which hangs on the depth. */
 static void meet_near_side(const goe_filter_t *filter, goe_xz_t camera_m, goe_shape_t *shape) {
     goe_aspect_t aspect;
-    if (filter->phase != GOE_PHASE_PRISM) {
+    if (!goe_filter_traits(filter)->is_ellipse) {
         return;
     }
     goe_prism_face_camera(filter, camera_m, &aspect);

@@ -17,7 +17,8 @@ typedef struct {
     float velocity_m_s[2], velocity_sd_m_s[2]; /* ... and these hold: north, east */
     float center_m[2], center_sd_m[2];         /* north, east; holds with GOE_HAS_CENTER ... */
     float center_ne_m2;                        /* ... as does the covariance of the two */
-    bool box, prism;
+    goe_model_t model;
+    bool box;
 } goe_quantities_t;
 
 /* What the latest image that the filter took knows. */

@@ -113,7 +113,7 @@ static void note_time(goe_filter_t *filter, goe_observation_t *obs) {
     const goe_detector_t *detector = &obs->settings->detector;
     obs->range_variance = goe_filter_variance(filter, GOE_INVERSE_RANGE);
     const float relative2 = obs->range_variance / goe_square(filter->state[GOE_INVERSE_RANGE]);
-    if (filter->phase == GOE_PHASE_PRISM || obs->sides->usable != 0) {
+    if (goe_filter_traits(filter)->remembers_sides || obs->sides->usable != 0) {
         const bool same = filter->camera == obs->number; /* a correlation in one camera is no evidence about another */
         obs->fade = same && detector->box_correlation_time_s > 0.0f
                         ? goe_exp(-obs->since_s / detector->box_correlation_time_s)
@@ -129,7 +129,7 @@ static void note_time(goe_filter_t *filter, goe_observation_t *obs) {
     requires \valid(swapped); */
 static bool open_image(goe_filter_t *filter, const goe_settings_t *settings, const goe_view_t *view,
                        goe_observation_t *obs, unsigned *swapped) {
-    const bool running = filter->phase != GOE_PHASE_NONE;
+    const bool running = goe_filter_has_started(filter);
     const bool prism = !running && goe_model_place(filter, settings, view);
     *swapped = goe_observation_open(obs, settings, filter, view);
     if (!running && !goe_model_start(filter, obs, prism)) {
@@ -190,7 +190,7 @@ bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, co
     goe_observation_t obs;
     goe_health_expect(&filter->health);
     *swapped = 0;
-    if (filter->phase > GOE_PHASE_BOX_OUTLINE) {
+    if (filter->phase >= GOE_PHASES) {
         goe_filter_enter(filter, GOE_PHASE_NONE); /* an unknown one: it starts again */
     }
     goe_ground_read(filter, &settings->navigation, view);
@@ -217,7 +217,7 @@ bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, co
 static float reach_of(const goe_filter_t *filter, float *nearer_m) {
     const float *x = filter->state;
     *nearer_m = 0.0f;
-    if (filter->phase == GOE_PHASE_PRISM) {
+    if (goe_filter_traits(filter)->is_ellipse) {
         goe_aspect_t aspect;
         goe_prism_face_camera(filter, goe_filter_measured(filter), &aspect);
         *nearer_m = (aspect.before.reach - aspect.across.reach) / x[GOE_INVERSE_RANGE];

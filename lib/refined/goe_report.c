@@ -37,7 +37,7 @@ static void report_orientation(const goe_quantities_t *q, goe_estimate_t *estima
 }
 
 static void report_known(const goe_quantities_t *q, const goe_motion_t *motion, goe_estimate_t *estimate) {
-    estimate->model = q->box ? GOE_MODEL_BOX : (q->prism ? GOE_MODEL_PRISM : GOE_MODEL_DISC);
+    estimate->model = q->model;
     estimate->fresh = true;
     estimate->valid = q->known;
     report_position(q, motion, estimate);
@@ -96,7 +96,7 @@ static bool is_misfit(const goe_health_t *health, const goe_settings_t *settings
 
 /* A disc was configured, and it is none. */
 static bool is_forced(const goe_filter_t *filter, const goe_settings_t *settings) {
-    return settings->model == GOE_MODEL_DISC && filter->phase == GOE_PHASE_DISC && goe_disc_is_skewed(filter);
+    return settings->model == GOE_MODEL_DISC && goe_filter_traits(filter)->is_conditioned && goe_disc_is_skewed(filter);
 }
 
 static bool moves(const goe_filter_t *filter) {

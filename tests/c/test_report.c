@@ -155,7 +155,7 @@ static void only_known_values_are_reported(void) {
     quantities.center_sd_m[0] = 11.0f;
     quantities.center_sd_m[1] = 22.0f;
     quantities.center_ne_m2 = 33.0f;
-    quantities.box = true;
+    quantities.model = GOE_MODEL_BOX;
     motion.dx_m = 3.0f;
     motion.dz_m = 4.0f;
     for (size_t n = 0; n < 32; n++) {
@@ -212,7 +212,7 @@ static void only_known_values_are_reported(void) {
  * answer stays as it is; without a previous one, only the method is reported. */
 static void an_image_that_knows_nothing_takes_nothing_back(void) {
     quantities.known = GOE_HAS_POSITION;
-    quantities.prism = true;
+    quantities.model = GOE_MODEL_PRISM;
     quantities.moves = true;
     quantities.velocity_m_s[0] = 3.0f;
     quantities.velocity_m_s[1] = -4.0f;
