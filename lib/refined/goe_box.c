@@ -486,6 +486,15 @@ static float early_factor(const goe_filter_t *filter, const goe_box_edges_t *e) 
     return 1.0f + EARLY * (relative < EARLY_MAX ? relative : EARLY_MAX);
 }
 
+/* (R41): what a single face is uncertain by, as its ends may be the outer ends of two faces. */
+static void doubt_face(goe_shape_t *shape) {
+    const float size_m = goe_larger(shape->quantity[GOE_WIDTH].value, shape->quantity[GOE_LENGTH].value);
+    shape->turned_rad2 = goe_square(FACE_RAD);
+    shape->width_m2 = goe_square(FACE_WIDTH * size_m);
+    shape->place_m2 = goe_square(FACE_PLACE * size_m);
+    shape->roof_m2 = goe_square(FACE_ROOF * size_m);
+}
+
 void goe_box_shape(const goe_filter_t *filter, goe_shape_t *shape) {
     const float *x = filter->state;
     const bool exchanged = filter->naming.exchanged;
@@ -506,17 +515,9 @@ void goe_box_shape(const goe_filter_t *filter, goe_shape_t *shape) {
     set_orientation(&shape->quantity[GOE_ORIENTATION], &e.side, shape->length_axis);
     set_edge(&shape->quantity[exchanged ? GOE_WIDTH : GOE_LENGTH], &e.side, GOE_SIDE_X, shape->scale_m);
     set_edge(&shape->quantity[exchanged ? GOE_LENGTH : GOE_WIDTH], &e.front, GOE_FRONT_X, shape->scale_m);
-}
-
-void goe_box_face_doubt(const goe_filter_t *filter, goe_shape_t *shape) {
-    if (!goe_filter_traits(filter)->one_face) {
-        return;
+    if (goe_filter_traits(filter)->one_face) {
+        doubt_face(shape);
     }
-    const float size_m = goe_larger(shape->quantity[GOE_WIDTH].value, shape->quantity[GOE_LENGTH].value);
-    shape->turned_rad2 = goe_square(FACE_RAD);
-    shape->width_m2 = goe_square(FACE_WIDTH * size_m);
-    shape->place_m2 = goe_square(FACE_PLACE * size_m);
-    shape->roof_m2 = goe_square(FACE_ROOF * size_m);
 }
 
 /* Of the side, at a small viewing angle, only the product of length and angle shows. */

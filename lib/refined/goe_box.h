@@ -42,9 +42,6 @@ bool goe_box_change(goe_filter_t *filter, const goe_observation_t *obs);
  * their true error is larger than to first order, by goe_shape_t.early, (R24). */
 void goe_box_shape(const goe_filter_t *filter, goe_shape_t *shape);
 
-/* (R41): what a single face is uncertain by, as its ends may be the outer ends of two faces. */
-void goe_box_face_doubt(const goe_filter_t *filter, goe_shape_t *shape);
-
 /* Variance of orientation (rad^2), width and length (m^2) beyond that of the state, of a box that was found by its outline:
  * corners change unnoticed for some images. camera_m: the camera since the filter's start (goe_filter_camera). *by_orientation: how
  * many times the variance of the orientation (rad^2), this included, comes to it. */

@@ -70,42 +70,51 @@ bool goe_model_change(goe_filter_t *filter, const goe_observation_t *obs) {
 }
 
 void goe_model_rows(const goe_filter_t *filter, goe_observation_t *obs, goe_rows_t *rows) {
-    if (filter->phase == GOE_PHASE_PRISM) {
-        goe_prism_rows(obs, rows);
-    } else if (goe_filter_is_box(filter)) {
-        obs->depth_variance = goe_filter_variance(filter, GOE_DEPTH_DIFFERENCE);
-        obs->two_faces = filter->phase != GOE_PHASE_BOX_FACE;
-        goe_box_rows(obs, rows);
-    } else if (filter->phase == GOE_PHASE_CHORD) {
-        goe_chord_rows(obs, rows);
-    } else {
-        obs->stand_in = filter->candidate.stand_in;
-        goe_disc_rows(obs, rows);
+    switch (goe_filter_phase(filter)) {
+        case GOE_PHASE_PRISM:
+            goe_prism_rows(obs, rows);
+            break;
+        case GOE_PHASE_CHORD:
+            goe_chord_rows(obs, rows);
+            break;
+        case GOE_PHASE_BOX_FACE:
+        case GOE_PHASE_BOX:
+        case GOE_PHASE_BOX_OUTLINE:
+            obs->depth_variance = goe_filter_variance(filter, GOE_DEPTH_DIFFERENCE);
+            obs->two_faces = !goe_filter_traits(filter)->one_face;
+            goe_box_rows(obs, rows);
+            break;
+        case GOE_PHASE_DISC:
+        case GOE_PHASE_NONE:
+        default:
+            obs->stand_in = filter->candidate.stand_in;
+            goe_disc_rows(obs, rows);
     }
 }
 
 void goe_model_recall(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
-    if (filter->phase == GOE_PHASE_PRISM) {
+    if (goe_filter_traits(filter)->remembers_sides) {
         goe_prism_recall(filter, obs, rows);
     }
 }
 
 void goe_model_learn(goe_filter_t *filter, goe_rows_t *rows, const goe_verdict_t *verdict) {
-    if (filter->phase == GOE_PHASE_CHORD) {
+    const goe_traits_t *traits = goe_filter_traits(filter);
+    if (traits->can_lose_an_end) {
         goe_chord_follow(filter, verdict);
-    } else if (filter->phase == GOE_PHASE_PRISM) {
+    } else if (traits->remembers_sides) {
         goe_prism_learn(filter, rows);
     }
 }
 
 void goe_model_doubt(goe_filter_t *filter, const goe_observation_t *obs) {
-    if (filter->phase == GOE_PHASE_CHORD) {
+    if (goe_filter_traits(filter)->can_lose_an_end) {
         goe_chord_free_top(filter, obs);
     }
 }
 
 float goe_model_update(goe_filter_t *filter, float nuisance_root, goe_rows_t *rows, float change[GOE_UNKNOWNS]) {
-    const bool prism = filter->phase == GOE_PHASE_PRISM;
+    const bool prism = goe_filter_traits(filter)->is_ellipse;
     const float nis = prism && !goe_prism_knows_depth(filter)
                           ? goe_srif_update_considering(&filter->root, nuisance_root, rows->matrix, rows->count, change)
                           : goe_srif_update(&filter->root, nuisance_root, rows->matrix, rows->count, change);
@@ -121,14 +130,22 @@ float goe_model_update(goe_filter_t *filter, float nuisance_root, goe_rows_t *ro
 }
 
 void goe_model_shape(const goe_filter_t *filter, goe_shape_t *shape) {
-    if (filter->phase == GOE_PHASE_PRISM) {
-        goe_prism_shape(filter, shape);
-    } else if (goe_filter_is_box(filter)) {
-        goe_box_shape(filter, shape);
-    } else if (filter->phase == GOE_PHASE_CHORD) {
-        goe_chord_shape(filter, shape);
-    } else {
-        goe_disc_shape(filter, shape);
+    switch (goe_filter_phase(filter)) {
+        case GOE_PHASE_PRISM:
+            goe_prism_shape(filter, shape);
+            break;
+        case GOE_PHASE_CHORD:
+            goe_chord_shape(filter, shape);
+            break;
+        case GOE_PHASE_BOX_FACE:
+        case GOE_PHASE_BOX:
+        case GOE_PHASE_BOX_OUTLINE:
+            goe_box_shape(filter, shape);
+            break;
+        case GOE_PHASE_DISC:
+        case GOE_PHASE_NONE:
+        default:
+            goe_disc_shape(filter, shape);
     }
 }
 

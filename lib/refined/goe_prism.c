@@ -8,7 +8,6 @@
 #include "maths/goe_angle.h"
 #include "maths/goe_exp.h"
 #include "maths/goe_scalar.h"
-#include "maths/goe_time.h"
 #include "refined/goe_side_memory.h"
 #include "refined/goe_touch.h"
 
@@ -17,8 +16,6 @@
 #define AHEAD_MIN 0.02f        /* third component of a ray that is faced */
 #define DEPTH_MAX 2.0f         /* |s|: 7 times as deep as wide, or as flat */
 #define SHIFT_RATIO_MAX 300.0f /* of a shift that rows share, over a row's own noise */
-#define EARLY_SHARE 0.08f      /* of the time constant: sooner, differences of boxes are their linearization's */
-#define GAP_MAX_US 1000000000u /* as the filter's: a longer gap counts as this one */
 #define GROUND_SIGMAS 3.0f     /* by which the foot must lie below the horizon to give the range */
 #define FOOT_SHARE 0.6f        /* of box_noise_rel of the width, in that sigma */
 #define NEAR_SIDE 0.5f         /* the foot is nearer than the middle by half the width */
@@ -102,12 +99,6 @@ void goe_prism_rows(const goe_observation_t *obs, goe_rows_t *rows) {
 }
 
 /* ------------------------------------------------------------------------------------------------------ sides' errors -- */
-
-bool goe_prism_is_early(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion) {
-    const float since_s = goe_time_between_s(filter->time_us, motion->time_us, GAP_MAX_US);
-    return goe_filter_traits(filter)->remembers_sides &&
-           since_s < EARLY_SHARE * settings->detector.box_correlation_time_s;
-}
 
 void goe_prism_recall(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
     const goe_detector_t *detector = &obs->settings->detector;

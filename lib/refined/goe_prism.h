@@ -18,9 +18,6 @@ bool goe_prism_face(goe_filter_t *filter, const goe_view_t *view);
 /* First guess: state and root from one image, in axes that face the obstacle. False if it is out of range. */
 bool goe_prism_start(const goe_observation_t *obs, float state[GOE_STATES], goe_triangle_t *root);
 
-/* Whether an image comes so soon after the one before that its errors are the same: it is not used. */
-bool goe_prism_is_early(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion);
-
 /* Appends the rows of a box. */
 /*@ requires goe_observation_is_open(obs) && goe_rows_hold(rows) && rows->count == 0; */
 void goe_prism_rows(const goe_observation_t *obs, goe_rows_t *rows);

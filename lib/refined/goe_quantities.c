@@ -405,7 +405,6 @@ static void widening_of(const goe_filter_t *filter, const goe_settings_t *settin
     if (goe_filter_traits(filter)->is_conditioned) {
         goe_disc_doubt(filter, settings->model == GOE_MODEL_DISC, goe_filter_measured(filter), shape, &wider->doubt);
     }
-    goe_box_face_doubt(filter, shape);
     doubt_far_roof(filter, settings, shape);
     shape->top_m2 = shape->roof_m2 > 0.0f ? top_variance(motion, drift, shape) : 0.0f;
 }
