@@ -215,12 +215,13 @@ GOE_NOINLINE static void add_base_corner(const goe_observation_t *obs, const out
     gy.ex -= share * gx.ex;
     gy.ey -= share * gx.ey;
     gy.ez -= share * gx.ez;
-    float *by = goe_rows_add(rows, feature, measured->x, spread.xx, &gx);
+    float *by = goe_rows_add(rows, feature, GOE_ALONG_X, measured->x, spread.xx, &gx);
     const float along_x = by[GOE_BEHIND_STATES];
     set_corner(rows, by, obs, o, corner, &gx);
     by[GOE_INVERSE_RANGE] += gx.y * obs->height_m;
     by[GOE_GROUND] = gx.y;
-    by = goe_rows_add(rows, feature, measured->y, spread.yy - share * spread.xy, &gy);
+    by = goe_rows_add(rows, feature, GOE_ALONG_Y, measured->y, spread.yy - share * spread.xy, &gy);
+    rows->series[rows->count - 1u]++; /* besides that of x */
     by[GOE_BEHIND_STATES] -= share * along_x;
     set_corner(rows, by, obs, o, corner, &gy);
     by[GOE_INVERSE_RANGE] += gy.y * obs->height_m;

@@ -20,16 +20,10 @@ typedef struct {
 /*@ requires goe_rows_hold(rows) && row < rows->count; */
 static float residual_of(const goe_rows_t *rows, size_t row) { return rows->matrix->row[row][GOE_RESIDUAL]; }
 
-/* A row along x is moved more by the attitude's error about Y than about X. */
-/*@ requires goe_rows_hold(rows) && row < rows->count; */
-static bool is_along_x(const goe_rows_t *rows, size_t row) {
-    return goe_absolute(rows->matrix->row[row][0]) > goe_absolute(rows->matrix->row[row][1]);
-}
-
-static void gather(const goe_rows_t *rows, bool along_x, group_t *group) {
+static void gather(const goe_rows_t *rows, goe_axis_t axis, group_t *group) {
     group->count = 0;
     for (size_t i = 0; i < rows->count; i++) {
-        if (is_along_x(rows, i) != along_x) {
+        if (rows->axis[i] != axis) {
             continue;
         }
         size_t at = group->count++;
@@ -129,19 +123,19 @@ static void note_odd(const goe_rows_t *rows, const group_t *group, size_t row, f
     verdict->odd_outward = more == (verdict->odd == GOE_POINT_RIGHT);
 }
 
-static void judge(const goe_settings_t *settings, const known_t *known, const goe_rows_t *rows, bool along_x,
+static void judge(const goe_settings_t *settings, const known_t *known, const goe_rows_t *rows, goe_axis_t axis,
                   belief_t *belief) {
     group_t group;
     const float gate = settings->filter.gate_sigma;
     const float huber = settings->filter.huber_sigma;
-    gather(rows, along_x, &group);
+    gather(rows, axis, &group);
     const float alone = group.count > 0 ? innovation(known, rows, group.middle, group.middle) : 0.0f;
     const bool common = alone <= gate * gate; /* a wrong middle is no evidence about the others */
     for (size_t i = 0; i < group.count; i++) {
         const size_t row = group.row[i];
         const size_t feature = rows->feature[row];
         const float squared = row == group.middle ? alone : innovation(known, rows, row, common ? group.middle : row);
-        if (along_x && group.count == 2 && row != group.middle) {
+        if (axis == GOE_ALONG_X && group.count == 2 && row != group.middle) {
             note_odd(rows, &group, row, squared, &belief->verdict);
         }
         if (squared > gate * gate) {
@@ -188,16 +182,16 @@ goe_verdict_t goe_gate_apply(const goe_settings_t *settings, const goe_filter_t 
     known.drift2 = goe_filter_due_drift2(filter, &settings->navigation);
     known.walk2 = goe_filter_due_walk2(filter, &settings->navigation);
     goe_srif_reciprocals(&filter->root, known.reciprocal);
-    judge(settings, &known, rows, true, &belief);
-    judge(settings, &known, rows, false, &belief);
+    judge(settings, &known, rows, GOE_ALONG_X, &belief);
+    judge(settings, &known, rows, GOE_ALONG_Y, &belief);
     for (size_t i = 0; i < rows->count; i++) {
         const unsigned flag = 1u << rows->feature[i];
         const bool refused = (belief.verdict.refused & flag) != 0;
         const float weight = sqrtf(belief.factor[rows->feature[i]] / (rows->variance[i] * repeated));
         belief.verdict.measured |= flag;
         belief.verdict.rows += refused ? 0 : 1;
-        rows->variance[i] = refused ? 0.0f : weight;
-        scale_row(rows->matrix->row[i], rows->variance[i]);
+        rows->weight[i] = refused ? 0.0f : weight;
+        scale_row(rows->matrix->row[i], rows->weight[i]);
     }
     return belief.verdict;
 }

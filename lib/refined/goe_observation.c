@@ -234,13 +234,15 @@ void goe_rows_clear(goe_rows_t *rows, goe_matrix_t *matrix) {
     rows->count = 0;
 }
 
-float *goe_rows_add(goe_rows_t *rows, goe_feature_t feature, float measured, float variance,
+float *goe_rows_add(goe_rows_t *rows, goe_feature_t feature, goe_axis_t axis, float measured, float variance,
                     const goe_gradient_t *gradient) {
     const size_t at = rows->count++;
     float *row = rows->matrix->row[at];
     float *by = &row[GOE_STATE_COLUMN];
     rows->variance[at] = variance;
     rows->feature[at] = (uint8_t)feature;
+    rows->axis[at] = (uint8_t)axis;
+    rows->series[at] = (uint8_t)(2u * (unsigned)feature);
     row[0] = gradient->ey;
     row[1] = gradient->ex;
     row[2] = gradient->ez;
@@ -270,7 +272,7 @@ float *goe_rows_add_edge(goe_rows_t *rows, const goe_observation_t *obs, goe_xz_
     }
     goe_observation_project_x(obs, place.x, edge_height(obs, measured) * place.z, place.z, of_x);
     add_height_of_edge(measured, place.z, of_x);
-    return goe_rows_add(rows, feature, measured->x, goe_observation_spread(obs, feature).xx + more, of_x);
+    return goe_rows_add(rows, feature, GOE_ALONG_X, measured->x, goe_observation_spread(obs, feature).xx + more, of_x);
 }
 
 float *goe_rows_add_level(goe_rows_t *rows, const goe_observation_t *obs, goe_xz_t place, float y,
@@ -280,7 +282,7 @@ float *goe_rows_add_level(goe_rows_t *rows, const goe_observation_t *obs, goe_xz
         return NULL;
     }
     goe_observation_project_y(obs, place.x, y, place.z, of_y);
-    return goe_rows_add(rows, feature, measured->y, goe_observation_spread(obs, feature).yy + more, of_y);
+    return goe_rows_add(rows, feature, GOE_ALONG_Y, measured->y, goe_observation_spread(obs, feature).yy + more, of_y);
 }
 
 GOE_STATIC_ASSERT(GOE_NUISANCES == 3, the_nuisances_are_the_attitude_about_y_x_z);

@@ -45,12 +45,19 @@ typedef struct {
         \valid_read(obs) && \valid_read(obs->settings) && \valid_read(obs->camera) && \valid_read(obs->sides) &&
         \valid_read(obs->state + (0 .. GOE_STATES - 1)); */
 
+/* What a row measures: a coordinate of a point in the state's axes, or of a side in the raw image. */
+typedef enum { GOE_ALONG_X, GOE_ALONG_Y } goe_axis_t;
+
 /* The rows of an image. Until they are weighted each holds the derivatives of a predicted image coordinate by the image's own
  * attitude error and by the states, the residual, and the variance of its own noise. */
 typedef struct {
     goe_matrix_t *matrix;
     float variance[GOE_ROWS_MAX];
+    float weight[GOE_ROWS_MAX]; /* after the gate: what it was multiplied by; 0: refused */
     uint8_t feature[GOE_ROWS_MAX];
+    uint8_t axis[GOE_ROWS_MAX];   /* goe_axis_t */
+    uint8_t series[GOE_ROWS_MAX]; /* of residuals, see goe_scatter_t */
+    uint8_t side[GOE_ROWS_MAX];   /* of an upright box: goe_box_side_t */
     size_t count;
     float shift[GOE_BOX_SIDES][3]; /* prism: by unit errors of the image's own position, which all rows share */
     float white_rad;               /* one sigma of the nuisances */
@@ -132,7 +139,7 @@ void goe_rows_clear(goe_rows_t *rows, goe_matrix_t *matrix);
  * Any row: measured coordinate minus gradient->at. */
 /*@ requires goe_rows_hold(rows) && \valid_read(gradient);
     requires rows->count < GOE_ROWS_MAX && feature < GOE_FEATURES; */
-float *goe_rows_add(goe_rows_t *rows, goe_feature_t feature, float measured, float variance,
+float *goe_rows_add(goe_rows_t *rows, goe_feature_t feature, goe_axis_t axis, float measured, float variance,
                     const goe_gradient_t *gradient);
 
 /* An upright edge at the place (X, Z), measured along x at the height of the measurement, freed of the attitude bias.

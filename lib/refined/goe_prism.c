@@ -106,8 +106,7 @@ void goe_prism_recall(goe_filter_t *filter, const goe_observation_t *obs, goe_ro
         goe_side_memory_fade(&filter->side[side], obs->fade, goe_square(detector->box_noise_rel * size_of(obs, side)));
     }
     for (size_t i = 0; i < rows->count; i++) {
-        goe_side_memory_recall(&filter->side[goe_touch_side(rows->feature[i])], rows->matrix->row[i],
-                               &rows->variance[i]);
+        goe_side_memory_recall(&filter->side[rows->side[i]], rows->matrix->row[i], &rows->variance[i]);
     }
 }
 
@@ -122,7 +121,7 @@ static float shared_shift(const goe_rows_t *rows, size_t a, size_t b) {
  * and rows would come out far too certain, or infinite. Such a row counts as if its noise were larger. */
 /*@ requires goe_rows_hold(rows) && i < GOE_BOX_SIDES; */
 static float share_of(const goe_rows_t *rows, size_t i) {
-    const float shift = goe_square(rows->variance[i]) * shared_shift(rows, i, i);
+    const float shift = goe_square(rows->weight[i]) * shared_shift(rows, i, i);
     return shift > SHIFT_RATIO_MAX * SHIFT_RATIO_MAX ? SHIFT_RATIO_MAX / sqrtf(shift) : 1.0f;
 }
 
@@ -133,9 +132,9 @@ static void free_of_shift(goe_rows_t *rows) {
     for (size_t i = 0; i < rows->count; i++) {
         float *row = rows->matrix->row[i];
         const float share = share_of(rows, i);
-        rows->variance[i] *= share;
+        rows->weight[i] *= share;
         for (size_t j = 0; j <= i; j++) {
-            float sum = (i == j ? 1.0f : 0.0f) + rows->variance[i] * rows->variance[j] * shared_shift(rows, i, j);
+            float sum = (i == j ? 1.0f : 0.0f) + rows->weight[i] * rows->weight[j] * shared_shift(rows, i, j);
             for (size_t k = 0; k < j; k++) {
                 sum -= root[i][k] * root[j][k];
             }
@@ -155,9 +154,9 @@ void goe_prism_learn(goe_filter_t *filter, goe_rows_t *rows) {
     const float white = rows->white_rad;
     for (size_t i = 0; i < rows->count; i++) {
         const float *row = rows->matrix->row[i];
-        const float weight = rows->variance[i];
+        const float weight = rows->weight[i];
         const float attitude = white * white * (row[0] * row[0] + row[1] * row[1] + row[2] * row[2]);
-        goe_side_memory_learn(&filter->side[goe_touch_side(rows->feature[i])], row, weight,
+        goe_side_memory_learn(&filter->side[rows->side[i]], row, weight,
                               attitude + weight * weight * shared_shift(rows, i, i));
     }
     if (rows->shifts) {

@@ -28,16 +28,15 @@ void goe_scatter_take(goe_scatter_t *scatter, const goe_rows_t *rows) {
     float products = scatter->products * KEPT;
     float squares = scatter->squares * KEPT;
     for (size_t i = 0; i < rows->count; i++) {
-        const bool second = i > 0 && rows->feature[i - 1] == rows->feature[i]; /* of a corner: along y */
-        const size_t series = 2u * rows->feature[i] + (second ? 1u : 0u);
+        const size_t series = rows->series[i];
         const float residual = clipped(rows->matrix->row[i][GOE_RESIDUAL]);
         const float before = scatter->before[series];
-        if ((previous >> series & 1u) != 0 && rows->variance[i] > 0.0f) {
+        if ((previous >> series & 1u) != 0 && rows->weight[i] > 0.0f) {
             products += residual * before;
             squares += residual * residual;
         }
         scatter->before[series] = residual;
-        seen |= rows->variance[i] > 0.0f ? 1u << series : 0u;
+        seen |= rows->weight[i] > 0.0f ? 1u << series : 0u;
     }
     scatter->products = products;
     scatter->squares = squares;

@@ -19,13 +19,6 @@ GOE_STATIC_ASSERT(GOE_BOX_RIGHT == GOE_BOX_LEFT + 2 && GOE_BOX_BOTTOM == GOE_BOX
 
 static const uint8_t feature_of[GOE_BOX_SIDES] = {GOE_POINT_LEFT, GOE_POINT_TOP, GOE_POINT_RIGHT, GOE_POINT_BASE_NEAR};
 
-size_t goe_touch_side(uint8_t feature) {
-    return feature == GOE_POINT_LEFT    ? GOE_BOX_LEFT
-           : feature == GOE_POINT_TOP   ? GOE_BOX_TOP
-           : feature == GOE_POINT_RIGHT ? GOE_BOX_RIGHT
-                                        : GOE_BOX_BOTTOM;
-}
-
 /*@ requires \valid_read(camera) && side < GOE_BOX_SIDES; */
 static float focal_px(const goe_camera_t *camera, size_t side) {
     return goe_touch_is_level(side) ? camera->fy_px : camera->fx_px;
@@ -233,9 +226,11 @@ GOE_NOINLINE float *goe_touch_add(goe_rows_t *rows, const goe_observation_t *obs
     }
     const line_t line = line_at(obs->camera, side, touch->x, touch->y);
     find_gradient(obs, solid, touch, &line, gradient);
-    const float hidden =
-        !goe_touch_is_level(side) && is_hidden(obs, touch) ? forget_height(solid, touch, gradient) : 0.0f;
-    float *by = goe_rows_add(rows, (goe_feature_t)feature_of[side], measured, variance + hidden, gradient);
+    const bool level = goe_touch_is_level(side);
+    const float hidden = !level && is_hidden(obs, touch) ? forget_height(solid, touch, gradient) : 0.0f;
+    float *by = goe_rows_add(rows, (goe_feature_t)feature_of[side], level ? GOE_ALONG_Y : GOE_ALONG_X, measured,
+                             variance + hidden, gradient);
+    rows->side[rows->count - 1u] = (uint8_t)side;
     by[GOE_GROUND] = touch->foot ? gradient->y : 0.0f;
     return by;
 }

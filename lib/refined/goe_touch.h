@@ -36,9 +36,6 @@ typedef struct {
 /* Top and bottom; they are measured along y. */
 static inline bool goe_touch_is_level(size_t side) { return (side & 1u) != 0u; }
 
-/* The side whose row a feature's is. */
-size_t goe_touch_side(uint8_t feature);
-
 /* Raw coordinate of a side, focal lengths. */
 /*@ requires \valid_read(camera) && \valid_read(sides) && side < GOE_BOX_SIDES; */
 float goe_touch_coordinate(const goe_camera_t *camera, const goe_sides_t *sides, size_t side);

@@ -210,7 +210,10 @@ static void check_rows(void) {
     goe_box_rows(&sighting.sight, &sighting.rows);
     TEST_ASSERT_EQUAL_size_t(expected_rows, sighting.rows.count);
     for (size_t row = 0; row < expected_rows; row++) {
+        const bool base = kind[row] >= GOE_POINT_BASE_LEFT;
         TEST_ASSERT_EQUAL_size_t(kind[row], sighting.rows.feature[row]);
+        TEST_ASSERT_EQUAL_INT(along_y[row] ? GOE_ALONG_Y : GOE_ALONG_X, sighting.rows.axis[row]);
+        TEST_ASSERT_EQUAL_size_t(2u * kind[row] + (base && along_y[row] ? 1u : 0u), sighting.rows.series[row]);
     }
     sighting_check_rows(&sighting, predict);
 }

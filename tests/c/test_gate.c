@@ -33,7 +33,8 @@ static void add_row(size_t feature, bool along_y) {
     g.ey = (float)(along_y ? x * y : 1.0 + x * x);
     g.ex = (float)(along_y ? -(1.0 + y * y) : -x * y);
     g.ez = (float)(along_y ? x : -y);
-    (void)goe_rows_add(&rows, (goe_feature_t)feature, 0.0f, (float)(SIGMA * SIGMA), &g);
+    (void)goe_rows_add(&rows, (goe_feature_t)feature, along_y ? GOE_ALONG_Y : GOE_ALONG_X, 0.0f, (float)(SIGMA * SIGMA),
+                       &g);
 }
 
 void setUp(void) {
@@ -253,7 +254,8 @@ static double sigmas_of_left(double white_deg, size_t axis, double own_sigmas, d
     for (size_t i = 0; i < rows.count; i++) {
         rows.feature[i] = (uint8_t)i;
         rows.variance[i] = (float)(SIGMA * SIGMA);
-        matrix.row[i][i == 0 || i == 1 ? 0 : 1] = 1.0f; /* two along x, two along y */
+        rows.axis[i] = i == 0 || i == 1 ? GOE_ALONG_X : GOE_ALONG_Y;
+        matrix.row[i][i == 0 || i == 1 ? 0 : 1] = 1.0f;
         rows.shift[i][axis] = (float)(SIGMA * (i == 0 ? own_sigmas : others_sigmas));
     }
     settings.filter.gate_sigma = 100.0f;

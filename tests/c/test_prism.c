@@ -83,6 +83,8 @@ static void rows_are_those_of_the_touching_planes(void) {
         TEST_ASSERT_EQUAL_size_t(GOE_BOX_SIDES, sighting.rows.count);
         for (size_t side = 0; side < GOE_BOX_SIDES; side++) {
             TEST_ASSERT_EQUAL_size_t(feature_of_side[side], sighting.rows.feature[side]);
+            TEST_ASSERT_EQUAL_size_t(side, sighting.rows.side[side]);
+            TEST_ASSERT_EQUAL_INT(side % 2 == 1 ? GOE_ALONG_Y : GOE_ALONG_X, sighting.rows.axis[side]);
             upright_check_row(&ellipse, truth, side, sighting.matrix.row[side]);
         }
     }
@@ -183,8 +185,8 @@ static void rows_that_share_an_error_are_whitened(void) {
         sighting.rows.shifts = true;
         sighting.rows.white_rad = 1.0e-3f;
         for (size_t i = 0; i < 4; i++) {
-            sighting.rows.feature[i] = (uint8_t)feature_of_side[i];
-            sighting.rows.variance[i] = (float)check_random_between(&any, 0.5, 2.0); /* the weight */
+            sighting.rows.side[i] = (uint8_t)i;
+            sighting.rows.weight[i] = (float)check_random_between(&any, 0.5, 2.0);
             for (size_t c = 0; c < 3; c++) {
                 sighting.rows.shift[i][c] = (float)check_random_between(&any, -1.0, 1.0);
             }
@@ -198,8 +200,7 @@ static void rows_that_share_an_error_are_whitened(void) {
                 const float *a = sighting.rows.shift[i];
                 const float *b = sighting.rows.shift[j];
                 double sum = (double)a[0] * (double)b[0] + (double)a[1] * (double)b[1] + (double)a[2] * (double)b[2];
-                sum =
-                    (i == j ? 1.0 : 0.0) + sum * (double)sighting.rows.variance[i] * (double)sighting.rows.variance[j];
+                sum = (i == j ? 1.0 : 0.0) + sum * (double)sighting.rows.weight[i] * (double)sighting.rows.weight[j];
                 for (size_t k = 0; k < j; k++) {
                     sum -= root[i][k] * root[j][k];
                 }
@@ -234,8 +235,8 @@ static void each_side_has_its_own_memory(void) {
         memset(&sighting.matrix, 0, sizeof sighting.matrix);
         sighting.rows.count = 1;
         sighting.rows.white_rad = 2.0f;
-        sighting.rows.feature[0] = (uint8_t)feature_of_side[side];
-        sighting.rows.variance[0] = 0.5f; /* the weight */
+        sighting.rows.side[0] = (uint8_t)side;
+        sighting.rows.weight[0] = 0.5f;
         const float turns[3] = {0.3f, -0.4f, 1.2f};
         memcpy(sighting.matrix.row[0], turns, sizeof turns);
         sighting.matrix.row[0][GOE_RESIDUAL] = 3.0f;
@@ -647,8 +648,8 @@ static void rows_are_whitened(void) {
         sighting.rows.shifts = true;
         sighting.rows.count = (size_t)(1 + n % (int)GOE_BOX_SIDES);
         for (size_t i = 0; i < sighting.rows.count; i++) {
-            sighting.rows.feature[i] = (uint8_t)feature_of_side[i];
-            sighting.rows.variance[i] = (float)check_random_between(&any, 100.0, 1000.0); /* by then the weight */
+            sighting.rows.side[i] = (uint8_t)i;
+            sighting.rows.weight[i] = (float)check_random_between(&any, 100.0, 1000.0);
             for (int k = 0; k < 3; k++) {
                 sighting.rows.shift[i][k] = (float)(3.0e-3 * check_random_normal(&any));
             }
@@ -661,8 +662,8 @@ static void rows_are_whitened(void) {
             for (size_t j = 0; j <= i; j++) {
                 double sum = i == j ? 1.0 : 0.0;
                 for (int k = 0; k < 3; k++) {
-                    sum += (double)sighting.rows.variance[i] * (double)sighting.rows.shift[i][k] *
-                           (double)sighting.rows.variance[j] * (double)sighting.rows.shift[j][k];
+                    sum += (double)sighting.rows.weight[i] * (double)sighting.rows.shift[i][k] *
+                           (double)sighting.rows.weight[j] * (double)sighting.rows.shift[j][k];
                 }
                 for (size_t k = 0; k < j; k++) {
                     sum -= root[i][k] * root[j][k];
@@ -701,8 +702,8 @@ static void a_shift_far_above_the_noise_makes_no_row_certain(void) {
             direction[k / 3][k % 3] = (float)check_random_normal(&any);
         }
         for (size_t i = 0; i < GOE_BOX_SIDES; i++) {
-            sighting.rows.feature[i] = (uint8_t)feature_of_side[i];
-            sighting.rows.variance[i] = 1000.0f; /* by then the weight */
+            sighting.rows.side[i] = (uint8_t)i;
+            sighting.rows.weight[i] = 1000.0f;
             memset(sighting.rows.shift[i], 0, sizeof sighting.rows.shift[i]);
             for (int d = 0; d < directions; d++) {
                 const float along = (float)(1.0e-3 * ratio * check_random_normal(&any));
@@ -738,8 +739,8 @@ static void a_row_far_below_its_shift_counts_less(void) {
     sighting.rows.white_rad = 1.0e-3f;
     sighting.rows.shifts = true;
     sighting.rows.count = 1;
-    sighting.rows.feature[0] = (uint8_t)feature_of_side[0];
-    sighting.rows.variance[0] = 500.0f; /* by then the weight */
+    sighting.rows.side[0] = GOE_BOX_LEFT;
+    sighting.rows.weight[0] = 500.0f;
     sighting.rows.shift[0][0] = 1.2f;
     sighting.rows.shift[0][1] = 0.0f;
     sighting.rows.shift[0][2] = -1.6f;

@@ -23,12 +23,13 @@ void tearDown(void) {}
 
 /* An image of two sides and a corner, whose residuals keep this much of those before. */
 static void take(double residual[4], double kept) {
-    static const uint8_t feature[4] = {GOE_POINT_LEFT, GOE_POINT_RIGHT, GOE_POINT_BASE_NEAR, GOE_POINT_BASE_NEAR};
+    static const uint8_t series[4] = {2 * GOE_POINT_LEFT, 2 * GOE_POINT_RIGHT, 2 * GOE_POINT_BASE_NEAR,
+                                      2 * GOE_POINT_BASE_NEAR + 1};
     rows.count = 4;
     for (int i = 0; i < 4; i++) {
         residual[i] = kept * residual[i] + sqrt(1.0 - kept * kept) * check_random_normal(&any);
-        rows.feature[i] = feature[i];
-        rows.variance[i] = 1.0f; /* the factor that whitened it */
+        rows.series[i] = series[i];
+        rows.weight[i] = 1.0f; /* the factor that whitened it */
         matrix.row[i][GOE_RESIDUAL] = (float)residual[i];
     }
     goe_scatter_take(&filter.scatter, &rows);
@@ -109,14 +110,14 @@ static void gaps_join_nothing_and_outliers_are_clipped(void) {
     double residual[4] = {5.0, 5.0, 5.0, 5.0};
     take(residual, 1.0);
     rows.count = 1;
-    rows.variance[0] = 0.0f; /* refused */
+    rows.weight[0] = 0.0f; /* refused */
     goe_scatter_take(&filter.scatter, &rows);
     CHECK_SAME(0.0f, filter.scatter.products);
     take(residual, 1.0);
     CHECK_SAME(0.0f, filter.scatter.products);
     CHECK_SAME(0.0f, filter.scatter.squares);
     rows.count = 1;
-    rows.variance[0] = 1.0f;
+    rows.weight[0] = 1.0f;
     matrix.row[0][GOE_RESIDUAL] = 1.0e30f;
     goe_scatter_take(&filter.scatter, &rows);
     CHECK_CLOSE(1.0e-4, 50.0, filter.scatter.products);
