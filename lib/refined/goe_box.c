@@ -17,8 +17,8 @@
 
 #if GOE_WITH_FILTER
 
-#define AHEAD_MIN 0.01f    /* range below which a corner's direction is not compared */
-#define AHEAD_TINY 1.0e-3f /* ... or ordered */
+#define CORNER_AHEAD_MIN 0.01f  /* range below which a corner's direction is not compared */
+#define ORDER_AHEAD_MIN 1.0e-3f /* ... or ordered */
 #define SUM_MIN 1.0e-12f
 #define CURVATURE 2.0f      /* generous: the error is not a Gaussian one */
 #define EXTENT_MIN 0.03f    /* of the sum of all extents */
@@ -139,7 +139,7 @@ static void corners_from(size_t left, bool two, size_t corner[3]) {
 static float misfit(const goe_observation_t *obs, const outline_t *o, const size_t corner[3]) {
     const goe_xz_t *l = &o->corner[corner[OUTER_LEFT]];
     const goe_xz_t *r = &o->corner[corner[OUTER_RIGHT]];
-    const float wide = r->x / goe_larger(r->z, AHEAD_MIN) - l->x / goe_larger(l->z, AHEAD_MIN);
+    const float wide = r->x / goe_larger(r->z, CORNER_AHEAD_MIN) - l->x / goe_larger(l->z, CORNER_AHEAD_MIN);
     return goe_absolute(obs->point[GOE_POINT_BASE_RIGHT].x - obs->point[GOE_POINT_BASE_LEFT].x - wide);
 }
 
@@ -166,7 +166,7 @@ static void widest_corners(const outline_t *o, size_t corner[3]) {
     float most = 0.0f;
     for (size_t i = 0; i < CORNERS; i++) {
         const float z = o->corner[i].z;
-        const float x = o->corner[i].x / (z > AHEAD_TINY ? z : AHEAD_TINY);
+        const float x = o->corner[i].x / (z > ORDER_AHEAD_MIN ? z : ORDER_AHEAD_MIN);
         if (i == 0 || x < least) {
             least = x;
             corner[OUTER_LEFT] = i;

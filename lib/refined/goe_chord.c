@@ -12,18 +12,17 @@
 
 #if GOE_WITH_FILTER
 
-#define RANGE_SHARE 0.1f    /* one sigma of 1/Z0 over it, for a disc to change */
-#define DISC_FREEDOM 0.05f  /* what the disc's tangents left behind in the chord, of its width */
-#define AHEAD_MIN 1.0e-3f   /* of an end, units of Z0 */
-#define AHEAD_TINY 0.02f    /* of the chord's middle */
-#define WIDTH_SHARE 0.15f   /* of the width by which corners that change unnoticed move its ends */
-#define TOP_NOISE 0.3f      /* of the nearest corner's place, over the chord */
-#define TOP_FREEDOM 0.1f    /* the same from image to image */
-#define TOP_MOVED 0.5f      /* ... and at the box's start */
-#define MEMORY 0.25f        /* of one image in outward, turning */
-#define SIGMAS2_MAX 25.0f   /* of one image */
-#define LEAVING_SIGMAS 1.0f /* outward: an end is leaving */
-#define GONE_SIGMAS 1.8f    /* outward: an end has left */
+#define RANGE_SHARE 0.1f      /* one sigma of 1/Z0 over it, for a disc to change */
+#define DISC_FREEDOM 0.05f    /* what the disc's tangents left behind in the chord, of its width */
+#define END_AHEAD_MIN 1.0e-3f /* of an end, units of Z0 */
+#define WIDTH_SHARE 0.15f     /* of the width by which corners that change unnoticed move its ends */
+#define TOP_NOISE 0.3f        /* of the nearest corner's place, over the chord */
+#define TOP_WALK 0.1f         /* the same from image to image */
+#define TOP_MOVED 0.5f        /* ... and at the box's start */
+#define MEMORY 0.25f          /* of one image in outward, turning */
+#define SIGMAS2_MAX 25.0f     /* of one image */
+#define LEAVING_SIGMAS 1.0f   /* outward: an end is leaving */
+#define GONE_SIGMAS 1.8f      /* outward: an end has left */
 #define TURNING_SIGMAS 0.4f
 #define SETTLED_IMAGES 16    /* before an end can be taken to leave */
 #define END_FREEDOM 0.5f     /* of an end that is learned again, over the chord */
@@ -40,9 +39,7 @@ static float chord_length(const float x[GOE_STATES]) {
 }
 
 /* Aligned y of the top over the chord's middle. */
-static float top_y(const goe_observation_t *obs) {
-    return goe_observation_roof(obs) / goe_larger(goe_observation_reference(obs).z, AHEAD_TINY);
-}
+static float top_y(const goe_observation_t *obs) { return goe_observation_roof(obs) / goe_observation_ahead(obs); }
 
 /*@ requires \valid(filter) && state < GOE_STATES; */
 static void inflate(goe_filter_t *filter, goe_state_index_t state, float sigma) {
@@ -55,7 +52,7 @@ static void inflate(goe_filter_t *filter, goe_state_index_t state, float sigma) 
 static goe_xz_t end_of(const goe_observation_t *obs, float side) {
     const goe_xz_t middle = goe_observation_reference(obs);
     const goe_xz_t end = {middle.x + side * obs->state[GOE_FRONT_X],
-                          goe_larger(middle.z + side * obs->state[GOE_SIDE_X], AHEAD_MIN)};
+                          goe_larger(middle.z + side * obs->state[GOE_SIDE_X], END_AHEAD_MIN)};
     return end;
 }
 
@@ -170,7 +167,7 @@ bool goe_chord_start(goe_filter_t *filter, const goe_observation_t *obs) {
 /* ------------------------------------------------------------------------------------------------------------- upkeep -- */
 
 void goe_chord_free_top(goe_filter_t *filter, const goe_observation_t *obs) {
-    inflate(filter, GOE_TOP, TOP_FREEDOM * goe_absolute(top_y(obs)) * chord_length(filter->state));
+    inflate(filter, GOE_TOP, TOP_WALK * goe_absolute(top_y(obs)) * chord_length(filter->state));
 }
 
 void goe_chord_follow(goe_filter_t *filter, const goe_verdict_t *verdict) {

@@ -11,9 +11,9 @@
 
 #if GOE_WITH_FILTER
 
-#define AHEAD_MIN 1.0e-3f   /* center, units of Z0: nearer gives no rows */
-#define TANGENT_AHEAD 0.02f /* third component of a tangent's unit vector */
-#define SINE_MIN 1.0e-5f    /* of half the angle that the disc covers */
+#define CENTER_AHEAD_MIN 1.0e-3f /* center, units of Z0: nearer gives no rows */
+#define TANGENT_AHEAD 0.02f      /* third component of a tangent's unit vector */
+#define SINE_MIN 1.0e-5f         /* of half the angle that the disc covers */
 #define SINE_MAX 0.98f
 #define STAND_IN_SHAPE 0.1f  /* shape_error_rel that is added while a box is taken for a disc */
 #define STAND_IN_PLACE 0.1f  /* of the width, by which the box's middle may lie off the disc's */
@@ -43,7 +43,7 @@ typedef struct {
 
 static bool describe(const goe_observation_t *obs, circle_t *o) {
     o->center = goe_observation_reference(obs);
-    if (!(o->center.z >= AHEAD_MIN)) {
+    if (!(o->center.z >= CENTER_AHEAD_MIN)) {
         return false;
     }
     o->distance = sqrtf(goe_xz_dot(o->center, o->center));

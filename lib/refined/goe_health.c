@@ -17,7 +17,7 @@
 #define REFUSED_TOPS 3
 #define EARLY_IMAGES 32 /* of the track: what does not fit in them began with an outlier */
 #define FAILURES_MAX 2  /* times that a box of base corners may prove wrong */
-#define TOP_FREEDOM 2.0f
+#define TOP_FREED 2.0f
 #define RESTART_IMAGES 24 /* two restarts within so many are one too many: 3 s at 8 Hz */
 #define STATE_MAX 1.0e6f
 #define NIS_MAX 1.0e6f
@@ -106,7 +106,7 @@ static void free_top(goe_filter_t *filter) {
     const float *x = filter->state;
     const float depth = goe_filter_traits(filter)->is_ellipse ? 0.0f : goe_absolute(x[GOE_DEPTH_DIFFERENCE]);
     const float size = goe_larger(goe_absolute(x[GOE_TOP]), goe_larger(x[GOE_FRONT_X], depth));
-    goe_filter_inflate(filter, GOE_TOP, TOP_FREEDOM * size);
+    goe_filter_inflate(filter, GOE_TOP, TOP_FREED * size);
     filter->health.refused[GOE_POINT_TOP] = 0;
 }
 

@@ -14,8 +14,8 @@
 #define WHITE_MIN_DEG 1.0e-4f /* errors of an image: as of the settings */
 #define PIXEL_MIN_PX 0.05f
 #define HEIGHT_SD_MIN_M 1.0e-3f
-#define AHEAD_MIN 0.01f     /* of the reference point, in units of Z0 */
-#define FORWARD_MIN 1.0e-4f /* a predicted point is taken to lie at least this far ahead, in units of Z0 */
+#define WIDTH_AHEAD_MIN 0.01f /* of the reference point, in units of Z0 */
+#define FORWARD_MIN 1.0e-4f   /* a predicted point is taken to lie at least this far ahead, in units of Z0 */
 
 /* Left must lie left of right, or neither counts. Where base_near lies between them is not asked: the gate judges it. */
 static bool in_order(goe_point_t *left, goe_point_t *right) {
@@ -222,7 +222,7 @@ float goe_observation_size_variance(const goe_observation_t *obs) {
     const bool seen = left->usable && right->usable;
     const float width = seen ? right->x - left->x
                              : (obs->state[GOE_FRONT_X] + goe_absolute(obs->state[GOE_SIDE_X])) /
-                                   goe_larger(goe_observation_reference(obs).z, AHEAD_MIN);
+                                   goe_larger(goe_observation_reference(obs).z, WIDTH_AHEAD_MIN);
     return goe_square(obs->outline_share * width);
 }
 

@@ -3,6 +3,7 @@
 #define GOE_OBSERVATION_H
 
 #include "image/goe_view.h"
+#include "maths/goe_scalar.h"
 #include "refined/goe_filter.h"
 
 typedef struct {
@@ -109,6 +110,13 @@ static inline goe_xz_t goe_observation_reference(const goe_observation_t *obs) {
     const float q = obs->state[GOE_INVERSE_RANGE];
     const goe_xz_t reference = {obs->state[GOE_BEARING] - obs->camera_m.x * q, 1.0f - obs->camera_m.z * q};
     return reference;
+}
+
+/* Its Z and that of a touching point count at least as this, units of Z0. */
+#define GOE_AHEAD_MIN 0.02f
+
+static inline float goe_observation_ahead(const goe_observation_t *obs) {
+    return goe_larger(goe_observation_reference(obs).z, GOE_AHEAD_MIN);
 }
 
 /* (R2): Y of the roof, units of Z0. */

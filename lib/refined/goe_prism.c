@@ -13,7 +13,7 @@
 
 #if GOE_WITH_FILTER
 
-#define AHEAD_MIN 0.02f        /* third component of a ray that is faced */
+#define RAY_AHEAD_MIN 0.02f    /* third component of a ray that is faced */
 #define DEPTH_MAX 2.0f         /* |s|: 7 times as deep as wide, or as flat */
 #define SHIFT_RATIO_MAX 300.0f /* of a shift that rows share, over a row's own noise */
 #define GROUND_SIGMAS 3.0f     /* by which the foot must lie below the horizon to give the range */
@@ -182,7 +182,7 @@ static bool ray_of(const goe_camera_t *camera, const float camera_to_axes[9], fl
     }
     const float *r = camera_to_axes;
     const float z = r[6] * undistorted[0] + r[7] * undistorted[1] + r[8];
-    ray->usable = z > AHEAD_MIN;
+    ray->usable = z > RAY_AHEAD_MIN;
     const float ahead = ray->usable ? z : 1.0f;
     ray->x = (r[0] * undistorted[0] + r[1] * undistorted[1] + r[2]) / ahead;
     ray->y = (r[3] * undistorted[0] + r[4] * undistorted[1] + r[5]) / ahead;

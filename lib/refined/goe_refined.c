@@ -27,7 +27,6 @@
 #define GAP_MAX_US 1000000000u /* a longer gap between images counts as this one */
 #define EARLY_SHARE 0.08f      /* of the time constant: sooner, differences of boxes are their linearization's */
 #define FADE_MAX 0.95f         /* of what a box's error keeps from image to image, where it is not remembered */
-#define AHEAD_MIN 0.02f        /* of the reference point, units of Z0 */
 #define AGREE_SIGMA 3.0f       /* within which two answers say the same */
 #define KEPT_S 3.0f            /* since the new start, for which the answer before it may stand */
 #define REACH_MAX_M 1.0e6f     /* as all positions */
@@ -56,7 +55,7 @@ static bool is_early(const goe_filter_t *filter, const goe_detector_t *detector,
 
 /* (R15): possible linearization error at an uncertain range, the second order of 1/Z. */
 static void allow_for_curvature(const goe_observation_t *obs, goe_rows_t *rows) {
-    const float ahead = goe_larger(goe_observation_reference(obs).z, AHEAD_MIN);
+    const float ahead = goe_observation_ahead(obs);
     const float missed = obs->camera_m.z * obs->range_variance / ahead;
     for (size_t i = 0; i < rows->count; i++) {
         rows->variance[i] += goe_square(rows->matrix->row[i][GOE_STATE_COLUMN + GOE_INVERSE_RANGE] * missed);

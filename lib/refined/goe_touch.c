@@ -8,7 +8,6 @@
 
 #if GOE_WITH_FILTER
 
-#define AHEAD_MIN 0.02f            /* of a touching point, and of the reference point, units of Z0 */
 #define LEVEL_MIN 1.0e-6f          /* horizontal part of a side's normal: without one the nearest point touches */
 #define REACH_MIN 1.0e-9f          /* of the footprint, units of Z0 */
 #define HIDDEN_VARIANCE 5.3333333f /* of half the edge squared: uniform, 1/3, times 16 images that share it */
@@ -37,7 +36,7 @@ float goe_touch_size(const goe_observation_t *obs, size_t side, float extent) {
     if (goe_sides_see(sides, (1u | 1u << 2u) << first)) {
         return (sides->px[first + 2u] - sides->px[first]) / focal_px(obs->camera, first);
     }
-    return goe_larger(extent, 0.0f) / goe_larger(goe_observation_reference(obs).z, AHEAD_MIN);
+    return goe_larger(extent, 0.0f) / goe_observation_ahead(obs);
 }
 
 float goe_touch_white_variance(const goe_observation_t *obs, size_t side, float size) {
@@ -117,7 +116,7 @@ static bool touch(const goe_solid_t *solid, const float normal[3], end_t end, go
     const float *p = t->point;
     t->point[1] = t->foot ? solid->ground : solid->roof;
     const float z = r[2] * p[0] + r[5] * p[1] + r[8] * p[2];
-    if (!(z >= AHEAD_MIN)) {
+    if (!(z >= GOE_AHEAD_MIN)) {
         return false;
     }
     t->nearness = 1.0f / z;
