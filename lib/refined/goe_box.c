@@ -25,8 +25,8 @@
 #define DEPTH_MIN 0.3f      /* sz over |sx| */
 #define EXCHANGE_SLOPE 1.3f /* tan b above which front and side change names, in the state and in the report */
 #define LENGTH_FREED 2.0f   /* one sigma of the length, relative, when its face comes into view */
-#define EARLY 12.0f         /* (R24) */
-#define EARLY_MAX 4.0f
+#define CORNER_GROWTH 12.0f /* (R24) */
+#define CORNER_GROWTH_MAX 4.0f
 #define POOR_SHARE 0.3f   /* one sigma of the depth difference, of both depths: two corners may be those of anything */
 #define FACE_RAD 0.14f    /* (R41), one sigma of what two ends are off by if they are those of two faces: orientation */
 #define FACE_WIDTH 0.06f  /* ... width, of itself */
@@ -482,9 +482,9 @@ static void set_orientation(goe_linear_t *orientation, const goe_box_edge_t *sid
     orientation->by[GOE_SIDE_X] += side->along.z * scale;
 }
 
-static float early_factor(const goe_filter_t *filter, const goe_box_edges_t *e) {
+static float corner_growth(const goe_filter_t *filter, const goe_box_edges_t *e) {
     const float relative = goe_filter_variance(filter, GOE_DEPTH_DIFFERENCE) / goe_square(e->sum);
-    return 1.0f + EARLY * (relative < EARLY_MAX ? relative : EARLY_MAX);
+    return 1.0f + CORNER_GROWTH * (relative < CORNER_GROWTH_MAX ? relative : CORNER_GROWTH_MAX);
 }
 
 /* (R41): what a single face is uncertain by, as its ends may be the outer ends of two faces. */
@@ -512,7 +512,7 @@ void goe_box_shape(const goe_filter_t *filter, goe_shape_t *shape) {
     find_spot(x, &e, 0.0f, 0.5f, &shape->middle);
     shape->length_axis.x = axis.x / length;
     shape->length_axis.z = axis.z / length;
-    shape->early = early_factor(filter, &e);
+    shape->corner_growth = corner_growth(filter, &e);
     set_orientation(&shape->quantity[GOE_ORIENTATION], &e.side, shape->length_axis);
     set_edge(&shape->quantity[exchanged ? GOE_WIDTH : GOE_LENGTH], &e.side, GOE_SIDE_X, shape->scale_m);
     set_edge(&shape->quantity[exchanged ? GOE_LENGTH : GOE_WIDTH], &e.front, GOE_FRONT_X, shape->scale_m);

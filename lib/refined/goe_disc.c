@@ -158,7 +158,7 @@ static void add_side(const goe_observation_t *obs, const goe_solid_t *solid, siz
 
 /*@ requires goe_observation_is_open(obs) && \valid_read(o) && goe_rows_hold(rows);
     requires rows->count + 3 <= GOE_ROWS_MAX; */
-static void add_sides(const goe_observation_t *obs, const circle_t *o, float shape, goe_rows_t *rows) {
+static void add_sides(const goe_observation_t *obs, const circle_t *o, float shape_rel, goe_rows_t *rows) {
     goe_solid_t solid;
     goe_touch_open(obs, &solid);
     solid.center = o->center;
@@ -170,7 +170,7 @@ static void add_sides(const goe_observation_t *obs, const circle_t *o, float sha
     solid.ground = obs->height_m * obs->state[GOE_INVERSE_RANGE] + obs->state[GOE_GROUND];
     const float width = goe_touch_size(obs, GOE_BOX_LEFT, obs->state[GOE_FRONT_X]);
     const float height = goe_touch_size(obs, GOE_BOX_TOP, solid.ground - solid.roof);
-    const float more = goe_square(shape * width);
+    const float more = goe_square(shape_rel * width);
     const float wide = goe_touch_variance(obs, GOE_BOX_LEFT, width) + more;
     if (obs->base) {
         add_tangent(obs, o, GOE_POINT_BASE_LEFT, -1.0f, more, rows);
@@ -184,9 +184,9 @@ static void add_sides(const goe_observation_t *obs, const circle_t *o, float sha
 
 /*@ requires goe_observation_is_open(obs) && \valid_read(o) && goe_rows_hold(rows);
     requires rows->count + 3 <= GOE_ROWS_MAX; */
-static void add_points(const goe_observation_t *obs, const circle_t *o, float shape, goe_feature_t left,
+static void add_points(const goe_observation_t *obs, const circle_t *o, float shape_rel, goe_feature_t left,
                        goe_feature_t right, float width, goe_rows_t *rows) {
-    const float extra = goe_square(shape * width) + goe_square(obs->outline_share * width);
+    const float extra = goe_square(shape_rel * width) + goe_square(obs->outline_share * width);
     add_tangent(obs, o, left, -1.0f, extra, rows);
     add_tangent(obs, o, right, 1.0f, extra, rows);
     add_top(obs, o, extra, rows);
@@ -201,11 +201,12 @@ void goe_disc_rows(const goe_observation_t *obs, goe_rows_t *rows) {
     }
     const bool wide = outline_features(obs, &left, &right);
     const float width = wide ? obs->point[right].x - obs->point[left].x : obs->state[GOE_FRONT_X] / circle.center.z;
-    const float shape = obs->settings->detector.shape_error_rel + (obs->base || obs->stand_in ? STAND_IN_SHAPE : 0.0f);
+    const float shape_rel =
+        obs->settings->detector.shape_error_rel + (obs->base || obs->stand_in ? STAND_IN_SHAPE : 0.0f);
     if (goe_sides_see(obs->sides, GOE_SIDE_LEFT | GOE_SIDE_RIGHT)) {
-        add_sides(obs, &circle, shape, rows);
+        add_sides(obs, &circle, shape_rel, rows);
     } else {
-        add_points(obs, &circle, shape, left, right, width, rows);
+        add_points(obs, &circle, shape_rel, left, right, width, rows);
     }
     if (obs->base) {
         add_base(obs, &circle, GOE_POINT_BASE_LEFT, width, rows);
@@ -319,12 +320,12 @@ static float unlikeness(const goe_filter_t *filter, float variance, float turned
     return odds / (1.0f + odds);
 }
 
-void goe_disc_doubt(const goe_filter_t *filter, bool wanted, goe_xz_t camera_m, goe_shape_t *shape,
+void goe_disc_doubt(const goe_filter_t *filter, bool asked, goe_xz_t camera_m, goe_shape_t *shape,
                     goe_disc_doubt_t *doubt) {
     const float variance = skew_of(filter, doubt->part);
     const float skew2 = goe_square(filter->state[GOE_SIDE_X]);
     doubt->skew_variance = variance;
-    if (wanted) {
+    if (asked) {
         doubt->spread = sqrtf(goe_larger(skew2 - CHANCE_SHARE * variance, 0.0f));
         return;
     }

@@ -27,7 +27,7 @@ typedef struct {
 } goe_disc_doubt_t;
 
 /* (R40), of the latest image; the shape's place and width learn of it. asked: the settings ask for a disc, and it is one. */
-void goe_disc_doubt(const goe_filter_t *filter, bool wanted, goe_xz_t camera_m, goe_shape_t *shape,
+void goe_disc_doubt(const goe_filter_t *filter, bool asked, goe_xz_t camera_m, goe_shape_t *shape,
                     goe_disc_doubt_t *doubt);
 
 /* The same condition on a derivative in terms of independent unit errors (goe_srif_project). Returns what it moves the quantity

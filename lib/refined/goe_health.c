@@ -78,8 +78,8 @@ void goe_health_take_refused(goe_health_t *health, goe_verdict_t verdict) {
 /* A point that is refused image after image: the state was captured by an outlier, not the other way round. */
 static bool is_captured(goe_filter_t *filter, goe_verdict_t verdict) {
     goe_health_t *health = &filter->health;
-    const bool chord = goe_filter_traits(filter)->can_lose_an_end;
-    const unsigned most = chord ? REFUSED_ENDS : REFUSED_IMAGES;
+    const bool has_ends = goe_filter_traits(filter)->can_lose_an_end;
+    const unsigned most = has_ends ? REFUSED_ENDS : REFUSED_IMAGES;
     bool captured = false;
     for (size_t i = 0; i < GOE_FEATURES; i++) {
         const unsigned flag = 1u << i;
@@ -94,7 +94,7 @@ static bool is_captured(goe_filter_t *filter, goe_verdict_t verdict) {
     } else if (verdict.measured != 0) {
         health->poor = 0;
     }
-    if (chord && goe_chord_is_leaving(filter)) {
+    if (has_ends && goe_chord_is_leaving(filter)) {
         health->poor = 0;
         return false;
     }

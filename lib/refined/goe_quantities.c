@@ -59,8 +59,8 @@ static drift_t drift_of(const goe_filter_t *filter, const goe_navigation_t *navi
 }
 
 /* (R23), from the track's first image to the filter's start: X0 and Z0 alone count from there. */
-static float early_variance(const goe_filter_t *filter, const goe_navigation_t *navigation,
-                            const goe_motion_t *motion) {
+static float variance_before(const goe_filter_t *filter, const goe_navigation_t *navigation,
+                             const goe_motion_t *motion) {
     const float s = goe_time_between_s(motion->start_time_us, filter->axes.start_time_us, GOE_TIME_MAX_US);
     return goe_square(navigation->velocity_bias_sd_m_s * s) + goe_square(navigation->position_walk_sd_m) * s;
 }
@@ -206,16 +206,16 @@ static counted_t counted_of(int quantity, float at_s) {
 typedef struct {
     float *by; /* of the state: the projected derivatives */
     augmented_t augmented;
-    float moved; /* by the condition that makes a disc, (R7): a sum of its own, which no scatter widens */
+    float skewed; /* by the condition that makes a disc, (R7): a sum of its own, which no scatter widens */
 } deviation_t;
 
 /* The derivatives error->by become the error. Returns its squared norm, the variance, without what moves. */
 static float project(const goe_filter_t *filter, const widening_t *wider, counted_t counted, deviation_t *error) {
     float variance = goe_srif_project(&filter->root, wider->reciprocal, GOE_UNWEIGHTED, error->by);
-    error->moved = 0.0f;
+    error->skewed = 0.0f;
     augmented_of(filter, error->by, counted.x, counted.z, counted.at_s, &error->augmented);
     if (goe_filter_traits(filter)->is_conditioned) {
-        error->moved = goe_disc_condition(&wider->doubt, error->by);
+        error->skewed = goe_disc_condition(&wider->doubt, error->by);
         variance = dot(error->by, error->by, 0.0f);
     }
     if (filter->phase == GOE_PHASE_PRISM) {
@@ -227,7 +227,7 @@ static float project(const goe_filter_t *filter, const widening_t *wider, counte
 }
 
 static float covariance_of(const widening_t *wider, const deviation_t *a, const deviation_t *b) {
-    return wider->scatter * dot(a->by, b->by, augmented_dot(&a->augmented, &b->augmented)) + a->moved * b->moved;
+    return wider->scatter * dot(a->by, b->by, augmented_dot(&a->augmented, &b->augmented)) + a->skewed * b->skewed;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- validity -- */
@@ -299,16 +299,16 @@ static void set_quantities(const goe_filter_t *filter, const goe_motion_t *motio
         deviation_t other;
         deviation_t *error = i <= GOE_Z0 ? &place[i] : &other;
         error->by = shape->quantity[i].by;
-        error->moved = 0.0f;
+        error->skewed = 0.0f;
         float found = has(q, i) ? project(filter, wider, counted_of(i, elapsed_s), error) : 0.0f;
-        found *= depends_on_corner(i) ? shape->early : 1.0f;
+        found *= depends_on_corner(i) ? shape->corner_growth : 1.0f;
         const float excluded = goe_filter_traits(filter)->is_ellipse ? goe_srif_last_variance(error->by) : 0.0f;
         float turns; /* with the orientation, whose own sigma comes first */
         const float given = drift_variance(motion, drift, shape, q->box, i) +
                             goe_box_outline_variance(filter, shape, drift.camera_m, i, &turns);
         q->value[i] = shape->quantity[i].value;
         q->sigma[i] = sqrtf(wider->scatter * found + given + turns * goe_square(q->sigma[GOE_ORIENTATION]) +
-                            goe_square(error->moved));
+                            goe_square(error->skewed));
         q->worked_out[i] =
             sqrtf(goe_larger(found + given + turns * goe_square(q->worked_out[GOE_ORIENTATION]) - excluded, 0.0f));
     }
@@ -330,7 +330,7 @@ static void find_middle(const goe_filter_t *filter, const goe_shape_t *shape, co
         return;
     }
     error->augmented = augmented_sum(&place[GOE_X0].augmented, along.x, &place[GOE_Z0].augmented, along.z);
-    error->moved = along.x * place[GOE_X0].moved + along.z * place[GOE_Z0].moved;
+    error->skewed = along.x * place[GOE_X0].skewed + along.z * place[GOE_Z0].skewed;
     for (size_t k = GOE_UNWEIGHTED; k < GOE_STATES; k++) {
         by[k] = along.x * place[GOE_X0].by[k] + along.z * place[GOE_Z0].by[k];
     }
@@ -426,7 +426,7 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
     const drift_t drift = drift_of(filter, &settings->navigation, motion);
     widening_of(filter, settings, motion, drift, &shape, &wider);
     wider.bend = goe_prism_bend(filter);
-    q->early_m2 = early_variance(filter, &settings->navigation, motion);
+    q->before_m2 = variance_before(filter, &settings->navigation, motion);
     q->model = goe_filter_traits(filter)->model;
     q->box = goe_filter_is_box(filter);
     q->length_axis = shape.length_axis;
@@ -490,14 +490,14 @@ void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t 
     widening_of(filter, settings, motion, drift, &shape, &wider);
     wider.bend = for_hazard ? 1.0f : goe_prism_bend(filter);
     const float scatter = sqrtf(wider.scatter);
-    const float early = sqrtf(shape.early) * scatter;
+    const float corner = sqrtf(shape.corner_growth) * scatter;
     const float elapsed_s = since_start_s(filter, motion) + ahead_s;
     deviation_t error[GOE_QUANTITIES];
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         float *by = shape.quantity[i].by;
         error[i].by = by;
         (void)project(filter, &wider, counted_of(i, elapsed_s), &error[i]);
-        const float factor = depends_on_corner(i) ? early : scatter;
+        const float factor = depends_on_corner(i) ? corner : scatter;
         for (int k = 0; k < GOE_STATES; k++) {
             by[k] *= factor;
         }
@@ -505,13 +505,13 @@ void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t 
         for (int j = 0; j <= i; j++) {
             const float drifted = i == j ? drift_variance(motion, drift, &shape, goe_filter_is_box(filter), i) : 0.0f;
             const float shared =
-                drifted + error[i].moved * error[j].moved + augmented_dot(&error[i].augmented, &error[j].augmented);
+                drifted + error[i].skewed * error[j].skewed + augmented_dot(&error[i].augmented, &error[j].augmented);
             const float sum = dot(by, shape.quantity[j].by, shared);
             covariance[i][j] = sum;
             covariance[j][i] = sum;
         }
         if (i <= GOE_Z0 && !for_hazard) { /* the camera now has no part in it */
-            covariance[i][i] += early_variance(filter, &settings->navigation, motion);
+            covariance[i][i] += variance_before(filter, &settings->navigation, motion);
         }
         float turns;
         covariance[i][i] += goe_box_outline_variance(filter, &shape, drift.camera_m, i, &turns);

@@ -25,7 +25,7 @@
 #if GOE_WITH_FILTER
 
 #define GAP_MAX_US 1000000000u /* a longer gap between images counts as this one */
-#define EARLY_SHARE 0.08f      /* of the time constant: sooner, differences of boxes are their linearization's */
+#define TOO_SOON_SHARE 0.08f   /* of the time constant: sooner, differences of boxes are their linearization's */
 #define FADE_MAX 0.95f         /* of what a box's error keeps from image to image, where it is not remembered */
 #define AGREE_SIGMA 3.0f       /* within which two answers say the same */
 #define KEPT_S 3.0f            /* since the new start, for which the answer before it may stand */
@@ -46,9 +46,9 @@ static void fly_on(goe_filter_t *filter, const goe_motion_t *motion) {
 }
 
 /* Whether an image comes so soon after the one before that the errors of its box are the same: it is not used. */
-static bool is_early(const goe_filter_t *filter, const goe_detector_t *detector, const goe_motion_t *motion) {
+static bool comes_too_soon(const goe_filter_t *filter, const goe_detector_t *detector, const goe_motion_t *motion) {
     const float since_s = goe_time_between_s(filter->time_us, motion->time_us, GAP_MAX_US);
-    return goe_filter_traits(filter)->remembers_sides && since_s < EARLY_SHARE * detector->box_correlation_time_s;
+    return goe_filter_traits(filter)->remembers_sides && since_s < TOO_SOON_SHARE * detector->box_correlation_time_s;
 }
 
 /* ------------------------------------------------------------------------------------------------------------- update -- */
@@ -200,7 +200,8 @@ bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, co
         goe_filter_enter(filter, GOE_PHASE_NONE); /* an unknown one: it starts again */
     }
     goe_ground_read(filter, &settings->navigation, view);
-    if (is_early(filter, &settings->detector, view->motion) || !open_image(filter, settings, view, &obs, swapped)) {
+    if (comes_too_soon(filter, &settings->detector, view->motion) ||
+        !open_image(filter, settings, view, &obs, swapped)) {
         return false;
     }
     obs.since_s = goe_time_between_s(filter->time_us, view->motion->time_us, GAP_MAX_US);

@@ -28,7 +28,7 @@ void goe_shape_start(const goe_filter_t *filter, const float x[GOE_STATES], cons
     goe_linear_t *height = &shape->quantity[GOE_HEIGHT];
     memset(shape, 0, sizeof *shape);
     shape->scale_m = scale_m;
-    shape->early = 1.0f;
+    shape->corner_growth = 1.0f;
     shape->length_axis.z = 1.0f;
     shape->quantity[GOE_X0].value = place.x * scale_m;
     shape->quantity[GOE_Z0].value = place.z * scale_m;

@@ -426,12 +426,12 @@ static void an_uncertain_depth_widens_corner_quantities(void) {
     start_at(30.0);
     goe_box_edges(filter.state, &edges);
     static const double share[] = {1.0e-5, 0.25, 1.0, 1.9, 3.0};
-    static const double early[] = {1.0, 1.75, 13.0, 44.32, 49.0};
+    static const double growth[] = {1.0, 1.75, 13.0, 44.32, 49.0};
     for (int i = 0; i < 5; i++) {
         inverse_start(&filter.root, 1.0e-6);
         inverse_set(&filter.root, GOE_DEPTH_DIFFERENCE, GOE_DEPTH_DIFFERENCE, share[i] * (double)edges.sum);
         goe_box_shape(&filter, &shape);
-        CHECK_CLOSE(1.0e-4 * early[i], early[i], shape.early);
+        CHECK_CLOSE(1.0e-4 * growth[i], growth[i], shape.corner_growth);
     }
 }
 

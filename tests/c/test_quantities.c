@@ -526,7 +526,7 @@ static void errors_of_own_motion_are_in_the_sigmas(void) {
             CHECK_CLOSE(SHARE, share * (double)quantities.value[GOE_LENGTH], quantities.sigma[GOE_LENGTH]);
         }
         CHECK_CLOSE(1.0e-4, 0.2 * 0.2 * 2.0 * 2.0 + 0.01 * 2.0,
-                    quantities.early_m2); /* two seconds before it started */
+                    quantities.before_m2); /* two seconds before it started */
         if (quantities.known & GOE_HAS_CENTER) {
             CHECK_CLOSE(2.0 * SHARE * moved, moved, quantities.center_sd_m[0]);
             CHECK_CLOSE(2.0 * SHARE * moved, moved, quantities.center_sd_m[1]);
@@ -561,7 +561,7 @@ static void errors_of_own_motion_are_on_the_diagonal(void) {
         goe_quantities_covariance(&filter, &settings, &motion, true, 0.0f, ahead);
         for (int i = 0; i < GOE_QUANTITIES; i++) {
             const double variance = (double)quantities.sigma[i] * (double)quantities.sigma[i];
-            const double early = i <= GOE_Z0 ? (double)quantities.early_m2 : 0.0;
+            const double early = i <= GOE_Z0 ? (double)quantities.before_m2 : 0.0;
             CHECK_CLOSE(SHARE * (variance + 1.0e-6), variance + early, now[i][i]);
             const double met = i == GOE_WIDTH ? variance * squared(met_share()) : variance;
             CHECK_CLOSE(SHARE * (met + 1.0e-6), met, ahead[i][i]);
@@ -660,7 +660,7 @@ static void sigmas_are_the_roots_of_the_diagonal(void) {
         goe_quantities_find(&filter, &settings, &motion, &quantities);
         goe_quantities_covariance(&filter, &settings, &motion, false, 0.0f, covariance);
         for (int i = 0; i < GOE_QUANTITIES; i++) {
-            const double early = i <= GOE_Z0 ? (double)quantities.early_m2 : 0.0;
+            const double early = i <= GOE_Z0 ? (double)quantities.before_m2 : 0.0;
             const double expected = squared((double)quantities.sigma[i]) + early;
             CHECK_CLOSE(1.0e-4 * expected + 1.0e-9, expected, covariance[i][i]);
         }

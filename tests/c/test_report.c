@@ -149,7 +149,7 @@ static void only_known_values_are_reported(void) {
     }
     quantities.value[GOE_ORIENTATION] = 0.5f;
     quantities.length_axis = (goe_xz_t){0.6f, 0.8f};
-    quantities.early_m2 = 8.0f;
+    quantities.before_m2 = 8.0f;
     quantities.center_m[0] = 111.0f;
     quantities.center_m[1] = 222.0f;
     quantities.center_sd_m[0] = 11.0f;
