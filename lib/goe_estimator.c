@@ -186,9 +186,9 @@ static bool window_answers(const goe_estimator_t *estimator, bool reported, bool
 static goe_status_t update_refined(goe_estimator_t *estimator, const goe_view_t *view, goe_faults_t *faults) {
     const goe_settings_t *settings = &estimator->settings;
     unsigned swapped;
-    const bool reported = goe_filter_reports(&estimator->filter, settings);
+    const bool reported = goe_filter_reports(&estimator->filter, settings->model);
     const bool measured = goe_refined_update(&estimator->filter, settings, view, &swapped);
-    const bool reports = goe_filter_reports(&estimator->filter, settings);
+    const bool reports = goe_filter_reports(&estimator->filter, settings->model);
 #if GOE_WITH_WINDOW
     const bool by_window = window_answers(estimator, reported, reports);
     if (by_window && estimator->estimate.method == GOE_METHOD_FILTER) { /* a filter that started, and never answered */

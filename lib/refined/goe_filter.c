@@ -34,8 +34,8 @@ const goe_traits_t *goe_filter_traits(const goe_filter_t *filter) {
     return &traits_of[filter->phase < GOE_PHASES ? filter->phase : GOE_PHASE_NONE];
 }
 
-bool goe_filter_reports(const goe_filter_t *filter, const goe_settings_t *settings) {
-    return settings->model == GOE_MODEL_LINE ? goe_filter_is_box(filter) : goe_filter_has_started(filter);
+bool goe_filter_reports(const goe_filter_t *filter, goe_model_t asked) {
+    return asked == GOE_MODEL_LINE ? goe_filter_is_box(filter) : goe_filter_has_started(filter);
 }
 
 void goe_filter_clear(goe_filter_t *filter) {

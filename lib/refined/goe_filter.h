@@ -97,7 +97,7 @@ static inline bool goe_filter_has_started(const goe_filter_t *filter) { return f
 static inline bool goe_filter_is_box(const goe_filter_t *filter) { return goe_filter_traits(filter)->is_box; }
 
 /* Whether the phase is one that the settings let be reported: a forced line is a box, and no disc before it. */
-bool goe_filter_reports(const goe_filter_t *filter, const goe_settings_t *settings);
+bool goe_filter_reports(const goe_filter_t *filter, goe_model_t asked);
 
 /* Forgets the track. */
 void goe_filter_clear(goe_filter_t *filter);

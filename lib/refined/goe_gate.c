@@ -169,14 +169,14 @@ static void scale_row(float row[GOE_COLUMNS], float weight) {
 
 GOE_STATIC_ASSERT(GOE_FEATURES == 6, every_feature_begins_with_full_weight);
 
-float goe_gate_repeated(const goe_settings_t *settings, const goe_filter_t *filter) {
-    const float correlation = goe_filter_traits(filter)->remembers_sides ? 0.0f : settings->detector.point_correlation;
+float goe_gate_repeated(const goe_filter_t *filter, float point_correlation) {
+    const float correlation = goe_filter_traits(filter)->remembers_sides ? 0.0f : point_correlation;
     return (1.0f + correlation) / (1.0f - correlation);
 }
 
 goe_verdict_t goe_gate_apply(const goe_settings_t *settings, const goe_filter_t *filter, goe_rows_t *rows) {
     belief_t belief = {{1.0f, 1.0f, 1.0f, 1.0f, 1.0f, 1.0f}, {0u, 0u, 0, GOE_FEATURES, 0.0f, false}};
-    const float repeated = goe_gate_repeated(settings, filter);
+    const float repeated = goe_gate_repeated(filter, settings->detector.point_correlation);
     known_t known;
     known.filter = filter;
     known.drift2 = goe_filter_due_drift2(filter, &settings->navigation);

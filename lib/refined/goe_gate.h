@@ -15,7 +15,7 @@ typedef struct {
 } goe_verdict_t;
 
 /* Factor on the variances for errors that are correlated from image to image: of points; a prism models them instead. */
-float goe_gate_repeated(const goe_settings_t *settings, const goe_filter_t *filter);
+float goe_gate_repeated(const goe_filter_t *filter, float point_correlation);
 
 /* Whitens the rows: each divided by its sigma, less if it is suspicious, 0 if its point is refused: rows->weight. */
 goe_verdict_t goe_gate_apply(const goe_settings_t *settings, const goe_filter_t *filter, goe_rows_t *rows);

@@ -121,9 +121,8 @@ static bool is_sane(const goe_filter_t *filter) {
 
 /* A box of base corners that proved wrong more than once: they are those of something else. Residuals alone do not decide:
  * noise that is given too small must not cost a true box its corners. */
-static void count_failure(goe_filter_t *filter, const goe_settings_t *settings) {
-    if (goe_filter_traits(filter)->by_corners && settings->model == GOE_MODEL_AUTO &&
-        filter->health.images >= EARLY_IMAGES) {
+static void count_failure(goe_filter_t *filter, goe_model_t asked) {
+    if (goe_filter_traits(filter)->by_corners && asked == GOE_MODEL_AUTO && filter->health.images >= EARLY_IMAGES) {
         filter->health.base_refused = goe_count_image(&filter->health.failed) >= FAILURES_MAX;
     }
 }
@@ -134,7 +133,7 @@ static void count_restart(goe_health_t *health) {
     health->steady = 1;
 }
 
-bool goe_health_judge(goe_filter_t *filter, const goe_settings_t *settings, goe_verdict_t verdict) {
+bool goe_health_judge(goe_filter_t *filter, goe_model_t asked, goe_verdict_t verdict) {
     goe_health_t *health = &filter->health;
     const bool captured = is_captured(filter, verdict);
     if (health->refused[GOE_POINT_TOP] >= REFUSED_TOPS) {
@@ -143,7 +142,7 @@ bool goe_health_judge(goe_filter_t *filter, const goe_settings_t *settings, goe_
     if (!captured && !(health->recent_nis > RECENT_MAX) && is_sane(filter)) {
         return false;
     }
-    count_failure(filter, settings);
+    count_failure(filter, asked);
     count_restart(health);
     memset(health->refused, 0, sizeof health->refused);
     return true;

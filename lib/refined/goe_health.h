@@ -18,6 +18,6 @@ void goe_health_take_refused(goe_health_t *health, goe_verdict_t verdict);
  * whether the filter has to start again: points that
  * are refused image after image captured the state when they were outliers, or the state is impossible. A box of base
  * corners that proved wrong so more than once loses them. */
-bool goe_health_judge(goe_filter_t *filter, const goe_settings_t *settings, goe_verdict_t verdict);
+bool goe_health_judge(goe_filter_t *filter, goe_model_t asked, goe_verdict_t verdict);
 
 #endif

@@ -15,15 +15,15 @@
 #define NEAR_IMAGES 8u /* in which an invisible near corner is a missed one, not a nonexistent one */
 
 /* Base corners are more informative than a box: with them it starts as a disc that substitutes for one. */
-static bool shows_prism(const goe_settings_t *settings, const goe_view_t *view) {
+static bool shows_prism(goe_model_t asked, const goe_view_t *view) {
     const goe_point_t *p = view->point;
-    return view->sides.usable != 0 && settings->model != GOE_MODEL_LINE &&
+    return view->sides.usable != 0 && asked != GOE_MODEL_LINE &&
            !(p[GOE_POINT_BASE_LEFT].usable && p[GOE_POINT_BASE_RIGHT].usable);
 }
 
-bool goe_model_place(goe_filter_t *filter, const goe_settings_t *settings, const goe_view_t *view) {
+bool goe_model_place(goe_filter_t *filter, goe_model_t asked, const goe_view_t *view) {
     goe_filter_place_axes(filter, view->motion);
-    return shows_prism(settings, view) && goe_prism_face(filter, view);
+    return shows_prism(asked, view) && goe_prism_face(filter, view);
 }
 
 bool goe_model_start(goe_filter_t *filter, const goe_observation_t *obs, bool prism) {

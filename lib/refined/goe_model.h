@@ -7,7 +7,7 @@
 #include "refined/goe_shape.h"
 
 /* Places the filter's axes for a start by this image. Returns whether that would be a prism. */
-bool goe_model_place(goe_filter_t *filter, const goe_settings_t *settings, const goe_view_t *view);
+bool goe_model_place(goe_filter_t *filter, goe_model_t asked, const goe_view_t *view);
 
 /* Starts the filter by the first model, a disc or a prism. False if the image does not show enough. */
 bool goe_model_start(goe_filter_t *filter, const goe_observation_t *obs, bool prism);

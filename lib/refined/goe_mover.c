@@ -262,7 +262,7 @@ bool goe_mover_judge(goe_filter_t *filter, const goe_observation_t *obs, const f
     }
     since_s = since_s < SINCE_MAX_S ? since_s : SINCE_MAX_S;
     m->observed_s += since_s;
-    m->nis += filter->health.nis / goe_gate_repeated(obs->settings, filter);
+    m->nis += filter->health.nis / goe_gate_repeated(filter, obs->settings->detector.point_correlation);
     m->rows += (float)filter->health.nis_rows;
     if (m->followed) {
         judge_followed(filter);

@@ -387,8 +387,7 @@ static void set_velocity(const goe_filter_t *filter, const goe_settings_t *setti
 
 /* (R41): the highest point of a roof from above is a far corner, and no image shows how far while one face is visible, or a disc
  * substitutes for the box. */
-static void doubt_far_roof(const goe_filter_t *filter, const goe_settings_t *settings, goe_shape_t *shape) {
-    const bool highest = settings->filter.top_is_highest;
+static void doubt_far_roof(const goe_filter_t *filter, bool highest, goe_shape_t *shape) {
     const bool is_substitute = goe_filter_traits(filter)->can_stand_in && filter->candidate.stand_in && highest;
     const bool is_face = goe_filter_traits(filter)->one_face && (filter->datum.boxes || highest);
     if (is_substitute || is_face) {
@@ -400,12 +399,12 @@ static void doubt_far_roof(const goe_filter_t *filter, const goe_settings_t *set
 /* What the answer is less certain by; of a disc its shape learns of it, too. */
 static void widening_of(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
                         drift_t drift, goe_shape_t *shape, widening_t *wider) {
-    wider->scatter = goe_scatter_factor(filter, goe_gate_repeated(settings, filter));
+    wider->scatter = goe_scatter_factor(filter, goe_gate_repeated(filter, settings->detector.point_correlation));
     goe_srif_reciprocals(&filter->root, wider->reciprocal);
     if (goe_filter_traits(filter)->is_conditioned) {
         goe_disc_doubt(filter, settings->model == GOE_MODEL_DISC, goe_filter_measured(filter), shape, &wider->doubt);
     }
-    doubt_far_roof(filter, settings, shape);
+    doubt_far_roof(filter, settings->filter.top_is_highest, shape);
     shape->top_m2 = shape->roof_m2 > 0.0f ? top_variance(motion, drift, shape) : 0.0f;
 }
 

@@ -100,7 +100,8 @@ static bool measure(goe_filter_t *filter, const goe_observation_t *obs, goe_rows
     const float nis = goe_model_update(filter, 1.0f / rows->white_rad, rows, change);
     /* Variances were inflated by (1+r)/(1-r) for the correlation in time, the scatter within one image is not: undone for the
      * NIS. */
-    goe_health_take(&filter->health, *verdict, nis * goe_gate_repeated(obs->settings, filter));
+    goe_health_take(&filter->health, *verdict,
+                    nis * goe_gate_repeated(filter, obs->settings->detector.point_correlation));
     return true;
 }
 
@@ -136,7 +137,7 @@ static void note_time(goe_filter_t *filter, goe_observation_t *obs) {
 static bool open_image(goe_filter_t *filter, const goe_settings_t *settings, const goe_view_t *view,
                        goe_observation_t *obs, unsigned *swapped) {
     const bool running = goe_filter_has_started(filter);
-    const bool prism = !running && goe_model_place(filter, settings, view);
+    const bool prism = !running && goe_model_place(filter, settings->model, view);
     *swapped = goe_observation_open(obs, settings, filter, view);
     if (!running && !goe_model_start(filter, obs, prism)) {
         return false;
@@ -170,7 +171,7 @@ GOE_NOINLINE static bool use_rows(goe_filter_t *filter, const goe_observation_t 
         goe_box_clip(filter);
     }
     const bool moves = measured && starts_to_move(filter, obs, change);
-    if (goe_health_judge(filter, obs->settings, verdict) || moves) {
+    if (goe_health_judge(filter, obs->settings->model, verdict) || moves) {
         goe_filter_enter(filter, GOE_PHASE_NONE);
         return false;
     }

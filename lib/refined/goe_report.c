@@ -90,13 +90,13 @@ bool goe_report_quantities(const goe_quantities_t *quantities, const goe_motion_
     return is_known;
 }
 
-static bool is_misfit(const goe_health_t *health, const goe_settings_t *settings) {
-    return health->images >= SUSPECT_IMAGES && health->mean_nis > settings->filter.nis_ratio_max;
+static bool is_misfit(const goe_health_t *health, float most) {
+    return health->images >= SUSPECT_IMAGES && health->mean_nis > most;
 }
 
 /* A disc was configured, and it is none. */
-static bool is_forced(const goe_filter_t *filter, const goe_settings_t *settings) {
-    return settings->model == GOE_MODEL_DISC && goe_filter_traits(filter)->is_conditioned && goe_disc_is_skewed(filter);
+static bool is_forced(const goe_filter_t *filter, goe_model_t asked) {
+    return asked == GOE_MODEL_DISC && goe_filter_traits(filter)->is_conditioned && goe_disc_is_skewed(filter);
 }
 
 static bool moves(const goe_filter_t *filter) {
@@ -125,13 +125,13 @@ static goe_reason_t reason_of(const goe_filter_t *filter, const goe_settings_t *
     if (health->base_refused) {
         return GOE_REASON_BASE;
     }
-    if (is_forced(filter, settings)) {
+    if (is_forced(filter, settings->model)) {
         return GOE_REASON_SHAPE;
     }
     if (is_late(filter)) {
         return GOE_REASON_LATE;
     }
-    if (!is_misfit(health, settings)) {
+    if (!is_misfit(health, settings->filter.nis_ratio_max)) {
         return GOE_REASON_NONE;
     }
     return health->adrift ? GOE_REASON_CONVENTION : GOE_REASON_NOISE;
@@ -150,8 +150,8 @@ void goe_report_doubt(const goe_filter_t *filter, goe_estimate_t *estimate) {
 void goe_report_fit(const goe_filter_t *filter, const goe_settings_t *settings, goe_estimate_t *estimate) {
     const goe_health_t *health = &filter->health;
     estimate->reason = reason_of(filter, settings);
-    estimate->suspect =
-        is_misfit(health, settings) || (estimate->reason != GOE_REASON_NONE && estimate->reason != GOE_REASON_LATE);
+    estimate->suspect = is_misfit(health, settings->filter.nis_ratio_max) ||
+                        (estimate->reason != GOE_REASON_NONE && estimate->reason != GOE_REASON_LATE);
 #if GOE_AUGMENTED
     estimate->latency_s = filter->mover.augmented[GOE_AUGMENTED_LATENCY];
     estimate->sigma.latency_s = goe_mover_latency_sd(filter);

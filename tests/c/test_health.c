@@ -40,7 +40,7 @@ static goe_verdict_t verdict_of(unsigned measured, unsigned refused) {
 }
 
 static bool judge(unsigned measured, unsigned refused) {
-    return goe_health_judge(&filter, &settings, verdict_of(measured, refused));
+    return goe_health_judge(&filter, settings.model, verdict_of(measured, refused));
 }
 
 /* GIVEN one point that is refused again and again, the others fitting THEN in the fourth image the state counts as captured, not

@@ -284,7 +284,7 @@ static void a_state_that_is_not_finite_starts_the_filter_again(void) {
     for (size_t i = 0; i <= 2 * GOE_STATES; i++) {
         fly(SEE_ALL, 20);
         goe_filter_t *filter = &estimator.filter;
-        TEST_ASSERT_FALSE(goe_health_judge(filter, &settings, good));
+        TEST_ASSERT_FALSE(goe_health_judge(filter, settings.model, good));
         if (i < GOE_STATES) {
             filter->state[i] = check_from_bits(i % 2 ? 0x7FC00000u : 0x7F800000u);
         } else if (i < 2 * GOE_STATES) {
@@ -293,7 +293,7 @@ static void a_state_that_is_not_finite_starts_the_filter_again(void) {
         } else {
             filter->state[GOE_FRONT_X] = 0.0f; /* no obstacle is as narrow */
         }
-        TEST_ASSERT_TRUE(goe_health_judge(filter, &settings, good));
+        TEST_ASSERT_TRUE(goe_health_judge(filter, settings.model, good));
     }
 }
 

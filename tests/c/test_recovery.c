@@ -40,7 +40,7 @@ static goe_verdict_t verdict_of(unsigned refused) {
 }
 
 static void take(float ratio) { goe_health_take(&filter.health, verdict_of(0u), ratio * (float)ROWS); }
-static bool judge(unsigned refused) { return goe_health_judge(&filter, &settings, verdict_of(refused)); }
+static bool judge(unsigned refused) { return goe_health_judge(&filter, settings.model, verdict_of(refused)); }
 
 /* ------------------------------------------------------------------------------------------------------------- means -- */
 
@@ -115,7 +115,7 @@ static void a_point_refused_again_and_again_starts_the_filter_again(void) {
         }
         goe_verdict_t undetected = verdict_of(0u);
         undetected.measured = ALL & ~LEFT;
-        TEST_ASSERT_FALSE(goe_health_judge(&filter, &settings, undetected));
+        TEST_ASSERT_FALSE(goe_health_judge(&filter, settings.model, undetected));
         TEST_ASSERT_TRUE(judge(LEFT));
         TEST_ASSERT_EQUAL_UINT8(0u, filter.health.refused[GOE_POINT_LEFT]);
     }

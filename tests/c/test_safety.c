@@ -158,7 +158,8 @@ static void check_ranges(const goe_estimate_t *e) {
 /* By how much the track's own scatter widens what the filter found. */
 static double widening(void) {
     const goe_filter_t *filter = &memory.estimator.filter;
-    const float factor = goe_scatter_factor(filter, goe_gate_repeated(&memory.estimator.settings, filter));
+    const float factor =
+        goe_scatter_factor(filter, goe_gate_repeated(filter, memory.estimator.settings.detector.point_correlation));
     TEST_ASSERT_TRUE(factor >= 1.0f && factor <= SCATTER_MAX);
     return sqrt((double)factor);
 }
