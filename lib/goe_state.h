@@ -107,7 +107,7 @@ typedef struct {
     float element[GOE_UNKNOWNS * (GOE_UNKNOWNS + 1) / 2]; /* upper triangular matrix, row by row */
 #if GOE_AUGMENTED
     float right[GOE_AUGMENTED]; /* right-hand side of the last rows, those of the augmented states */
-    uint8_t estimated; /* number of estimated augmented states, from the first on; the others are taken as known */
+    uint8_t estimated;          /* of these, from the first on; the others are taken as known */
 #endif
 } goe_triangle_t;
 
@@ -131,10 +131,10 @@ typedef struct {
 #endif
 } goe_axes_t;
 
-/* refined/goe_box_start.c: the box that the images before saw. */
+/* refined/goe_box_start.c: the box that the images before saw; goe_model.c: its last two. */
 typedef struct {
-    float extent[2]; /* of two faces: their lateral extents, focal lengths; of one: its orientation, rad, and nothing */
-    goe_flag_t both; /* of two faces */
+    float extent[2];     /* lateral ones of two faces, focal lengths; or the orientation of one, rad, and nothing */
+    goe_flag_t both;     /* of two faces */
     uint8_t agreeing;    /* images in a row */
     goe_flag_t stand_in; /* disc: base corners were visible, so it substitutes for a box */
     uint8_t near_images; /* in which an undetected near corner still counts as missed */

@@ -373,7 +373,7 @@ static void free_length(goe_filter_t *filter, const goe_observation_t *obs) {
     direction[GOE_DEPTH_DIFFERENCE] = edges.side.along.z;
     goe_observation_age(filter, obs);
     goe_srif_spread(&filter->root, direction, GOE_SIDE_X, GOE_DEPTH_DIFFERENCE, LENGTH_FREED);
-    filter->phase = GOE_PHASE_BOX; /* the same box: what counts its images goes on */
+    goe_filter_set_phase(filter, GOE_PHASE_BOX);
 }
 
 /* Front and side with each other's names. Doing it again undoes it. */

@@ -284,8 +284,7 @@ static void start_box(goe_filter_t *filter, const goe_observation_t *obs, const 
                                                 SIZE_FREEDOM * size, SIZE_FREEDOM * size,
                                                 (both ? DEPTH_FREEDOM : DEPTH_HELD) * size};
     goe_srif_from_covariance(c, sigma, &filter->root);
-    filter->axes.turn_cos = box->turn_cos;
-    filter->axes.turn_sin = box->turn_sin;
+    goe_filter_turn_axes(filter, box->turn_cos, box->turn_sin);
     goe_box_enter(filter, both ? GOE_PHASE_BOX : GOE_PHASE_BOX_FACE);
 }
 

@@ -293,7 +293,7 @@ static void become_box(goe_filter_t *filter, const float is[GOE_STATES], float s
     inflate(filter, GOE_FRONT_X, BOX_FREEDOM * length);
     inflate(filter, GOE_DEPTH_DIFFERENCE, BOX_FREEDOM * length);
     inflate(filter, GOE_TOP, TOP_MOVED * top * length);
-    memset(filter->health.refused, 0, sizeof filter->health.refused);
+    goe_filter_forgive(filter);
     goe_box_enter(filter, GOE_PHASE_BOX_OUTLINE);
 }
 

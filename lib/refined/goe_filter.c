@@ -53,13 +53,15 @@ void goe_filter_enter(goe_filter_t *filter, goe_phase_t phase) {
         answer->previous = true;
     }
     answer->outdated = true;
-    filter->phase = (uint8_t)phase;
+    goe_filter_set_phase(filter, phase);
     filter->phase_images = 0;
     filter->known = 0;
     filter->candidate.agreeing = 0;
     filter->health.poor = 0;
     filter->health.recent_nis = GOE_NIS_NONE; /* the first image of a phase does not count */
 }
+
+void goe_filter_forgive(goe_filter_t *filter) { memset(filter->health.refused, 0, sizeof filter->health.refused); }
 
 float goe_filter_variance(const goe_filter_t *filter, goe_state_index_t state) {
     float part[GOE_UNKNOWNS];
@@ -183,8 +185,7 @@ goe_xz_t goe_filter_camera(const goe_filter_t *filter, const goe_motion_t *motio
 
 void goe_filter_place_axes(goe_filter_t *filter, const goe_motion_t *motion) {
     filter->axes.start_time_us = motion->time_us;
-    filter->axes.turn_cos = 1.0f;
-    filter->axes.turn_sin = 0.0f;
+    goe_filter_turn_axes(filter, 1.0f, 0.0f);
     filter->axes.start_dx_m = motion->dx_m;
     filter->axes.start_dz_m = motion->dz_m;
 #if GOE_AUGMENTED

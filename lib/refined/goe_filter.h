@@ -18,11 +18,12 @@ typedef enum {
     GOE_BEARING,       /* X0/Z0 */
     GOE_INVERSE_RANGE, /* 1/Z0, 1/m */
     GOE_TOP,           /* H/Z0 - GOE_GROUND: the top above the altimeter's own zero */
-    GOE_SIDE_X, /* box: L sin(b)/Z0. Disc and chord, a depth: how much deeper the right end lies than the left one, over Z0;
-                          0 of a true disc */
-    GOE_FRONT_X, /* box: W cos(b)/Z0; disc: diameter/Z0; chord: how much farther to the right its right end lies */
-    GOE_DEPTH_DIFFERENCE, /* box: (L cos(b) - W |sin(b)|)/Z0: how much deeper the side reaches than the front; otherwise
-                             idle */
+    /* box: L sin(b)/Z0. Disc and chord, a depth: how much deeper the right end lies than the left one; 0 of a true disc */
+    GOE_SIDE_X,
+    /* box: W cos(b)/Z0; disc: diameter/Z0; chord: how much farther to the right its right end lies */
+    GOE_FRONT_X,
+    /* box: (L cos(b) - W |sin(b)|)/Z0: how much deeper the side reaches than the front; otherwise idle */
+    GOE_DEPTH_DIFFERENCE,
     GOE_STATE_COUNT
 } goe_state_index_t;
 
@@ -30,10 +31,9 @@ GOE_STATIC_ASSERT(GOE_STATE_COUNT == GOE_STATES, every_state_has_a_name);
 
 /* What the same places hold while the obstacle is a prism, see goe_prism.h. All over Z0. */
 enum {
-    GOE_PRISM_SHEAR = GOE_SIDE_X, /* how much deeper the right end lies than the middle */
-    GOE_PRISM_HALF = GOE_FRONT_X, /* half width across Z */
-    GOE_PRISM_DEPTH =
-        GOE_DEPTH_DIFFERENCE /* log of the depth along Z over the width: the last one, which may be considered */
+    GOE_PRISM_SHEAR = GOE_SIDE_X,          /* how much deeper the right end lies than the middle */
+    GOE_PRISM_HALF = GOE_FRONT_X,          /* half width across Z */
+    GOE_PRISM_DEPTH = GOE_DEPTH_DIFFERENCE /* log of depth along Z over width: the last, which may be considered */
 };
 
 GOE_STATIC_ASSERT(GOE_PRISM_DEPTH == GOE_STATES - 1, the_considered_state_comes_last);
@@ -105,6 +105,12 @@ void goe_filter_clear(goe_filter_t *filter);
 /* Enters a phase: counters of the phase begin again. */
 void goe_filter_enter(goe_filter_t *filter, goe_phase_t phase);
 
+/* The same obstacle in another phase: what counts its images goes on. */
+static inline void goe_filter_set_phase(goe_filter_t *filter, goe_phase_t phase) { filter->phase = (uint8_t)phase; }
+
+/* Points count as never refused. */
+void goe_filter_forgive(goe_filter_t *filter);
+
 /* Images in a row; saturates. Returns the new count. */
 static inline unsigned goe_count_image(uint8_t *count) {
     *count = (uint8_t)(*count < UINT8_MAX ? *count + 1 : UINT8_MAX);
@@ -139,6 +145,12 @@ float goe_filter_due_walk2(const goe_filter_t *filter, const goe_navigation_t *n
 
 /* The state's axes become T's, with their origin at the camera now. */
 void goe_filter_place_axes(goe_filter_t *filter, const goe_motion_t *motion);
+
+/* Turns the axes, from T's: clockwise as viewed from above, by the angle of that cosine and sine. */
+static inline void goe_filter_turn_axes(goe_filter_t *filter, float turn_cos, float turn_sin) {
+    filter->axes.turn_cos = turn_cos;
+    filter->axes.turn_sin = turn_sin;
+}
 
 /* The camera since the filter's start in the latest image that gave rows, the state's axes, m: what images have shown, they have shown
  * up to there. */

@@ -144,7 +144,7 @@ bool goe_health_judge(goe_filter_t *filter, goe_model_t asked, goe_verdict_t ver
     }
     count_failure(filter, asked);
     count_restart(health);
-    memset(health->refused, 0, sizeof health->refused);
+    goe_filter_forgive(filter);
     return true;
 }
 

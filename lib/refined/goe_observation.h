@@ -10,8 +10,7 @@ typedef struct {
     const goe_settings_t *settings;
     const goe_camera_t *camera;
     const float *state;
-    goe_point_t
-        point[GOE_FEATURES]; /* by goe_feature_t, aligned with the state's axes; usable: measured in this image */
+    goe_point_t point[GOE_FEATURES]; /* aligned with the state's axes; usable: measured in this image */
     float camera_to_axes[9], body_to_axes[9];
     float ex, ey, ez;  /* attitude bias about the state's axes, rad */
     goe_xz_t camera_m; /* camera since the filter's start, the state's axes */
@@ -24,14 +23,14 @@ typedef struct {
     float white_rad;         /* one sigma of the image's own attitude error */
     float point_px, side_px; /* ... of a point, and of a box's side */
     float outline_share;     /* one sigma of left, right and top beyond the pixel noise, of their width */
-    float position_sd; /* prism: one sigma of the image's own position error, m, with what the uncertain range adds */
-    float range_variance; /* of GOE_INVERSE_RANGE */
-    float depth_variance; /* box: of GOE_DEPTH_DIFFERENCE */
-    bool two_faces;       /* box: both were visible, its length is estimated */
-    bool stand_in;        /* disc: it substitutes for a box */
-    bool base;            /* both outer base corners are visible */
-    bool edge;            /* an edge of the base is visible */
-    uint8_t number;       /* of the camera */
+    float position_sd;       /* ... of the image's own position error, m, with what the uncertain range adds */
+    float range_variance;    /* of GOE_INVERSE_RANGE */
+    float depth_variance;    /* box: of GOE_DEPTH_DIFFERENCE */
+    bool two_faces;          /* box: both were visible, its length is estimated */
+    bool stand_in;           /* disc: it substitutes for a box */
+    bool base;               /* both outer base corners are visible */
+    bool edge;               /* an edge of the base is visible */
+    uint8_t number;          /* of the camera */
 #if GOE_AUGMENTED
     float turn_cos, turn_sin;   /* of the state's axes from T */
     float elapsed_s;            /* since the filter's start */

@@ -211,8 +211,7 @@ bool goe_prism_face(goe_filter_t *filter, const goe_view_t *view) {
         return false;
     }
     const float norm = sqrtf(1.0f + ray.x * ray.x);
-    filter->axes.turn_cos = 1.0f / norm;
-    filter->axes.turn_sin = ray.x / norm;
+    goe_filter_turn_axes(filter, 1.0f / norm, ray.x / norm);
     return true;
 }
 

@@ -36,9 +36,8 @@ typedef struct {
     float turned_rad2;    /* ... of the orientation ... */
     float roof_m2;        /* ... of the place of the roof's point that the top is over ... */
     float top_m2;         /* ... and, for that, of the height */
-    float
-        datum_by_range;  /* what the height above the altimeter's zero changes by with 1/Z0, beyond the height itself */
-    float corner_growth; /* factor on the variance of orientation, width and length, see goe_box_shape() */
+    float datum_by_range; /* by 1/Z0: the height above the altimeter's zero, beyond the height itself */
+    float corner_growth;  /* factor on the variance of orientation, width and length, see goe_box_shape() */
 } goe_shape_t;
 
 /* Sets by[] to the derivatives of by_x X + by_z Z of a spot, meters, X and Z in the state's axes. */
