@@ -287,14 +287,10 @@ static void add_side(const goe_observation_t *obs, const outline_t *o, const goe
                      float variance, goe_rows_t *rows) {
     goe_touch_t touch;
     goe_gradient_t g;
-    if (!goe_sides_see(obs->sides, 1u << side)) {
-        return;
-    }
     float *by = goe_touch_add(rows, obs, solid, side, variance, &touch, &g);
     if (by != NULL) {
         set_corner(rows, by, obs, o, touch.corner, &g);
         by[GOE_INVERSE_RANGE] += g.y * obs->height_m;
-        by[GOE_TOP] = touch.foot ? 0.0f : -g.y;
     }
 }
 
@@ -303,11 +299,9 @@ static void add_side(const goe_observation_t *obs, const outline_t *o, const goe
 static void add_sides(const goe_observation_t *obs, const outline_t *o, goe_rows_t *rows) {
     goe_solid_t solid;
     const float width = o->edges.front.along.x + goe_absolute(o->edges.side.along.x);
-    goe_touch_open(obs, &solid);
+    goe_touch_open(obs, obs->height_m, &solid);
     solid.corner = o->corner;
     solid.corners = CORNERS;
-    solid.ground = o->ground;
-    solid.roof = o->top;
     const float wide = goe_touch_variance(obs, GOE_BOX_LEFT, goe_touch_size(obs, GOE_BOX_LEFT, width));
     const float high = goe_touch_variance(obs, GOE_BOX_TOP, goe_touch_size(obs, GOE_BOX_TOP, o->ground - o->top));
     add_side(obs, o, &solid, GOE_BOX_LEFT, wide, rows);

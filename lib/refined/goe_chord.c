@@ -102,30 +102,23 @@ static void add_side(const goe_observation_t *obs, const goe_solid_t *solid, siz
                      goe_rows_t *rows) {
     goe_touch_t touch;
     goe_gradient_t g;
-    if (!goe_sides_see(obs->sides, 1u << side)) {
-        return;
-    }
     float *by = goe_touch_add(rows, obs, solid, side, goe_touch_variance(obs, side, size), &touch, &g);
     if (by == NULL) {
         return;
     }
     set_end(by, obs, touch.corner == 0 ? -0.5f : 0.5f, &g);
     by[GOE_INVERSE_RANGE] += g.y * obs->height_m;
-    by[GOE_TOP] = touch.foot ? 0.0f : -g.y;
     *goe_rows_last_variance(rows) += goe_square(moved * g.y * touch.point[1]);
 }
 
 /*@ requires goe_observation_is_open(obs) && goe_rows_hold(rows) && rows->count + 3 <= GOE_ROWS_MAX; */
 static void add_sides(const goe_observation_t *obs, goe_rows_t *rows) {
-    const float *x = obs->state;
     const goe_xz_t end[2] = {end_of(obs, -0.5f), end_of(obs, 0.5f)};
     goe_solid_t solid;
-    goe_touch_open(obs, &solid);
+    goe_touch_open(obs, obs->height_m, &solid);
     solid.corner = end;
     solid.corners = 2;
-    solid.roof = goe_observation_roof(obs);
-    solid.ground = obs->height_m * x[GOE_INVERSE_RANGE] + x[GOE_GROUND];
-    const float width = goe_touch_size(obs, GOE_BOX_LEFT, x[GOE_FRONT_X]);
+    const float width = goe_touch_size(obs, GOE_BOX_LEFT, obs->state[GOE_FRONT_X]);
     const float height = goe_touch_size(obs, GOE_BOX_TOP, solid.ground - solid.roof);
     add_side(obs, &solid, GOE_BOX_LEFT, width, 0.0f, rows);
     add_side(obs, &solid, GOE_BOX_RIGHT, width, 0.0f, rows);

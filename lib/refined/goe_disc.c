@@ -138,9 +138,6 @@ static void add_side(const goe_observation_t *obs, const goe_solid_t *solid, siz
                      goe_rows_t *rows) {
     goe_touch_t touch;
     goe_gradient_t g;
-    if (!goe_sides_see(obs->sides, 1u << side)) {
-        return;
-    }
     float *by = goe_touch_add(rows, obs, solid, side, variance, &touch, &g);
     if (!by) {
         return;
@@ -152,7 +149,6 @@ static void add_side(const goe_observation_t *obs, const goe_solid_t *solid, siz
     by[GOE_INVERSE_RANGE] += g.y * obs->height_m;
     by[GOE_SIDE_X] = by_skew;
     by[GOE_FRONT_X] = 0.5f * (g.x * touch.outward.x + g.z * touch.outward.z);
-    by[GOE_TOP] = touch.foot ? 0.0f : -g.y;
     by[GOE_BEHIND_STATES] -= by_skew * obs->state[GOE_SIDE_X];
 }
 
@@ -160,14 +156,12 @@ static void add_side(const goe_observation_t *obs, const goe_solid_t *solid, siz
     requires rows->count + 3 <= GOE_ROWS_MAX; */
 static void add_sides(const goe_observation_t *obs, const circle_t *o, float shape_rel, goe_rows_t *rows) {
     goe_solid_t solid;
-    goe_touch_open(obs, &solid);
+    goe_touch_open(obs, obs->height_m, &solid);
     solid.center = o->center;
     solid.half = 0.5f * obs->state[GOE_FRONT_X];
     solid.shear = 0.0f;
     solid.depth = solid.half;
     solid.corners = 0;
-    solid.roof = goe_observation_roof(obs);
-    solid.ground = obs->height_m * obs->state[GOE_INVERSE_RANGE] + obs->state[GOE_GROUND];
     const float width = goe_touch_size(obs, GOE_BOX_LEFT, obs->state[GOE_FRONT_X]);
     const float height = goe_touch_size(obs, GOE_BOX_TOP, solid.ground - solid.roof);
     const float more = goe_square(shape_rel * width);

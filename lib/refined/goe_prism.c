@@ -49,9 +49,7 @@ static void describe(const goe_observation_t *obs, goe_solid_t *o) {
     o->shear = x[GOE_PRISM_SHEAR];
     o->depth = o->half * goe_exp(x[GOE_PRISM_DEPTH]);
     o->corners = 0;
-    o->ground = obs->steady_height_m * x[GOE_INVERSE_RANGE] + x[GOE_GROUND];
-    o->roof = obs->steady_height_m * x[GOE_INVERSE_RANGE] - x[GOE_TOP];
-    goe_touch_open(obs, o);
+    goe_touch_open(obs, obs->steady_height_m, o);
 }
 
 /* The box's size along a side's coordinate, focal lengths: as measured, or as predicted. */
@@ -78,7 +76,6 @@ static void add_side(const goe_observation_t *obs, const goe_solid_t *o, size_t 
     by[GOE_INVERSE_RANGE] += g.y * obs->steady_height_m;
     by[GOE_PRISM_SHEAR] = per_reach * t.across * t.outward.z;
     by[GOE_PRISM_HALF] = per_reach * (t.across * t.outward.x + t.along * t.along / o->half);
-    by[GOE_TOP] = t.foot ? 0.0f : -g.y;
     by[GOE_PRISM_DEPTH] = per_reach * t.along * t.along;
     const float shift = -obs->position_sd * obs->state[GOE_INVERSE_RANGE];
     float *common = rows->shift[rows->count - 1u];
@@ -92,9 +89,7 @@ void goe_prism_rows(const goe_observation_t *obs, goe_rows_t *rows) {
     describe(obs, &ellipse);
     rows->shifts = obs->position_sd > 0.0f;
     for (size_t side = 0; side < GOE_BOX_SIDES; side++) {
-        if (goe_sides_see(obs->sides, 1u << side)) {
-            add_side(obs, &ellipse, side, rows);
-        }
+        add_side(obs, &ellipse, side, rows);
     }
 }
 

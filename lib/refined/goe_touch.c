@@ -52,9 +52,12 @@ float goe_touch_variance(const goe_observation_t *obs, size_t side, float size) 
 /* ------------------------------------------------------------------------------------------------------------- touch -- */
 
 /* n - e x n of the camera's axes, by the given attitude. */
-void goe_touch_open(const goe_observation_t *obs, goe_solid_t *solid) {
+void goe_touch_open(const goe_observation_t *obs, float height_m, goe_solid_t *solid) {
+    const float *x = obs->state;
     const float *r = obs->camera_to_axes;
     float *to = solid->unbiased_from_camera;
+    solid->ground = height_m * x[GOE_INVERSE_RANGE] + x[GOE_GROUND];
+    solid->roof = height_m * x[GOE_INVERSE_RANGE] - x[GOE_TOP];
     for (size_t i = 0; i < 3; i++) {
         to[i] = r[i] - obs->ey * r[6 + i] + obs->ez * r[3 + i];
         to[3 + i] = r[3 + i] - obs->ez * r[i] + obs->ex * r[6 + i];
@@ -219,6 +222,9 @@ static float forget_height(const goe_solid_t *solid, const goe_touch_t *t, goe_g
 
 GOE_NOINLINE float *goe_touch_add(goe_rows_t *rows, const goe_observation_t *obs, const goe_solid_t *solid, size_t side,
                                   float variance, goe_touch_t *touch, goe_gradient_t *gradient) {
+    if (!goe_sides_see(obs->sides, 1u << side)) {
+        return NULL;
+    }
     const float measured = goe_touch_coordinate(obs->camera, obs->sides, side);
     if (!touch_side(obs, solid, side, measured, touch)) {
         return NULL;
@@ -231,6 +237,7 @@ GOE_NOINLINE float *goe_touch_add(goe_rows_t *rows, const goe_observation_t *obs
                              variance + hidden, gradient);
     rows->side[rows->count - 1u] = (uint8_t)side;
     by[GOE_GROUND] = touch->foot ? gradient->y : 0.0f;
+    by[GOE_TOP] = touch->foot ? 0.0f : -gradient->y;
     return by;
 }
 

@@ -15,8 +15,8 @@ typedef struct {
     float half, shear, depth; /* of the ellipse: A = (half 0; shear depth), across and along Z */
     const goe_xz_t *corner;
     size_t corners;
-    float ground, roof;            /* Y */
-    float unbiased_from_camera[9]; /* rotation, row by row: goe_touch_open() */
+    float ground, roof;            /* Y; as the next: goe_touch_open() */
+    float unbiased_from_camera[9]; /* rotation, row by row */
 } goe_solid_t;
 
 /* Where a plane through the camera touches a solid. */
@@ -53,12 +53,13 @@ float goe_touch_white_variance(const goe_observation_t *obs, size_t side, float 
 /*@ requires goe_observation_is_open(obs) && side < GOE_BOX_SIDES; */
 float goe_touch_variance(const goe_observation_t *obs, size_t side, float size);
 
-/* Sets the common part of all sides of an image: the camera's axes in the state's, freed of the attitude bias. */
+/* Sets the common part of all sides of an image: ground and roof by the camera's height, and the camera's axes in the state's, freed of
+ * the attitude bias. */
 /*@ requires goe_observation_is_open(obs) && \valid(solid); */
-void goe_touch_open(const goe_observation_t *obs, goe_solid_t *solid);
+void goe_touch_open(const goe_observation_t *obs, float height_m, goe_solid_t *solid);
 
-/* Adds the row of a visible side, (R29), and returns its derivatives by the states as goe_rows_add() does: those by
- * GOE_GROUND are set, the others are the model's. Null if the touching point is not ahead. */
+/* Adds the row of a side, (R29), and returns its derivatives by the states as goe_rows_add() does: those by GOE_GROUND and GOE_TOP
+ * are set, the others are the model's. Null if the side is not visible, or the touching point is not ahead. */
 /*@ requires goe_observation_is_open(obs) && goe_solid_is_closed(solid) && goe_rows_hold(rows);
     requires side < GOE_BOX_SIDES && rows->count < GOE_ROWS_MAX && \valid(touch) && \valid(gradient); */
 float *goe_touch_add(goe_rows_t *rows, const goe_observation_t *obs, const goe_solid_t *solid, size_t side,
