@@ -218,7 +218,7 @@ static float project(const goe_filter_t *filter, const widening_t *wider, counte
         error->skewed = goe_disc_condition(&wider->doubt, error->by);
         variance = dot(error->by, error->by, 0.0f);
     }
-    if (filter->phase == GOE_PHASE_PRISM) {
+    if (goe_filter_traits(filter)->is_ellipse) {
         float *depth = &error->by[GOE_PRISM_DEPTH];
         variance += (goe_square(wider->bend) - 1.0f) * goe_square(*depth);
         *depth *= wider->bend;
