@@ -400,6 +400,8 @@ static void doubt_far_roof(const goe_filter_t *filter, bool highest, goe_shape_t
 static void widening_of(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
                         drift_t drift, goe_shape_t *shape, widening_t *wider) {
     wider->scatter = goe_scatter_factor(filter, goe_gate_repeated(filter, settings->detector.point_correlation));
+    wider->doubt.skew_variance = 0.0f;
+    wider->doubt.spread = 0.0f;
     goe_srif_reciprocals(&filter->root, wider->reciprocal);
     if (goe_filter_traits(filter)->is_conditioned) {
         goe_disc_doubt(filter, settings->model == GOE_MODEL_DISC, goe_filter_measured(filter), shape, &wider->doubt);

@@ -71,8 +71,7 @@ static void doubt(goe_filter_t *filter, const goe_observation_t *obs) {
 }
 
 /* The rows of the image, before the gate. */
-static void find_rows(goe_filter_t *filter, goe_observation_t *obs, goe_matrix_t *matrix, goe_rows_t *rows) {
-    goe_rows_clear(rows, matrix);
+static void find_rows(goe_filter_t *filter, goe_observation_t *obs, goe_rows_t *rows) {
     rows->white_rad = obs->white_rad;
     goe_model_rows(filter, obs, rows);
     goe_rows_end(rows, obs);
@@ -188,7 +187,8 @@ GOE_NOINLINE static bool use_image(goe_filter_t *filter, goe_observation_t *obs)
     goe_matrix_t matrix;
     goe_rows_t rows;
     (void)goe_count_image(&filter->phase_images);
-    find_rows(filter, obs, &matrix, &rows);
+    goe_rows_clear(&rows, &matrix);
+    find_rows(filter, obs, &rows);
     return use_rows(filter, obs, &rows);
 }
 
