@@ -17,7 +17,7 @@ bool goe_model_start(goe_filter_t *filter, const goe_observation_t *obs, bool pr
 bool goe_model_change(goe_filter_t *filter, const goe_observation_t *obs);
 
 /* Appends the rows of an image. */
-/*@ requires \valid(filter) && \valid(obs) && goe_observation_is_open(obs) && goe_rows_hold(rows);
+/*@ requires \valid_read(filter) && \valid(obs) && goe_observation_is_open(obs) && goe_rows_hold(rows);
     requires rows->count == 0; */
 void goe_model_rows(const goe_filter_t *filter, goe_observation_t *obs, goe_rows_t *rows);
 
