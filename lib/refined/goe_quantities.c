@@ -115,78 +115,42 @@ static float dot(const float a[GOE_STATES], const float b[GOE_STATES], float sum
 
 /* ------------------------------------------------------------------------------------------------- augmented --------- */
 
-/* The contribution of the augmented states, as independent unit errors; by: projected. at_s: the place counts that long after the
- * filter's start, and (x, z), T axes, is its derivative by the place there; it matters of an obstacle that is followed. */
-#if GOE_AUGMENTED
+/* The contribution of the augmented states, if there are any, as independent unit errors. */
 typedef struct {
-    float part[GOE_AUGMENTED];
+    float part[GOE_AUGMENTED > 0 ? GOE_AUGMENTED : 1];
 } augmented_t;
 
-static float since_start_s(const goe_filter_t *filter, const goe_motion_t *motion) {
-    return goe_filter_elapsed_s(filter, motion);
-}
-
+/* by: projected. at_s: the place counts that long after the filter's start, and (x, z), T axes, is its derivative by the place there;
+ * it matters of an obstacle that is followed. */
 static void augmented_of(const goe_filter_t *filter, const float by[GOE_STATES], float x, float z, float at_s,
                          augmented_t *augmented) {
+#if GOE_AUGMENTED
     const float direct[GOE_AUGMENTED] = {0.0f, x * at_s, z * at_s};
     goe_srif_augmented(&filter->root, by, GOE_UNWEIGHTED, filter->mover.followed ? direct : NULL, augmented->part);
-}
-
-static float augmented_dot(const augmented_t *a, const augmented_t *b) {
-    return goe_srif_augmented_dot(a->part, b->part);
+#else
+    (void)filter;
+    (void)by;
+    (void)x;
+    (void)z;
+    (void)at_s;
+    augmented->part[0] = 0.0f;
+#endif
 }
 
 static void augmented_scale(augmented_t *augmented, float factor) {
-    for (size_t i = 0; i < GOE_AUGMENTED; i++) {
+    for (int i = 0; i < GOE_AUGMENTED; i++) {
         augmented->part[i] *= factor;
     }
 }
 
 /* x a + z b */
 static augmented_t augmented_sum(const augmented_t *a, float x, const augmented_t *b, float z) {
-    augmented_t sum;
-    for (size_t i = 0; i < GOE_AUGMENTED; i++) {
+    augmented_t sum = *a;
+    for (int i = 0; i < GOE_AUGMENTED; i++) {
         sum.part[i] = x * a->part[i] + z * b->part[i];
     }
     return sum;
 }
-#else
-typedef char augmented_t; /* nothing is */
-
-static float since_start_s(const goe_filter_t *filter, const goe_motion_t *motion) {
-    (void)filter;
-    (void)motion;
-    return 0.0f;
-}
-
-static void augmented_of(const goe_filter_t *filter, const float by[GOE_STATES], float x, float z, float at_s,
-                         augmented_t *augmented) {
-    (void)filter;
-    (void)by;
-    (void)x;
-    (void)z;
-    (void)at_s;
-    *augmented = 0;
-}
-
-static float augmented_dot(const augmented_t *a, const augmented_t *b) {
-    (void)a;
-    (void)b;
-    return 0.0f;
-}
-
-static void augmented_scale(const augmented_t *augmented, float factor) {
-    (void)augmented;
-    (void)factor;
-}
-
-static augmented_t augmented_sum(const augmented_t *a, float x, const augmented_t *b, float z) {
-    (void)x;
-    (void)b;
-    (void)z;
-    return *a;
-}
-#endif
 
 /* ------------------------------------------------------------------------------------------------------- projection -- */
 
@@ -223,11 +187,12 @@ static float project(const goe_filter_t *filter, const widening_t *wider, counte
         variance += (goe_square(wider->bend) - 1.0f) * goe_square(*depth);
         *depth *= wider->bend;
     }
-    return variance + augmented_dot(&error->augmented, &error->augmented);
+    return variance + goe_srif_augmented_dot(error->augmented.part, error->augmented.part);
 }
 
 static float covariance_of(const widening_t *wider, const deviation_t *a, const deviation_t *b) {
-    return wider->scatter * dot(a->by, b->by, augmented_dot(&a->augmented, &b->augmented)) + a->skewed * b->skewed;
+    return wider->scatter * dot(a->by, b->by, goe_srif_augmented_dot(a->augmented.part, b->augmented.part)) +
+           a->skewed * b->skewed;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- validity -- */
@@ -294,7 +259,7 @@ GOE_STATIC_ASSERT(GOE_X0 == 0 && GOE_Z0 == 1, the_place_comes_first);
  * not silence an answer. The errors are those of the derivatives in shape, which are used up; place: of X0 and Z0. */
 static void set_quantities(const goe_filter_t *filter, const goe_motion_t *motion, goe_shape_t *shape, drift_t drift,
                            const widening_t *wider, goe_quantities_t *q, deviation_t place[2]) {
-    const float elapsed_s = since_start_s(filter, motion);
+    const float elapsed_s = goe_filter_elapsed_s(filter, motion);
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         deviation_t other;
         deviation_t *error = i <= GOE_Z0 ? &place[i] : &other;
@@ -341,7 +306,7 @@ static void set_center(const goe_filter_t *filter, const goe_motion_t *motion, c
                        const widening_t *wider, const deviation_t place[2], goe_quantities_t *q) {
     const goe_xz_t middle = goe_filter_into_trajectory(filter, shape->middle.at);
     const goe_xz_t gone = goe_filter_moved(filter, motion);
-    const float elapsed_s = since_start_s(filter, motion);
+    const float elapsed_s = goe_filter_elapsed_s(filter, motion);
     const counted_t to_north = {-motion->heading_sin, motion->heading_cos, elapsed_s};
     const counted_t to_east = {motion->heading_cos, motion->heading_sin, elapsed_s};
     float by[2][GOE_STATES];
@@ -492,7 +457,7 @@ void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t 
     wider.bend = for_hazard ? 1.0f : goe_prism_bend(filter);
     const float scatter = sqrtf(wider.scatter);
     const float corner = sqrtf(shape.corner_growth) * scatter;
-    const float elapsed_s = since_start_s(filter, motion) + ahead_s;
+    const float elapsed_s = goe_filter_elapsed_s(filter, motion) + ahead_s;
     deviation_t error[GOE_QUANTITIES];
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         float *by = shape.quantity[i].by;
@@ -505,8 +470,8 @@ void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t 
         augmented_scale(&error[i].augmented, factor);
         for (int j = 0; j <= i; j++) {
             const float drifted = i == j ? drift_variance(motion, drift, &shape, goe_filter_is_box(filter), i) : 0.0f;
-            const float shared =
-                drifted + error[i].skewed * error[j].skewed + augmented_dot(&error[i].augmented, &error[j].augmented);
+            const float shared = drifted + error[i].skewed * error[j].skewed +
+                                 goe_srif_augmented_dot(error[i].augmented.part, error[j].augmented.part);
             const float sum = dot(by, shape.quantity[j].by, shared);
             covariance[i][j] = sum;
             covariance[j][i] = sum;

@@ -101,16 +101,17 @@ static inline float goe_srif_last_variance(const float projected[GOE_STATES]) {
     requires \valid(part + (0 .. GOE_AUGMENTED - 1)); */
 void goe_srif_augmented(const goe_triangle_t *root, const float projected[GOE_STATES], size_t first,
                         const float direct[GOE_AUGMENTED], float part[GOE_AUGMENTED]);
+#endif
 
-/* Covariance of two such sums, or the variance of one. */
-static inline float goe_srif_augmented_dot(const float a[GOE_AUGMENTED], const float b[GOE_AUGMENTED]) {
+/* Covariance of two such sums, or the variance of one; 0 if there are no augmented states. */
+/*@ requires \valid_read(a + (0 .. GOE_AUGMENTED - 1)) && \valid_read(b + (0 .. GOE_AUGMENTED - 1)); */
+static inline float goe_srif_augmented_dot(const float *a, const float *b) {
     float sum = 0.0f;
-    for (size_t i = 0; i < GOE_AUGMENTED; i++) {
+    for (int i = 0; i < GOE_AUGMENTED; i++) {
         sum += a[i] * b[i];
     }
     return sum;
 }
-#endif
 
 /* Covariance of the first GOE_KEPT states; upper half. */
 #define GOE_KEPT 6
