@@ -227,8 +227,7 @@ static float first_range_m(const goe_observation_t *obs, float size) {
 static void set_first_root(const goe_observation_t *obs, const float state[GOE_STATES], goe_triangle_t *root) {
     const goe_settings_t *settings = obs->settings;
     const float bias = settings->navigation.attitude_bias_sd_deg * GOE_RAD_PER_DEG;
-    const float top =
-        goe_absolute(state[GOE_TOP]) > state[GOE_FRONT_X] ? goe_absolute(state[GOE_TOP]) : state[GOE_FRONT_X];
+    const float top = goe_larger(goe_absolute(state[GOE_TOP]), state[GOE_FRONT_X]);
     goe_srif_clear(root);
     *goe_srif_at(root, GOE_BIAS_X, GOE_BIAS_X) = 1.0f / bias;
     *goe_srif_at(root, GOE_BIAS_Y, GOE_BIAS_Y) = 1.0f / bias;

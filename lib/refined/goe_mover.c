@@ -227,11 +227,6 @@ static void judge_followed(goe_filter_t *filter) {
     m->moves = !m->late || (squared > MOVES_MIN_M_S * MOVES_MIN_M_S && squared * squared > MOVING_SIGMAS2 * spread);
 }
 
-/* An outline that is of another shape drifts, too, but fits. */
-static bool is_misfit(const goe_filter_t *filter, const goe_observation_t *obs) {
-    return filter->health.mean_nis > obs->settings->filter.nis_ratio_max;
-}
-
 static bool is_sound(const goe_filter_t *filter) {
     const float *corner = &filter->root.element[goe_srif_augmented_row()];
     uint32_t largest = 0;
@@ -272,8 +267,8 @@ bool goe_mover_judge(goe_filter_t *filter, const goe_observation_t *obs, const f
     }
     judge_latency(filter, &fit);
     const bool seen = is_moving(filter, &fit, since_s);
-    if (!seen || !has_scale(filter, obs)) {
-        m->moves = m->moves || (seen && is_misfit(filter, obs));
+    if (!seen || !has_scale(filter, obs)) { /* an outline of another shape drifts, too, but fits */
+        m->moves = m->moves || (seen && filter->health.mean_nis > obs->settings->filter.nis_ratio_max);
         return false;
     }
     follow(filter, &fit);

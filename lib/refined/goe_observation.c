@@ -251,12 +251,7 @@ float *goe_rows_add(goe_rows_t *rows, goe_feature_t feature, goe_axis_t axis, fl
     return by;
 }
 
-/* Y/Z at which the edge was measured, with the attitude bias taken off, and what its derivatives by the bias add to those
- * of x. */
-static float edge_height(const goe_observation_t *obs, const goe_point_t *p) {
-    return p->y + obs->ex * (1.0f + p->y * p->y) - obs->ez * p->x - obs->ey * p->x * p->y;
-}
-
+/* What the derivatives by the bias of the Y/Z at which the edge was measured add to those of x. */
 static void add_height_of_edge(const goe_point_t *p, float z, goe_gradient_t *of_x) {
     const float by_height = of_x->y * z;
     of_x->ex += by_height * (1.0f + p->y * p->y);
@@ -270,7 +265,7 @@ float *goe_rows_add_edge(goe_rows_t *rows, const goe_observation_t *obs, goe_xz_
     if (!measured->usable) {
         return NULL;
     }
-    goe_observation_project_x(obs, place.x, edge_height(obs, measured) * place.z, place.z, of_x);
+    goe_observation_project_x(obs, place.x, goe_observation_unbiased(obs, feature).y * place.z, place.z, of_x);
     add_height_of_edge(measured, place.z, of_x);
     return goe_rows_add(rows, feature, GOE_ALONG_X, measured->x, goe_observation_spread(obs, feature).xx + more, of_x);
 }
