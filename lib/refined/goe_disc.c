@@ -20,10 +20,7 @@
 #define WIDTH_MIN 1.0e-5f    /* between left and right, focal lengths */
 #define RANGE_MIN_M 1.0f     /* of a first guess */
 #define GROUND_SIGMAS 3.0f   /* by which the base must lie below the horizon to give the range */
-#define BEARING_FREEDOM 1.0f /* one sigma of the first guess of X0/Z0 */
-#define RANGE_FREEDOM 2.0f   /* one sigma of the first guess of 1/Z0, relative */
-#define WIDTH_FREEDOM 5.0f   /* ... of the width */
-#define TOP_FREEDOM 10.0f    /* ... of the top */
+#define WIDTH_FREEDOM 5.0f   /* one sigma of the first guess of the width, relative */
 #define SKEWED_SIGMAS2 18.0f /* twice the log-likelihood ratio of chord against disc; cylinders stay below 14 */
 #define VARIANCE_MIN 1.0e-30f
 #define CHANCE_SHARE 0.5f  /* of the skew's variance that is taken for a true disc's chance, where one was configured */
@@ -31,7 +28,6 @@
 #define TURNED_SIGMAS 6.0f /* of the skew by which the line of sight must turn to reveal a shape that is no disc */
 #define KINK_SHARE 0.4f    /* ... and of what it changes by as other corners come into view */
 #define WIDTH_SHARE 0.05f  /* of the width by which corners that change unnoticed move the visible outline */
-#define HEADING_ARM 0.08f  /* s/m: a yaw bias this large per m/s looks like a velocity bias */
 #define BASE_NOISE 2.0f    /* variance of a base corner's y as range of the center, over its own */
 
 typedef struct {
@@ -224,23 +220,15 @@ static float first_range_m(const goe_observation_t *obs, float size) {
     return obs->settings->filter.prior_width_m / size;
 }
 
-static void set_first_root(const goe_observation_t *obs, const float state[GOE_STATES], goe_triangle_t *root) {
-    const goe_settings_t *settings = obs->settings;
-    const float bias = settings->navigation.attitude_bias_sd_deg * GOE_RAD_PER_DEG;
-    const float top = goe_larger(goe_absolute(state[GOE_TOP]), state[GOE_FRONT_X]);
-    goe_srif_clear(root);
-    *goe_srif_at(root, GOE_BIAS_X, GOE_BIAS_X) = 1.0f / bias;
-    *goe_srif_at(root, GOE_BIAS_Y, GOE_BIAS_Y) = 1.0f / bias;
-    *goe_srif_at(root, GOE_BIAS_Z, GOE_BIAS_Z) =
-        1.0f / sqrtf(goe_square(bias) + goe_square(HEADING_ARM * settings->navigation.velocity_bias_sd_m_s));
-    *goe_srif_at(root, GOE_GROUND, GOE_GROUND) =
-        1.0f / (sqrtf(goe_observation_height_variance(obs, obs->sides->usable != 0)) * state[GOE_INVERSE_RANGE]);
-    *goe_srif_at(root, GOE_BEARING, GOE_BEARING) = 1.0f / BEARING_FREEDOM;
-    *goe_srif_at(root, GOE_INVERSE_RANGE, GOE_INVERSE_RANGE) = 1.0f / (RANGE_FREEDOM * state[GOE_INVERSE_RANGE]);
-    *goe_srif_at(root, GOE_SIDE_X, GOE_SIDE_X) = 1.0f / state[GOE_FRONT_X];
-    *goe_srif_at(root, GOE_FRONT_X, GOE_FRONT_X) = 1.0f / (WIDTH_FREEDOM * state[GOE_FRONT_X]);
-    *goe_srif_at(root, GOE_DEPTH_DIFFERENCE, GOE_DEPTH_DIFFERENCE) = 1.0f / state[GOE_FRONT_X];
-    *goe_srif_at(root, GOE_TOP, GOE_TOP) = 1.0f / (TOP_FREEDOM * top);
+static void set_root(const goe_observation_t *obs, const float state[GOE_STATES], goe_triangle_t *root) {
+    const float width = state[GOE_FRONT_X];
+    float sd[GOE_STATES];
+    goe_observation_prior(obs, state, width, sd);
+    sd[GOE_GROUND] = sqrtf(goe_observation_height_variance(obs, obs->sides->usable != 0)) * state[GOE_INVERSE_RANGE];
+    sd[GOE_SIDE_X] = width;
+    sd[GOE_FRONT_X] = WIDTH_FREEDOM * width;
+    sd[GOE_DEPTH_DIFFERENCE] = width;
+    goe_srif_from_sigmas(sd, root);
 }
 
 bool goe_disc_start(const goe_observation_t *obs, float state[GOE_STATES], goe_triangle_t *root) {
@@ -270,7 +258,7 @@ bool goe_disc_start(const goe_observation_t *obs, float state[GOE_STATES], goe_t
     state[GOE_FRONT_X] = size * range_m / z0_m;
     state[GOE_DEPTH_DIFFERENCE] = state[GOE_FRONT_X];
     state[GOE_TOP] = (obs->height_m - top * range_m) / z0_m;
-    set_first_root(obs, state, root);
+    set_root(obs, state, root);
     return true;
 }
 

@@ -15,6 +15,10 @@
 #define PIXEL_MIN_PX 0.05f
 #define HEIGHT_SD_MIN_M 1.0e-3f
 #define WIDTH_AHEAD_MIN 0.01f /* of the reference point, in units of Z0 */
+#define HEADING_ARM 0.08f     /* s/m: a yaw bias this large per m/s looks like a velocity bias */
+#define BEARING_FREEDOM 1.0f  /* one sigma of the first guess of X0/Z0 */
+#define RANGE_FREEDOM 2.0f    /* ... of 1/Z0, relative */
+#define TOP_FREEDOM 10.0f     /* ... of the top, in the larger of top and width */
 #define FORWARD_MIN 1.0e-4f   /* a predicted point is taken to lie at least this far ahead, in units of Z0 */
 
 /* Left must lie left of right, or neither counts. Where base_near lies between them is not asked: the gate judges it. */
@@ -224,6 +228,18 @@ float goe_observation_size_variance(const goe_observation_t *obs) {
                              : (obs->state[GOE_FRONT_X] + goe_absolute(obs->state[GOE_SIDE_X])) /
                                    goe_larger(goe_observation_reference(obs).z, WIDTH_AHEAD_MIN);
     return goe_square(obs->outline_share * width);
+}
+
+void goe_observation_prior(const goe_observation_t *obs, const float state[GOE_STATES], float size,
+                           float sd[GOE_STATES]) {
+    const goe_navigation_t *navigation = &obs->settings->navigation;
+    const float bias = navigation->attitude_bias_sd_deg * GOE_RAD_PER_DEG;
+    sd[GOE_BIAS_X] = bias;
+    sd[GOE_BIAS_Y] = bias;
+    sd[GOE_BIAS_Z] = sqrtf(goe_square(bias) + goe_square(HEADING_ARM * navigation->velocity_bias_sd_m_s));
+    sd[GOE_BEARING] = BEARING_FREEDOM;
+    sd[GOE_INVERSE_RANGE] = RANGE_FREEDOM * state[GOE_INVERSE_RANGE];
+    sd[GOE_TOP] = TOP_FREEDOM * goe_larger(goe_absolute(state[GOE_TOP]), size);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ rows -- */

@@ -96,6 +96,13 @@ static inline float goe_observation_height_variance(const goe_observation_t *obs
     return obs->height_sd_m * obs->height_sd_m + ground_m * ground_m;
 }
 
+/* One sigma of what a first image leaves open, whatever the model: attitude bias, bearing, range, and the top of an obstacle of that
+ * size. */
+/*@ requires goe_observation_is_open(obs) && \valid_read(state + (0 .. GOE_STATES - 1));
+    requires \valid(sd + (0 .. GOE_STATES - 1)); */
+void goe_observation_prior(const goe_observation_t *obs, const float state[GOE_STATES], float size,
+                           float sd[GOE_STATES]);
+
 /* The process noise that is due goes into the filter: before rows do, and before the model changes. */
 static inline void goe_observation_age(goe_filter_t *filter, const goe_observation_t *obs) {
     goe_filter_age(filter, &obs->settings->navigation, obs->since_s);

@@ -22,11 +22,7 @@
 #define RANGE_MIN_M 1.0f       /* of a first guess */
 #define RANGE_MAX_M 1.0e6f     /* the same */
 #define NO_ALTIMETER_M 50.0f   /* sigma of the height from which on the first box sets it */
-#define HEADING_ARM 0.08f      /* s/m: a yaw bias this large per m/s looks like a velocity bias */
-#define BEARING_FREEDOM 1.0f   /* one sigma of the first guess of X0/Z0 */
-#define RANGE_FREEDOM 2.0f     /* ... of 1/Z0, relative */
-#define HALF_FREEDOM 2.5f      /* ... of the half width, in widths */
-#define TOP_FREEDOM 10.0f      /* ... of the top, in the larger of top and width */
+#define HALF_FREEDOM 2.5f      /* one sigma of the first guess of the half width, in widths */
 #define SHEAR_FREEDOM 0.6f     /* ... of the shear, in half widths */
 #define DEPTH_FREEDOM 1.0f   /* ... of the log of the depth: a population of masts, cars and houses, in any direction */
 #define DEPTH_TURNED 0.3f    /* sine of the turn of the line of sight from which on images give the depth */
@@ -226,26 +222,14 @@ static float first_range_m(const goe_observation_t *obs, float size, const goe_p
 }
 
 static void set_root(const goe_observation_t *obs, const float state[GOE_STATES], float width, goe_triangle_t *root) {
-    const goe_settings_t *settings = obs->settings;
-    const goe_navigation_t *navigation = &settings->navigation;
-    const float bias = navigation->attitude_bias_sd_deg * GOE_RAD_PER_DEG;
-    const float q = state[GOE_INVERSE_RANGE];
-    const bool disc = settings->model == GOE_MODEL_DISC;
+    const bool disc = obs->settings->model == GOE_MODEL_DISC;
     float sd[GOE_STATES];
-    sd[GOE_BIAS_X] = bias;
-    sd[GOE_BIAS_Y] = bias;
-    sd[GOE_BIAS_Z] = sqrtf(goe_square(bias) + goe_square(HEADING_ARM * navigation->velocity_bias_sd_m_s));
-    sd[GOE_GROUND] = goe_larger(height_sd_m(obs) * q, GROUND_MIN);
-    sd[GOE_BEARING] = BEARING_FREEDOM;
-    sd[GOE_INVERSE_RANGE] = RANGE_FREEDOM * q;
+    goe_observation_prior(obs, state, width, sd);
+    sd[GOE_GROUND] = goe_larger(height_sd_m(obs) * state[GOE_INVERSE_RANGE], GROUND_MIN);
     sd[GOE_PRISM_SHEAR] = (disc ? DISC_FREEDOM : SHEAR_FREEDOM) * state[GOE_PRISM_HALF];
     sd[GOE_PRISM_HALF] = HALF_FREEDOM * width;
-    sd[GOE_TOP] = TOP_FREEDOM * goe_larger(goe_absolute(state[GOE_TOP]), width);
     sd[GOE_PRISM_DEPTH] = disc ? DISC_FREEDOM : DEPTH_FREEDOM;
-    goe_srif_clear(root);
-    for (size_t i = 0; i < GOE_STATES; i++) {
-        root->element[goe_srif_row(i) + i] = 1.0f / sd[i];
-    }
+    goe_srif_from_sigmas(sd, root);
 }
 
 bool goe_prism_start(const goe_observation_t *obs, float state[GOE_STATES], goe_triangle_t *root) {

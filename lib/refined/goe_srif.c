@@ -446,6 +446,13 @@ void goe_srif_from_covariance(float covariance[GOE_KEPT][GOE_KEPT], const float 
     }
 }
 
+void goe_srif_from_sigmas(const float sigma[GOE_STATES], goe_triangle_t *root) {
+    goe_srif_clear(root);
+    for (size_t i = 0; i < GOE_STATES; i++) {
+        root->element[goe_srif_row(i) + i] = 1.0f / sigma[i];
+    }
+}
+
 /* ------------------------------------------------------------------------------------------------------ other states -- */
 
 GOE_STATIC_ASSERT(GOE_CHANGED <= GOE_ROWS_MAX && GOE_CHANGED < GOE_STATES, the_changed_states_fit_into_the_rows);

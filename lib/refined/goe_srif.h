@@ -121,6 +121,9 @@ void goe_srif_marginal(const goe_triangle_t *root, float covariance[GOE_KEPT][GO
 void goe_srif_from_covariance(float covariance[GOE_KEPT][GOE_KEPT], const float sigma[GOE_STATES - GOE_KEPT],
                               goe_triangle_t *root);
 
+/* R of independent errors. */
+void goe_srif_from_sigmas(const float sigma[GOE_STATES], goe_triangle_t *root);
+
 /* Derivatives of the last GOE_CHANGED states, by as many others that take their place. */
 #define GOE_CHANGED 7
 typedef struct {
