@@ -128,10 +128,10 @@ fn constant_assertions(ffi: &str) -> String {
 fn estimator_bytes() -> usize {
     match (has("window"), has("filter"), has("target_motion")) {
         (_, false, _) => 944,
-        (true, true, false) => 2368,
-        (false, true, false) => 2016,
-        (true, true, true) => 2936,
-        (false, true, true) => 2584,
+        (true, true, false) => 1640,
+        (false, true, false) => 1288,
+        (true, true, true) => 1952,
+        (false, true, true) => 1600,
     }
 }
 

@@ -12,7 +12,7 @@ use crate::Error;
 use crate::{Decision, DecisionRule, Error, Hazard, Intent};
 use crate::{Estimate, Fault, Image, Settings};
 
-/// Follows one obstacle. It is all the memory there is (at most 2,936 bytes), may lie anywhere and be moved, copied or handed to
+/// Follows one obstacle. It is all the memory there is (at most 1,952 bytes), may lie anywhere and be moved, copied or handed to
 /// another thread.
 #[derive(Clone)]
 #[repr(transparent)]
