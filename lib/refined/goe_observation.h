@@ -96,10 +96,8 @@ static inline float goe_observation_height_variance(const goe_observation_t *obs
     return obs->height_sd_m * obs->height_sd_m + ground_m * ground_m;
 }
 
-/* One sigma of what a first image leaves open, whatever the model: attitude bias, bearing, range, and the top of an obstacle of that
+/* One sigma of the states that a first image leaves open, whatever the model: attitude bias, bearing, range, and the top of an obstacle of that
  * size. */
-/*@ requires goe_observation_is_open(obs) && \valid_read(state + (0 .. GOE_STATES - 1));
-    requires \valid(sd + (0 .. GOE_STATES - 1)); */
 void goe_observation_prior(const goe_observation_t *obs, const float state[GOE_STATES], float size,
                            float sd[GOE_STATES]);
 

@@ -53,7 +53,7 @@ typedef struct {
     goe_support_t before, across;
 } goe_aspect_t;
 
-/* camera_m: since the filter's start. What lies behind the camera reaches up to it. */
+/* camera_m: since the filter's start. The part behind the camera counts up to the camera. */
 void goe_prism_face_camera(const goe_filter_t *filter, goe_xz_t camera_m, goe_aspect_t *aspect);
 
 /* Quantities. */
