@@ -235,7 +235,8 @@ static void a_detection_that_is_elsewhere_is_unplaced(void) {
         flown_samples(&flown, flown.sample - 1, &attitude, &own);
         const double deg = DEG_PER_RAD * atan2((double)at[1] - (double)own.position_ned_m[1],
                                                (double)at[0] - (double)own.position_ned_m[0]);
-        const double half_px = 0.75 * ((double)other.box.right_px - (double)other.box.left_px); /* taken as half larger */
+        const double half_px =
+            0.75 * ((double)other.box.right_px - (double)other.box.left_px); /* taken as half larger */
         const double half_deg = DEG_PER_RAD * atan(half_px / (double)camera->focal_px[0]);
         TEST_ASSERT_TRUE(missing > 0 || fabs(deg - box_deg) < fmax(5.0, half_deg));
         const int sector = (int)((box_deg + 360.0) / 5.0 + 0.5) % GOE_FLIGHT_SECTORS;
