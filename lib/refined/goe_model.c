@@ -89,6 +89,7 @@ void goe_model_rows(const goe_filter_t *filter, goe_observation_t *obs, goe_rows
         default:
             obs->stand_in = filter->candidate.stand_in;
             goe_disc_rows(obs, rows);
+            break;
     }
 }
 
@@ -146,6 +147,7 @@ void goe_model_shape(const goe_filter_t *filter, goe_shape_t *shape) {
         case GOE_PHASE_NONE:
         default:
             goe_disc_shape(filter, shape);
+            break;
     }
 }
 
