@@ -260,8 +260,9 @@ GOE_STATIC_ASSERT(GOE_X0 == 0 && GOE_Z0 == 1, the_place_comes_first);
 static void set_quantities(const goe_filter_t *filter, const goe_motion_t *motion, goe_shape_t *shape, drift_t drift,
                            const widening_t *wider, goe_quantities_t *q, deviation_t place[2]) {
     const float elapsed_s = goe_filter_elapsed_s(filter, motion);
+    deviation_t other;
+    memset(&other, 0, sizeof other);
     for (int i = 0; i < GOE_QUANTITIES; i++) {
-        deviation_t other;
         deviation_t *error = i <= GOE_Z0 ? &place[i] : &other;
         error->by = shape->quantity[i].by;
         error->skewed = 0.0f;
@@ -312,6 +313,8 @@ static void set_center(const goe_filter_t *filter, const goe_motion_t *motion, c
     float by[2][GOE_STATES];
     deviation_t north;
     deviation_t east;
+    memset(&north, 0, sizeof north);
+    memset(&east, 0, sizeof east);
     north.by = by[0];
     east.by = by[1];
     goe_motion_place(motion, middle.x * shape->scale_m + filter->axes.start_dx_m + gone.x,

@@ -140,5 +140,5 @@ def test_a_track_goes_on_from_one_camera_to_the_other(
         assert max(center_error(row, log.truth) for row in rows[change:]) < 3.0
         before, last = (float(rows[k]["center_n_sd_m"]) for k in (change - 1, -1))
         assert last < before * (
-            0.6 if "boxes" in passage else 1.01
-        )  # by points: as small as the drift of the position allows
+            0.75 if "boxes" in passage else 1.01
+        )  # by points: as small as the drift of the position allows; by boxes the depth remains

@@ -11,7 +11,7 @@
 #include "scripted_estimator.h"
 
 #define SENSOR_STACK_BYTES 1536
-#define GOE_STACK_BYTES 4096
+#define GOE_STACK_BYTES 5120
 #define SENSOR_PRIORITY 5 /* before the estimator: samples are late otherwise */
 #define GOE_PRIORITY 7
 #define QUEUE_LENGTH 16 /* the estimator may sleep for 0.25 s */
