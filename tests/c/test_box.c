@@ -365,6 +365,7 @@ static void lay(double deg) {
 
 static void start_at(double deg) {
     memset(&filter, 0, sizeof filter);
+    inverse_start(&filter.root, 1.0e-3);
     filter.axes.turn_cos = 1.0f;
     goe_box_enter(&filter, GOE_PHASE_BOX);
     lay(deg);
