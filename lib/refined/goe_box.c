@@ -69,7 +69,7 @@ void goe_box_edges(const float state[GOE_STATES], goe_box_edges_t *edges) {
     e->sum = sum;
     e->sign = sign;
     e->side.along.x = x[GOE_SIDE_X];
-    e->side.along.z = d > 0.0f ? larger : smaller;
+    e->side.along.z = goe_larger(d > 0.0f ? larger : smaller, SUM_MIN); /* 0 of a state with a flipped bit */
     e->side.by[0] = sign * x[GOE_FRONT_X] / sum;
     e->side.by[1] = across / sum;
     e->side.by[2] = e->side.along.z / sum;
@@ -78,8 +78,8 @@ void goe_box_edges(const float state[GOE_STATES], goe_box_edges_t *edges) {
     e->front.by[0] = -sign * e->side.by[0];
     e->front.by[1] = -sign * e->side.by[1];
     e->front.by[2] = -e->front.along.z / sum;
-    e->side.length = sqrtf(goe_xz_dot(e->side.along, e->side.along));
-    e->front.length = sqrtf(goe_xz_dot(e->front.along, e->front.along));
+    e->side.length = goe_larger(sqrtf(goe_xz_dot(e->side.along, e->side.along)), SUM_MIN);
+    e->front.length = goe_larger(sqrtf(goe_xz_dot(e->front.along, e->front.along)), SUM_MIN);
 }
 
 void goe_box_enter(goe_filter_t *filter, goe_phase_t phase) {

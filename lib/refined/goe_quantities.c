@@ -388,8 +388,11 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
     q->known = 0;
     q->sigma[GOE_ORIENTATION] = 0.0f;
     q->worked_out[GOE_ORIENTATION] = 0.0f;
+    if (!(filter->state[GOE_INVERSE_RANGE] > 0.0f)) {
+        return;
+    }
     goe_model_shape(filter, &shape);
-    if (!(filter->state[GOE_INVERSE_RANGE] > 0.0f) || !(shape.scale_m > 0.0f)) {
+    if (!(shape.scale_m > 0.0f)) { /* of a disc, by its condition */
         return;
     }
     const drift_t drift = drift_of(filter, &settings->navigation, motion);
