@@ -154,9 +154,9 @@ static void add_sides(const goe_observation_t *obs, const circle_t *o, float sha
     goe_solid_t solid;
     goe_touch_open(obs, obs->height_m, &solid);
     solid.center = o->center;
-    solid.half = 0.5f * obs->state[GOE_FRONT_X];
-    solid.shear = 0.0f;
-    solid.depth = solid.half;
+    solid.ellipse.half = 0.5f * obs->state[GOE_FRONT_X];
+    solid.ellipse.shear = 0.0f;
+    solid.ellipse.depth = solid.ellipse.half;
     solid.corners = 0;
     const float width = goe_touch_size(obs, GOE_BOX_LEFT, obs->state[GOE_FRONT_X]);
     const float height = goe_touch_size(obs, GOE_BOX_TOP, solid.ground - solid.roof);

@@ -14,7 +14,7 @@
 #if GOE_WITH_FILTER
 
 #define RAY_AHEAD_MIN 0.02f    /* third component of a ray that is faced */
-#define DEPTH_MAX 2.0f         /* |s|: 7 times as deep as wide, or as flat */
+#define DEPTH_MAX 2.0f         /* |d|, and its sigma in (R33): 7 times as deep as wide, or as flat */
 #define SHIFT_RATIO_MAX 300.0f /* of a shift that rows share, over a row's own noise */
 #define GROUND_SIGMAS 3.0f     /* by which the foot must lie below the horizon to give the range */
 #define FOOT_SHARE 0.6f        /* of box_noise_rel of the width, in that sigma */
@@ -27,8 +27,8 @@
 #define DEPTH_FREEDOM 1.0f   /* ... of the log of the depth: a population of masts, cars and houses, in any direction */
 #define DEPTH_TURNED 0.3f    /* sine of the turn of the line of sight from which on images give the depth */
 #define BENT_MIN 0.01f       /* sigma of the log of the depth below which its exponential is a line */
-#define DISC_FREEDOM 1.0e-3f /* both, where a disc is configured */
-#define NEAR_MIN 1.0e-9f     /* of the footprint, and of its distance, units of Z0 */
+#define DISC_FREEDOM 1.0e-3f /* of shear and depth, where a disc is configured */
+#define NEAR_MIN 1.0e-9f     /* of the half width, and of the distance, units of Z0 */
 #define GROUND_MIN 1.0e-6f   /* one sigma of the ground's offset, units of Z0 */
 #define BOX_SIZE_MIN 1.0e-12f /* of a box, angular: a smaller one gives no range */
 
@@ -37,13 +37,16 @@ GOE_STATIC_ASSERT(sizeof(((goe_filter_t *)0)->side) == GOE_BOX_SIDES * sizeof(go
 
 /* -------------------------------------------------------------------------------------------------------------- rows -- */
 
+static void set_footprint(const float x[GOE_STATES], goe_ellipse_t *footprint) {
+    footprint->half = x[GOE_PRISM_HALF];
+    footprint->shear = x[GOE_PRISM_SHEAR];
+    footprint->depth = footprint->half * goe_exp(x[GOE_PRISM_DEPTH]);
+}
+
 /*@ requires goe_observation_is_open(obs) && \valid(o); */
 static void describe(const goe_observation_t *obs, goe_solid_t *o) {
-    const float *x = obs->state;
     o->center = goe_observation_reference(obs);
-    o->half = x[GOE_PRISM_HALF];
-    o->shear = x[GOE_PRISM_SHEAR];
-    o->depth = o->half * goe_exp(x[GOE_PRISM_DEPTH]);
+    set_footprint(obs->state, &o->ellipse);
     o->corners = 0;
     goe_touch_open(obs, obs->steady_height_m, o);
 }
@@ -67,12 +70,12 @@ static void add_side(const goe_observation_t *obs, const goe_solid_t *o, size_t 
         return;
     }
     const float outward = g.x * t.outward.x + g.z * t.outward.z;
-    const float per_reach = outward / t.reach;
+    const float per_reach = outward / t.reach.length;
     goe_rows_place(by, obs, g.x, g.z);
     by[GOE_INVERSE_RANGE] += g.y * obs->steady_height_m;
-    by[GOE_PRISM_SHEAR] = per_reach * t.across * t.outward.z;
-    by[GOE_PRISM_HALF] = per_reach * (t.across * t.outward.x + t.along * t.along / o->half);
-    by[GOE_PRISM_DEPTH] = per_reach * t.along * t.along;
+    by[GOE_PRISM_SHEAR] = per_reach * t.reach.across * t.outward.z;
+    by[GOE_PRISM_HALF] = per_reach * (t.reach.across * t.outward.x + t.reach.along * t.reach.along / o->ellipse.half);
+    by[GOE_PRISM_DEPTH] = per_reach * t.reach.along * t.reach.along;
     const float shift = -obs->position_sd * obs->state[GOE_INVERSE_RANGE];
     float *common = rows->shift[rows->count - 1u];
     common[0] = shift * g.x;
@@ -294,15 +297,12 @@ float goe_prism_bend(const goe_filter_t *filter) {
     return sd > BENT_MIN ? (goe_exp(sd) - 1.0f) / sd : 1.0f;
 }
 
-/* (R25). */
-static void support(const float x[GOE_STATES], goe_xz_t outward, goe_support_t *to) {
-    const float half = x[GOE_PRISM_HALF];
-    const float across = half * outward.x + x[GOE_PRISM_SHEAR] * outward.z;
-    const float along = half * goe_exp(x[GOE_PRISM_DEPTH]) * outward.z;
-    to->reach = goe_larger(sqrtf(across * across + along * along), NEAR_MIN);
-    to->by_shear = across * outward.z / to->reach;
-    to->by_half = (across * outward.x + along * along / goe_larger(half, NEAR_MIN)) / to->reach;
-    to->by_depth = along * along / to->reach;
+static void support(const goe_ellipse_t *footprint, goe_xz_t outward, goe_support_t *to) {
+    const goe_reach_t r = goe_touch_reach(footprint, outward);
+    to->reach = r.length;
+    to->by_shear = r.across * outward.z / r.length;
+    to->by_half = (r.across * outward.x + r.along * r.along / goe_larger(footprint->half, NEAR_MIN)) / r.length;
+    to->by_depth = r.along * r.along / r.length;
 }
 
 void goe_prism_face_camera(const goe_filter_t *filter, goe_xz_t camera_m, goe_aspect_t *aspect) {
@@ -312,9 +312,11 @@ void goe_prism_face_camera(const goe_filter_t *filter, goe_xz_t camera_m, goe_as
     const float range = goe_larger(sqrtf(goe_xz_dot(middle, middle)), NEAR_MIN);
     const goe_xz_t towards = {-middle.x / range, -middle.z / range};
     const goe_xz_t right = {towards.z, -towards.x};
+    goe_ellipse_t footprint;
+    set_footprint(x, &footprint);
     aspect->towards = towards;
-    support(x, towards, &aspect->before);
-    support(x, right, &aspect->across);
+    support(&footprint, towards, &aspect->before);
+    support(&footprint, right, &aspect->across);
     aspect->before.reach = aspect->before.reach < range ? aspect->before.reach : range;
 }
 

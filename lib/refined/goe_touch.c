@@ -9,7 +9,6 @@
 #if GOE_WITH_FILTER
 
 #define LEVEL_MIN 1.0e-6f          /* horizontal part of a side's normal: without one the nearest point touches */
-#define REACH_MIN 1.0e-9f          /* of the footprint, units of Z0 */
 #define HIDDEN_VARIANCE 5.3333333f /* of half the edge squared: uniform, 1/3, times 16 images that share it */
 #define SCATTER_SHARE 0.01f        /* white part of a side's error, of the box's size */
 
@@ -95,11 +94,11 @@ static void reach_rim(const goe_solid_t *solid, const float n[3], goe_touch_t *t
     const bool tilts = level > LEVEL_MIN;
     t->outward.x = tilts ? n[0] / level : 0.0f;
     t->outward.z = tilts ? n[2] / level : -1.0f;
-    t->across = solid->half * t->outward.x + solid->shear * t->outward.z;
-    t->along = solid->depth * t->outward.z;
-    t->reach = goe_larger(sqrtf(t->across * t->across + t->along * t->along), REACH_MIN);
-    t->point[0] = solid->center.x + solid->half * t->across / t->reach;
-    t->point[2] = solid->center.z + (solid->shear * t->across + solid->depth * t->along) / t->reach;
+    const goe_ellipse_t *e = &solid->ellipse;
+    const goe_reach_t r = goe_touch_reach(e, t->outward);
+    t->reach = r;
+    t->point[0] = solid->center.x + e->half * r.across / r.length;
+    t->point[2] = solid->center.z + (e->shear * r.across + e->depth * r.along) / r.length;
 }
 
 typedef enum { FOOT, HEAD, EITHER } end_t;

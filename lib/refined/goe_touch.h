@@ -6,13 +6,36 @@
 #ifndef GOE_TOUCH_H
 #define GOE_TOUCH_H
 
+#include <math.h>
+
 #include "refined/goe_observation.h"
+
+/* A horizontal ellipse: A v from its middle, abs(v) <= 1, with A = (half 0; shear depth), across and along Z; units of Z0. */
+typedef struct {
+    float half, shear, depth;
+} goe_ellipse_t;
+
+/* How far it reaches along a horizontal unit vector. */
+typedef struct {
+    float across, along; /* A' times that vector ... */
+    float length;        /* ... and the length of this, the support function */
+} goe_reach_t;
+
+#define GOE_REACH_MIN 1.0e-9f /* of the footprint, units of Z0 */
+
+/* (R25). */
+static inline goe_reach_t goe_touch_reach(const goe_ellipse_t *ellipse, goe_xz_t outward) {
+    const float across = ellipse->half * outward.x + ellipse->shear * outward.z;
+    const float along = ellipse->depth * outward.z;
+    const goe_reach_t reach = {across, along, goe_larger(sqrtf(across * across + along * along), GOE_REACH_MIN)};
+    return reach;
+}
 
 /* An upright solid relative to the camera now, in the state's axes and units of Z0. Its footprint is the convex hull of its
  * corners or, without corners, an ellipse. */
 typedef struct {
     goe_xz_t center;
-    float half, shear, depth; /* of the ellipse: A = (half 0; shear depth), across and along Z */
+    goe_ellipse_t ellipse;
     const goe_xz_t *corner;
     size_t corners;
     float ground, roof;            /* Y; as the next: goe_touch_open() */
@@ -24,8 +47,7 @@ typedef struct {
     float point[3];       /* from the camera, the state's axes */
     float x, y, nearness; /* the point in the image, focal lengths, no lens; 1/(range along the optical axis) */
     goe_xz_t outward;     /* unit normal of the plane, horizontal part */
-    float across, along;  /* of the ellipse: A' outward ... */
-    float reach;          /* ... and its length, the support function */
+    goe_reach_t reach;    /* of an ellipse, along that */
     size_t corner;        /* of a hull: the one that is touched */
     bool foot;            /* at the foot, not at the head */
 } goe_touch_t;
