@@ -105,7 +105,7 @@ void goe_conflict_add_intent(const goe_estimator_t *estimator, const goe_intent_
     covariance[GOE_HEIGHT][GOE_HEIGHT] += sd_m * sd_m;
 }
 
-/* The circle about a reference point, as near as the obstacle is. */
+/* The circle about a reference point, as near as the obstacle is; its covariance is that of goe_quantities_covariance(). */
 static void meet_near_side(const goe_estimator_t *estimator, goe_outline_t *outline) {
     const goe_xz_t at = outline->reference;
     const float range_m = sqrtf(goe_xz_dot(at, at));

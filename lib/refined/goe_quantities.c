@@ -364,6 +364,12 @@ static void doubt_far_roof(const goe_filter_t *filter, bool highest, goe_shape_t
     }
 }
 
+/* (R33). The near side, which a hazard meets, hardly depends on the depth: there the derivative suffices. */
+static float bend_of(const goe_filter_t *filter, bool for_hazard) {
+    const bool bends = goe_filter_traits(filter)->is_ellipse && !for_hazard;
+    return bends ? goe_prism_bend(filter) : 1.0f;
+}
+
 /* What the answer is less certain by; of a disc its shape learns of it, too. */
 static void widening_of(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
                         drift_t drift, goe_shape_t *shape, widening_t *wider) {
@@ -397,7 +403,7 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
     }
     const drift_t drift = drift_of(filter, &settings->navigation, motion);
     widening_of(filter, settings, motion, drift, &shape, &wider);
-    wider.bend = goe_prism_bend(filter);
+    wider.bend = bend_of(filter, false);
     q->before_m2 = variance_before(filter, &settings->navigation, motion);
     q->model = goe_filter_traits(filter)->model;
     q->box = goe_filter_is_box(filter);
@@ -431,7 +437,8 @@ static void add_to_footprint(float factor, float scale_m, const goe_support_t *r
     by[GOE_INVERSE_RANGE] -= factor * scale_m * (reach->reach - (less ? less->reach : 0.0f));
 }
 
-/* What decides a warning is the near side, which images show, not the middle, which hangs on the depth. */
+/* What decides a warning is the near side, which images show, not the middle, which depends on the depth. The values are those of
+ * goe_conflict.c. */
 static void meet_near_side(const goe_filter_t *filter, goe_xz_t camera_m, goe_shape_t *shape) {
     goe_aspect_t aspect;
     if (!goe_filter_traits(filter)->is_ellipse) {
@@ -460,7 +467,7 @@ void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t 
         meet_near_side(filter, drift.camera_m, &shape);
     }
     widening_of(filter, settings, motion, drift, &shape, &wider);
-    wider.bend = for_hazard ? 1.0f : goe_prism_bend(filter);
+    wider.bend = bend_of(filter, for_hazard);
     const float scatter = sqrtf(wider.scatter);
     const float corner = sqrtf(shape.corner_growth) * scatter;
     const float elapsed_s = goe_filter_elapsed_s(filter, motion) + ahead_s;

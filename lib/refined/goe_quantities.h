@@ -10,7 +10,7 @@ typedef struct {
     unsigned known;              /* ... and the one before knew, too; 0: the rest does not hold */
     float value[GOE_QUANTITIES]; /* X0, Z0 from the track's first image, T axes; m, orientation in rad */
     float sigma[GOE_QUANTITIES];
-    float worked_out[GOE_QUANTITIES]; /* ... excluding unobservable depth: decides on validity */
+    float worked_out[GOE_QUANTITIES]; /* ... excluding a prism's depth: decides on validity */
     float before_m2;      /* variance of X0 and Z0 by what the own position drifted before the filter's start */
     goe_xz_t length_axis; /* unit vector, T axes */
     bool moves;           /* and is followed; the place is that at the latest image ... */
