@@ -6,6 +6,7 @@
 #include "goe_covariance.h"
 #include "refined/goe_filter.h"
 #include "refined/goe_prism.h"
+#include "rim.h"
 #include "scene.h"
 
 #define FLIGHTS 60
@@ -223,15 +224,7 @@ static double reach_by_state(void) {
         const double ahead_x = (double)x[GOE_BEARING] - (double)camera.x * q;
         const double ahead_z = 1.0 - (double)camera.z * q;
         const double range = hypot(ahead_x, ahead_z);
-        double reach = 0.0;
-        for (int i = 0; i < 3600; i++) { /* of the rim, across the line of sight */
-            const double at = i * (6.283185307179586 / 3600.0);
-            const double across = (double)x[GOE_PRISM_HALF] * sin(at);
-            const double along = (double)x[GOE_PRISM_SHEAR] * sin(at) +
-                                 (double)x[GOE_PRISM_HALF] * exp((double)x[GOE_PRISM_DEPTH]) * cos(at);
-            reach = fmax(reach, (across * ahead_z - along * ahead_x) / range);
-        }
-        return reach / q;
+        return rim_reach(x, ahead_z / range, -ahead_x / range) / q;
     }
     const double side = estimator.filter.phase >= GOE_PHASE_BOX_FACE ? fabs((double)x[GOE_SIDE_X]) : 0.0;
     return 0.5 * ((double)x[GOE_FRONT_X] + side) / q;

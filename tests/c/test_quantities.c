@@ -13,6 +13,7 @@
 #include "inverse.h"
 #include "refined/goe_box.h"
 #include "refined/goe_disc.h"
+#include "rim.h"
 
 #define CASES 100
 #define SHARE 0.02 /* differences of floats */
@@ -116,29 +117,34 @@ static void values_of(double values[VALUES]) {
     values[EAST] = (double)q.center_m[1];
 }
 
+/* Derivatives by the states, as differences. share: of a state's sigma that a step is. */
+static void differentiate(void (*of)(double values[VALUES]), double share, double slope[VALUES][GOE_STATES]) {
+    for (size_t k = 0; k < GOE_STATES; k++) {
+        double up[VALUES] = {0.0};
+        double down[VALUES] = {0.0};
+        const float at = filter.state[k];
+        const float step = (float)(share * sigma_of[k]);
+        filter.state[k] = at + step;
+        const float above = filter.state[k];
+        of(up);
+        filter.state[k] = at - step;
+        const float below = filter.state[k];
+        of(down);
+        filter.state[k] = at;
+        for (size_t i = 0; i < VALUES; i++) {
+            slope[i][k] = (up[i] - down[i]) / ((double)above - (double)below);
+        }
+    }
+}
+
 /* J C J', J by differences. */
 static double by[VALUES][GOE_STATES];
 
-static void expected_covariance(double expected[VALUES][VALUES]) {
+static void covariance_by(void (*of)(double values[VALUES]), double share, double expected[VALUES][VALUES]) {
     double c[GOE_STATES][GOE_STATES];
     double half[VALUES][GOE_STATES];
     covariance_of(c);
-    for (size_t k = 0; k < GOE_STATES; k++) {
-        double up[VALUES];
-        double down[VALUES];
-        const float at = filter.state[k];
-        const float step = (float)(0.1 * sigma_of[k]);
-        filter.state[k] = at + step;
-        const float above = filter.state[k];
-        values_of(up);
-        filter.state[k] = at - step;
-        const float below = filter.state[k];
-        values_of(down);
-        filter.state[k] = at;
-        for (size_t i = 0; i < VALUES; i++) {
-            by[i][k] = (up[i] - down[i]) / ((double)above - (double)below);
-        }
-    }
+    differentiate(of, share, by);
     for (size_t i = 0; i < VALUES; i++) {
         for (size_t l = 0; l < GOE_STATES; l++) {
             half[i][l] = 0.0;
@@ -157,8 +163,10 @@ static void expected_covariance(double expected[VALUES][VALUES]) {
     }
 }
 
+static void expected_covariance(double expected[VALUES][VALUES]) { covariance_by(values_of, 0.1, expected); }
+
 /* On purpose: a box's corner by a poorly known depth counts more. */
-static double early_of(void) {
+static double corner_growth_of(void) {
     goe_box_edges_t edges;
     goe_box_edges(filter.state, &edges);
     const double sum = (double)edges.sum;
@@ -176,8 +184,6 @@ static void sight_of(double *x_m, double *z_m) {
     *z_m = 1.0 / q - (double)camera.z;
 }
 
-/* On purpose: the middle of a shape that is no disc may differ from the obstacle's, its ends change, and the roof's corner below the top
- * is off the middle as well. share: of that, 1 of a chord. */
 /* The square of the sine of the angle under which the top is viewed from the camera's height. */
 static double below2(void) {
     goe_quantities_t q;
@@ -190,6 +196,8 @@ static double below2(void) {
     return below / (range + below);
 }
 
+/* On purpose: the middle of a shape that is no disc may differ from the obstacle's, its ends change, and the roof's corner below the top
+ * is off the middle as well. share: of that, 1 of a chord. */
 static double beyond(int value, double share, double of_width) {
     goe_quantities_t q;
     goe_quantities_find(&filter, &settings, &motion, &q);
@@ -258,7 +266,7 @@ static void sigmas_are_those_of_the_state(void) {
         TEST_ASSERT_TRUE(quantities.known & GOE_HAS_POSITION);
         expected_covariance(expected);
         for (int i = 0; i < VALUES; i++) {
-            expected[i][i] = expected[i][i] * (is_of_corner(i) ? early_of() : 1.0) + beyond_of(i);
+            expected[i][i] = expected[i][i] * (is_of_corner(i) ? corner_growth_of() : 1.0) + beyond_of(i);
         }
         for (int i = 0; i < GOE_QUANTITIES; i++) {
             if (expected[i][i] > 0.0) {
@@ -297,28 +305,18 @@ static void unobserved_depth_silences_nothing(void) {
     }
 }
 
-/* How far the rim of a prism reaches along (nx, nz), the state's axes, units of Z0: by many points. */
-static double rim_along(double nx, double nz) {
-    const double half = (double)filter.state[GOE_PRISM_HALF];
-    double reach = 0.0;
-    for (int i = 0; i < 20000; i++) {
-        const double at = i * (6.283185307179586 / 20000);
-        const double z = (double)filter.state[GOE_PRISM_SHEAR] * sin(at) +
-                         half * exp((double)filter.state[GOE_PRISM_DEPTH]) * cos(at);
-        reach = fmax(reach, nx * half * sin(at) + nz * z);
-    }
-    return reach;
-}
-
 enum { MET_X, MET_Z, MET_WIDTH, MET };
 
-/* X and Z, T axes, and diameter, m, of the circle that is as wide across the line of sight, and as near, as the rim of a prism. */
-static void met_circle(goe_xz_t towards, double met[MET]) {
+static goe_xz_t towards; /* the camera */
+
+/* X and Z, T axes, and diameter, m, of the circle that is as wide across the line of sight, and as near, as the rim of a prism; for a
+ * constant line of sight. */
+static void met_circle(double met[VALUES]) {
     const double q = (double)filter.state[GOE_INVERSE_RANGE];
     const double nx = (double)towards.x;
     const double nz = (double)towards.z;
-    const double across = rim_along(nz, -nx);
-    const double nearer = rim_along(nx, nz) - across;
+    const double across = rim_reach(filter.state, nz, -nx);
+    const double nearer = rim_reach(filter.state, nx, nz) - across;
     const double x = ((double)filter.state[GOE_BEARING] + nx * nearer) / q;
     const double z = (1.0 + nz * nearer) / q;
     const double c = (double)filter.axes.turn_cos;
@@ -328,26 +326,6 @@ static void met_circle(goe_xz_t towards, double met[MET]) {
     met[MET_WIDTH] = 2.0 * across / q;
 }
 
-/* Its derivatives by the states, for a constant line of sight. */
-static void differentiate_circle(goe_xz_t towards, double slope[MET][GOE_STATES]) {
-    for (size_t k = 0; k < GOE_STATES; k++) {
-        double up[MET];
-        double down[MET];
-        const float at = filter.state[k];
-        const float step = (float)(0.05 * sigma_of[k]);
-        filter.state[k] = at + step;
-        const double above = (double)filter.state[k];
-        met_circle(towards, up);
-        filter.state[k] = at - step;
-        met_circle(towards, down);
-        const double wide = above - (double)filter.state[k];
-        filter.state[k] = at;
-        for (size_t i = 0; i < MET; i++) {
-            slope[i][k] = (up[i] - down[i]) / wide;
-        }
-    }
-}
-
 /* [goe_hazard]
  * GIVEN any prism THEN a hazard's covariance of its place and its width is that of the circle that is as wide across the line of sight, and
  * as near to the camera, as its footprint. */
@@ -355,33 +333,26 @@ static void a_hazard_meets_the_near_side_of_a_prism(void) {
     static const int quantity[MET] = {GOE_X0, GOE_Z0, GOE_WIDTH};
     any = check_random_start("near side");
     for (int n = 0; n < CASES; n++) {
-        double c[GOE_STATES][GOE_STATES];
-        double slope[MET][GOE_STATES];
+        double expected[VALUES][VALUES];
         float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
         goe_aspect_t aspect;
         make_any(GOE_PHASE_PRISM);
         be_uncertain(CERTAIN);
-        covariance_of(c);
         goe_prism_face_camera(&filter, goe_filter_camera(&filter, &motion), &aspect);
-        differentiate_circle(aspect.towards, slope);
+        towards = aspect.towards;
+        covariance_by(met_circle, 0.05, expected);
         goe_quantities_covariance(&filter, &settings, &motion, true, 0.0f, covariance);
         for (int i = 0; i < MET; i++) {
             for (int j = 0; j < MET; j++) {
-                double expected = 0.0;
-                for (size_t k = 0; k < GOE_STATES; k++) {
-                    for (size_t l = 0; l < GOE_STATES; l++) {
-                        expected += slope[i][k] * c[k][l] * slope[j][l];
-                    }
-                }
                 const double size =
                     sqrt((double)covariance[quantity[i]][quantity[i]] * (double)covariance[quantity[j]][quantity[j]]);
-                CHECK_CLOSE(2.0 * SHARE * size, expected, covariance[quantity[i]][quantity[j]]);
+                CHECK_CLOSE(2.0 * SHARE * size, expected[i][j], covariance[quantity[i]][quantity[j]]);
             }
         }
-        const double nx = (double)aspect.towards.x;
-        const double nz = (double)aspect.towards.z;
-        CHECK_CLOSE(1.0e-6, rim_along(nx, nz), aspect.before.reach);
-        CHECK_CLOSE(1.0e-6, rim_along(nz, -nx), aspect.across.reach);
+        const double nx = (double)towards.x;
+        const double nz = (double)towards.z;
+        CHECK_CLOSE(1.0e-6, rim_reach(filter.state, nx, nz), aspect.before.reach);
+        CHECK_CLOSE(1.0e-6, rim_reach(filter.state, nz, -nx), aspect.across.reach);
     }
 }
 
@@ -483,7 +454,8 @@ static void covariances_are_those_of_the_state(void) {
         goe_quantities_covariance(&filter, &settings, &motion, false, 0.0f, covariance);
         for (int i = 0; i < GOE_QUANTITIES; i++) {
             for (int j = 0; j < GOE_QUANTITIES; j++) {
-                const double factor = sqrt((is_of_corner(i) ? early_of() : 1.0) * (is_of_corner(j) ? early_of() : 1.0));
+                const double factor =
+                    sqrt((is_of_corner(i) ? corner_growth_of() : 1.0) * (is_of_corner(j) ? corner_growth_of() : 1.0));
                 const double more = i == j ? beyond_of(i) : 0.0;
                 const double size = sqrt(expected[i][i] * expected[j][j]);
                 CHECK_CLOSE(2.0 * SHARE * (factor * size + more), factor * expected[i][j] + more, covariance[i][j]);
