@@ -61,9 +61,10 @@ typedef struct {
  * disc, or the valid part of the box. If orientation or length is not valid, the outline is a circle about the reference point
  * with the box's width as diameter. Prism: a circle as wide as the obstacle across the present line of sight, and as near to the
  * camera: upright boxes show the near side well, and the center poorly. With a velocity of 0, dcpa_m is the distance to the near
- * side. In the window method without width, the outline is the reference point alone. An image without a detection changes only the
- * time. A restart of the filter keeps position and size until a new estimate replaces them,
- * or until a feature contradicts them: the obstacle lies behind the camera, the feature ahead. So without a new estimate uncertainty only grows. [A34]
+ * side. In the window method without width, the outline is the reference point alone.
+ * An image without a detection changes only the time. A restart of the filter keeps position and size until a new estimate replaces
+ * them, or until a feature contradicts them: the obstacle lies behind the camera, the feature ahead. So without a new estimate
+ * uncertainty only grows. [A34]
  *   hazard  always written, unless null; all zero after a failure: conflict_probability = 0 then does not mean "safe"
  * Returns GOE_OK, GOE_CONVERGING if there is no position, GOE_NOT_FINITE or GOE_OUT_OF_RANGE for the intent,
  * GOE_BAD_ARGUMENT, GOE_NOT_INITIALIZED, GOE_CORRUPTED.

@@ -96,8 +96,8 @@ static inline float goe_observation_height_variance(const goe_observation_t *obs
     return obs->height_sd_m * obs->height_sd_m + ground_m * ground_m;
 }
 
-/* One sigma of the states that a first image leaves open, whatever the model: attitude bias, bearing, range, and the top of an obstacle of that
- * size. */
+/* One sigma of the states that a first image leaves open, whatever the model: attitude bias, bearing, range, and the top of an
+ * obstacle of that size. */
 void goe_observation_prior(const goe_observation_t *obs, const float state[GOE_STATES], float size,
                            float sd[GOE_STATES]);
 

@@ -73,8 +73,9 @@ float goe_srif_update_considering(goe_triangle_t *root, float nuisance_root, goe
 /*@ requires \valid(root) && \valid_read(direction + (0 .. GOE_STATES - 1)) && first <= last < GOE_STATES; */
 void goe_srif_spread(goe_triangle_t *root, const float direction[GOE_STATES], size_t first, size_t last, float sigma);
 
-/* R^-1' times the unit vector of an unknown, state or estimated augmented state: its error in terms of independent unit errors. It is written
- * from the unknown on, and is 0 before it. The covariance of two unknowns is the product of theirs. Returns the variance. */
+/* R^-1' times the unit vector of an unknown, state or estimated augmented state: its error in terms of independent unit errors. Only
+ * the elements from the unknown on are written; those before it count as 0. The covariance of two unknowns is the product of their parts.
+ * Returns the variance. */
 /*@ requires \valid_read(root) && unknown < GOE_UNKNOWNS && \valid(part + (0 .. GOE_UNKNOWNS - 1)); */
 float goe_srif_part(const goe_triangle_t *root, size_t unknown, float part[GOE_UNKNOWNS]);
 

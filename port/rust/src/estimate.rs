@@ -47,7 +47,7 @@ pub enum Model {
     Line,
     /// A box with an upright, level outline. Filter method.
     Box,
-    /// Something upright by its bounding boxes, whose depth along the line of sight is not known. Filter method.
+    /// Something upright by its bounding boxes, whose depth along the line of sight is not reported. Filter method.
     Prism,
 }
 

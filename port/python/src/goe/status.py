@@ -103,7 +103,7 @@ class Model(IntEnum):
     BOX = 4
     """A box with an upright, level outline. Filter method."""
     PRISM = 5
-    """Something upright by its bounding boxes, whose depth along the line of sight is not known. Filter method."""
+    """Something upright by its bounding boxes, whose depth along the line of sight is not reported. Filter method."""
 
     def __str__(self) -> str:
         return self.name.lower()
