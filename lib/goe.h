@@ -61,7 +61,7 @@
  *   Example: the aircraft is at north 0, east 0, heading north; a chimney of 6 m diameter is at north 200, east -30. Then
  *   Z0 = 200 m, X0 = -30 m, width = 6 m. After 50 m of flight, Z = 150 m.
  *
- * Memory      The caller owns goe_estimator_t, which contains all state: at most 2.0 KiB with default options. [A9] The
+ * Memory      The caller owns goe_estimator_t, which contains all state: at most 2.1 KiB with default options. [A9] The
  *             library uses no heap, static variables or recursion. [A10] Each obstacle has its own estimator and decision.
  * Threads     A function accesses only its arguments' memory. Threads may share an estimator under the caller's lock. [A11]
  * Arithmetic  The library uses float, sqrtf, memcpy and memset only. [A12] With -ffp-contract=off all IEEE 754 targets
@@ -181,8 +181,8 @@ typedef struct {
 } goe_image_noise_t;
 
 /* One image of one obstacle: a box, points or both, with any subset of the features.
- * Box: it replaces the points left, right and top. With base corners goe ignores its bottom. [A29]
- * Points: supply left and right for a disc, two or three base corners for a line or a box, and top for the height. Do not
+ * Box: it replaces the points left, right and top. The box model ignores its bottom. [A29]
+ * Points: supply left and right for a disc or prism, two or three base corners for a line or a box, and top for the height. Do not
  * supply the middles of a box's sides as points: when the camera rolls, the estimated width is too large. */
 typedef struct {
     goe_pose_t pose;
@@ -279,7 +279,7 @@ GOE_NODISCARD goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator
  *             GOE_NOT_INITIALIZED and GOE_CORRUPTED. With any other negative status it is the last estimate, marked stale
  * Returns GOE_OK, a positive status, GOE_BEHIND_CAMERA to GOE_NO_HEIGHT (except GOE_BAD_HEIGHT), GOE_BAD_ARGUMENT,
  * GOE_NOT_INITIALIZED, GOE_CORRUPTED. Faults of images are counted. The solution's status has priority over a feature's.
- * Cost: at most 48000 instructions, 2048 bytes of stack; 65000 with lens distortion; window: 5500.
+ * Cost: at most 54000 instructions, 2048 bytes of stack; 75000 with lens distortion; window: 5500.
  * The window method's figure excludes lens distortion. */
 goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, goe_estimate_t *estimate);
 

@@ -76,8 +76,9 @@ float goe_latest_reach(const goe_estimator_t *estimator) {
     return is_refined_answer(estimator) ? estimator->filter.answer.reach_m : 0.0f;
 }
 
-float goe_latest_nearer(const goe_estimator_t *estimator) {
-    return is_refined_answer(estimator) ? estimator->filter.answer.nearer_m : 0.0f;
+goe_place_t goe_latest_nearer(const goe_estimator_t *estimator) {
+    const goe_place_t none = {0.0f, 0.0f};
+    return is_refined_answer(estimator) ? estimator->filter.answer.nearer : none;
 }
 #else
 static bool covariance_of_filter(const goe_estimator_t *estimator, bool for_hazard, float ahead_s,
@@ -101,9 +102,10 @@ float goe_latest_reach(const goe_estimator_t *estimator) {
     return 0.0f;
 }
 
-float goe_latest_nearer(const goe_estimator_t *estimator) {
+goe_place_t goe_latest_nearer(const goe_estimator_t *estimator) {
+    const goe_place_t none = {0.0f, 0.0f};
     (void)estimator;
-    return 0.0f;
+    return none;
 }
 #endif
 

@@ -24,7 +24,7 @@ float goe_latest_height_bias(const goe_estimator_t *estimator);
  * known. An image without a detection, or a new start of the filter, does not reduce it. */
 float goe_latest_reach(const goe_estimator_t *estimator);
 
-/* Of a prism, by how much its near side lies nearer than that of a circle of this reach, m; negative: farther. */
-float goe_latest_nearer(const goe_estimator_t *estimator);
+/* Of a prism, from the reference point to the middle of a circle of this reach that begins at its near side, m, T axes. */
+goe_place_t goe_latest_nearer(const goe_estimator_t *estimator);
 
 #endif

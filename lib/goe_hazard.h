@@ -60,7 +60,7 @@ typedef struct {
 /* Predicts the closest approach to the obstacle of the latest estimate, also if that is stale or suspect. The outline is the
  * disc, or the valid part of the box. If orientation or length is not valid, the outline is a circle about the reference point
  * with the box's width as diameter. Prism: a circle as wide as the obstacle across the present line of sight, and as near to the
- * camera: upright boxes show the near side well, and the center poorly. With a velocity of 0, dcpa_m is the distance to the near
+ * camera: images show the near side well, and the center poorly. With a velocity of 0, dcpa_m is the distance to the near
  * side. In the window method without width, the outline is the reference point alone.
  * An image without a detection changes only the time. A restart of the filter keeps position and size until a new estimate replaces
  * them, or until a feature contradicts them: the obstacle lies behind the camera, the feature ahead. So without a new estimate

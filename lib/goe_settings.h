@@ -18,12 +18,13 @@ typedef enum { GOE_METHOD_WINDOW = 1, GOE_METHOD_FILTER = 2 } goe_method_t;
 typedef enum {
     GOE_MODEL_NONE = 0, /* estimate only: no solution yet */
     GOE_MODEL_AUTO = 1, /* setting only. Window: the disc until window.line_points line points exist, then the line until
-                         * goe_reset. Filter: the disc until the images show a box */
-    GOE_MODEL_DISC = 2, /* an upright cylinder, or the circle that replaces any other shape; equation (2) */
+                         * goe_reset. Filter: the prism until base corners show a box */
+    GOE_MODEL_DISC = 2, /* an upright cylinder; window: also the circle that replaces any other shape; equation (2). As a setting of the
+                         * filter: the obstacle is round, so its depth is known */
     GOE_MODEL_LINE = 3, /* the front edge of a box, from base corners; equation (3). As a setting of the filter: a box from
                          * the start */
     GOE_MODEL_BOX = 4,  /* estimate of the filter only: an upright box */
-    GOE_MODEL_PRISM = 5 /* estimate of the filter only: an upright solid observed by its bounding boxes. Its width is across
+    GOE_MODEL_PRISM = 5 /* estimate of the filter only: an upright solid observed by its silhouette. Its width is across
                          * the line of sight of the filter's first image; its depth along it is unknown, and part of the sigma of
                          * the position, until the line of sight has turned by some 17 degrees */
 } goe_model_t;
@@ -70,7 +71,7 @@ typedef struct {
     float point_noise_px;         /* error of an image point, new in each image; 0.05 to 100 px; default 0.5 */
     float point_noise_rel;        /* error of points left, right, top, as a fraction of the obstacle's width in px; 0 to 1; default 0 */
     float point_correlation;      /* correlation of a point's error from image to image; 0 to 0.95; default 0 */
-    float shape_error_rel;        /* model error of a disc, as a fraction of its width; 0 to 1; default 0 */
+    float shape_error_rel;        /* model error of a disc or prism by points, as a fraction of its width; 0 to 1; default 0 */
     float box_noise_px;           /* error of a box's side, new in each image; 0.05 to 100 px; default 1 */
     float box_noise_rel;          /* slow error of a side, as a fraction of the box's width or height; 0 to 1; default 0.07 */
     float box_correlation_time_s; /* correlation time of box_noise_rel; 0 to 100 s; default 1.2 */

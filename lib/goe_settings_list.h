@@ -53,7 +53,7 @@
     X(detector.point_noise_px, REAL, "px", 0.05f, 100.0f, 0.5f, "error of an image point, new in each image") \
     X(detector.point_noise_rel, REAL, "", 0.0f, 1.0f, 0.0f, "error of points left, right, top, as a fraction of the obstacle's width in px") \
     X(detector.point_correlation, REAL, "", 0.0f, 0.95f, 0.0f, "correlation of a point's error from image to image") \
-    X(detector.shape_error_rel, REAL, "", 0.0f, 1.0f, 0.0f, "model error of a disc, as a fraction of its width") \
+    X(detector.shape_error_rel, REAL, "", 0.0f, 1.0f, 0.0f, "model error of a disc or prism by points, as a fraction of its width") \
     X(detector.box_noise_px, REAL, "px", 0.05f, 100.0f, 1.0f, "error of a box's side, new in each image") \
     X(detector.box_noise_rel, REAL, "", 0.0f, 1.0f, 0.07f, "slow error of a side, as a fraction of the box's width or height") \
     X(detector.box_correlation_time_s, REAL, "s", 0.0f, 100.0f, 1.2f, "correlation time of box_noise_rel") \

@@ -136,14 +136,9 @@ typedef struct {
     float extent[2];     /* lateral ones of two faces, focal lengths; or the orientation of one, rad, and nothing */
     goe_flag_t both;     /* of two faces */
     uint8_t agreeing;    /* images in a row */
-    goe_flag_t stand_in; /* disc: base corners were visible, so it substitutes for a box */
+    goe_flag_t stand_in; /* footprint: base corners were visible, so it substitutes for a box */
     uint8_t near_images; /* in which an undetected near corner still counts as missed */
 } goe_candidate_t;
-
-typedef struct {   /* refined/goe_chord.c: sliding means, sigmas */
-    float outward; /* by how much the chord's ends leave it outwards */
-    float turning; /* ... to the right */
-} goe_leaving_t;
 
 typedef struct {          /* refined/goe_box.c: what the report calls the edges of a box */
     goe_flag_t exchanged; /* it calls front what the state calls side */
@@ -213,7 +208,7 @@ typedef struct {
 
 typedef struct {         /* refined/goe_refined.c: what of the latest answer outlives the state that gave it */
     float reach_m;       /* half of the extent about the reference point, m; prism: across the line of sight */
-    float nearer_m;      /* prism: by how much it reaches nearer to the camera than that, m */
+    goe_place_t nearer;  /* prism: from the middle of a circle of that reach to that of one as near as it is, T axes */
     float least_m;       /* the same before the filter started again; 0 once the new filter knows a width */
     float height_bias_m; /* constant error of the camera's height that the answer is freed of, m */
     goe_flag_t outdated; /* the state has changed since, other than by time */
@@ -241,7 +236,6 @@ typedef struct {
     float walk_s[2];      /* time since the walk of the own position was last added along X, and along Z */
     float due_s;          /* ... since process noise was, which waits for the next image that gives rows */
     goe_candidate_t candidate;
-    goe_leaving_t leaving;
     goe_health_t health;
     goe_answer_t answer;
     goe_axes_t axes;
@@ -250,7 +244,7 @@ typedef struct {
 #if GOE_AUGMENTED
     goe_mover_t mover;
 #endif
-    goe_side_memory_t side[4]; /* by goe_box_side_t */
+    goe_side_memory_t side[6]; /* by goe_box_side_t, and of the points left and right */
     float state[GOE_STATES];   /* by goe_state_index_t */
     goe_triangle_t root;       /* R: R'R is the information of the state, as of the latest image that gave rows */
 } goe_filter_t;

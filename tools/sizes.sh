@@ -4,13 +4,13 @@
 #
 #   tools/sizes.sh          prints the tables
 #   tools/sizes.sh <words>  ... of the code only the rows whose name has these words, such as "Cortex-M4F gcc"
-#   tools/sizes.sh --check  fails if an estimator at the default window is larger than 2.0 KiB, or if lib/README.md
+#   tools/sizes.sh --check  fails if an estimator at the default window is larger than 2.1 KiB, or if lib/README.md
 #                           states other bytes per estimator
 set -euo pipefail
 . "$(dirname "$0")/../tests/flags/common.sh"
 cd "$scratch"
 
-limit_bytes=1952
+limit_bytes=2072
 m4f=(-mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard)
 mapfile -t flight_sources < <(find "$root/port/flight" -name '*.c' | sort)
 mapfile -t mavlink_sources < <(find "$root/port/mavlink" -name '*.c' | sort)

@@ -10,7 +10,6 @@
 
 #define SIGMA_MIN 1.0e-6f
 #define SPEED_MIN_M_S 0.1f
-#define RANGE_MIN_M 1.0e-6f
 #define AHEAD_MAX_S 60.0f /* for which a velocity is taken to last */
 
 /* ------------------------------------------------------------------------------------------- sigmas and probability -- */
@@ -105,14 +104,12 @@ void goe_conflict_add_intent(const goe_estimator_t *estimator, const goe_intent_
     covariance[GOE_HEIGHT][GOE_HEIGHT] += sd_m * sd_m;
 }
 
-/* The circle about a reference point, as near as the obstacle is; its covariance is that of goe_quantities_covariance(). */
+/* The circle about a reference point, as near as the obstacle was in the image behind the estimate, and no nearer later; its covariance
+ * is that of goe_quantities_covariance(). */
 static void meet_near_side(const goe_estimator_t *estimator, goe_outline_t *outline) {
-    const goe_xz_t at = outline->reference;
-    const float range_m = sqrtf(goe_xz_dot(at, at));
-    const float nearer_m = goe_bounded(goe_latest_nearer(estimator));
-    const float share = (nearer_m < range_m ? nearer_m : range_m) / goe_larger(range_m, RANGE_MIN_M);
-    outline->reference.x -= share * at.x;
-    outline->reference.z -= share * at.z;
+    const goe_place_t nearer = goe_latest_nearer(estimator);
+    outline->reference.x += goe_bounded(nearer.dx_m);
+    outline->reference.z += goe_bounded(nearer.dz_m);
     const float reach_m = goe_bounded(goe_latest_reach(estimator));
     const bool turns = estimator->estimate.model == GOE_MODEL_PRISM && reach_m > 0.0f; /* the width is an earlier one */
     outline->half = turns ? reach_m : goe_larger(outline->half, reach_m);

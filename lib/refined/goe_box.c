@@ -25,16 +25,13 @@
 #define DEPTH_MIN 0.3f      /* sz over |sx| */
 #define EXCHANGE_SLOPE 1.3f /* tan b above which front and side change names, in the state and in the report */
 #define LENGTH_FREED 2.0f   /* one sigma of the length, relative, when its face comes into view */
-#define CORNER_GROWTH 12.0f /* (R24) */
+#define CORNER_GROWTH 12.0f /* (R22) */
 #define CORNER_GROWTH_MAX 4.0f
-#define POOR_SHARE 0.3f   /* one sigma of the depth difference, of both depths: two corners may be those of anything */
-#define FACE_RAD 0.14f    /* (R41), one sigma of what two ends are off by if they are those of two faces: orientation */
-#define FACE_WIDTH 0.06f  /* ... width, of itself */
-#define FACE_PLACE 0.1f   /* ... place, of the width */
-#define FACE_ROOF 0.15f   /* ... where the roof's nearest corner is, of the width */
-#define OUTLINE_RAD 0.04f /* one sigma of what a box by its outline misses: orientation */
-#define OUTLINE_SHARE 0.03f /* ... extents, of width and length together */
-#define SINE2_MIN 1.0e-6f
+#define POOR_SHARE 0.3f  /* one sigma of the depth difference, of both depths: two corners may be those of anything */
+#define FACE_RAD 0.14f   /* (R37), one sigma of what two ends are off by if they are those of two faces: orientation */
+#define FACE_WIDTH 0.06f /* ... width, of itself */
+#define FACE_PLACE 0.1f  /* ... place, of the width */
+#define FACE_ROOF 0.15f  /* ... where the roof's nearest corner is, of the width */
 
 enum { FRONT_LEFT, BACK_LEFT, BACK_RIGHT, FRONT_RIGHT, CORNERS }; /* clockwise */
 enum { OUTER_LEFT, NEAR_CORNER, OUTER_RIGHT };
@@ -63,7 +60,7 @@ void goe_box_edges(const float state[GOE_STATES], goe_box_edges_t *edges) {
     const float sign = sign_of(x[GOE_SIDE_X]);
     const float product = across * x[GOE_FRONT_X];
     const float sum = goe_larger(sqrtf(d * d + 4.0f * product), SUM_MIN);
-    /* (R9): the larger one by adding, the smaller one by the product: no cancellation */
+    /* (R7): the larger one by adding, the smaller one by the product: no cancellation */
     const float larger = 0.5f * (sum + goe_absolute(d));
     const float smaller = product / larger;
     e->sum = sum;
@@ -197,7 +194,7 @@ static void set_corner(goe_rows_t *rows, float by[restrict GOE_UNKNOWNS], const 
     rows->variance[rows->count - 1u] += missed * missed;
 }
 
-/* (R11): two rows, the second free of the first one's noise. */
+/* (R9): two rows, the second free of the first one's noise. */
 /*@ requires goe_observation_is_open(obs) && \valid_read(o) && goe_rows_hold(rows);
     requires feature < GOE_FEATURES && corner < CORNERS && rows->count + 2 <= GOE_ROWS_MAX; */
 GOE_NOINLINE static void add_base_corner(const goe_observation_t *obs, const outline_t *o, goe_feature_t feature,
@@ -228,7 +225,7 @@ GOE_NOINLINE static void add_base_corner(const goe_observation_t *obs, const out
     by[GOE_GROUND] = gy.y;
 }
 
-/* (R12): the upright edge over an outer corner, at the height at which it was measured. */
+/* (R10): the upright edge over an outer corner, at the height at which it was measured. */
 /*@ requires goe_observation_is_open(obs) && \valid_read(o) && goe_rows_hold(rows);
     requires feature < GOE_FEATURES && corner < CORNERS && rows->count < GOE_ROWS_MAX; */
 static void add_silhouette(const goe_observation_t *obs, const outline_t *o, goe_feature_t feature, size_t corner,
@@ -260,7 +257,7 @@ static size_t highest_corner(const goe_observation_t *obs, const outline_t *o) {
     return highest;
 }
 
-/* (R13). */
+/* (R11). */
 static size_t top_corner(const goe_observation_t *obs, const outline_t *o) {
     if (obs->settings->filter.top_is_highest) {
         return highest_corner(obs, o);
@@ -280,7 +277,7 @@ static void add_top(const goe_observation_t *obs, const outline_t *o, goe_rows_t
     }
 }
 
-/* (R29): the point that a side of an upright bounding box touches, not the point that replaces it. */
+/* (R27): the point that a side of an upright bounding box touches, not the point that replaces it. */
 /*@ requires goe_observation_is_open(obs) && \valid_read(o) && goe_solid_is_closed(solid) && goe_rows_hold(rows);
     requires side < GOE_BOX_SIDES && rows->count < GOE_ROWS_MAX; */
 static void add_side(const goe_observation_t *obs, const outline_t *o, const goe_solid_t *solid, size_t side,
@@ -339,7 +336,7 @@ void goe_box_rows(const goe_observation_t *obs, goe_rows_t *rows) {
 
 /* ------------------------------------------------------------------------------------------------------------- upkeep -- */
 
-/* Whether the side's depth, the positive root of (R9), is less than that. */
+/* Whether the side's depth, the positive root of (R7), is less than that. */
 static bool side_is_shorter(const float x[GOE_STATES], float depth) {
     return depth * (depth - x[GOE_DEPTH_DIFFERENCE]) > goe_absolute(x[GOE_SIDE_X]) * x[GOE_FRONT_X];
 }
@@ -384,7 +381,7 @@ static void exchange_state(float x[GOE_STATES]) {
     x[GOE_TOP] *= scale;
 }
 
-/* (R21): the derivative of the old states by the new ones is that of the exchange back. */
+/* (R19): the derivative of the old states by the new ones is that of the exchange back. */
 static void exchange_root(goe_filter_t *filter, const float was[GOE_STATES]) {
     goe_substitution_t old;
     const float *is = filter->state;
@@ -481,7 +478,7 @@ static float corner_growth(const goe_filter_t *filter, const goe_box_edges_t *e)
     return 1.0f + CORNER_GROWTH * (relative < CORNER_GROWTH_MAX ? relative : CORNER_GROWTH_MAX);
 }
 
-/* (R41): what a single face is uncertain by, as its ends may be the outer ends of two faces. */
+/* (R37): what a single face is uncertain by, as its ends may be the outer ends of two faces. */
 static void doubt_face(goe_shape_t *shape) {
     const float size_m = goe_larger(shape->quantity[GOE_WIDTH].value, shape->quantity[GOE_LENGTH].value);
     shape->turned_rad2 = goe_square(FACE_RAD);
@@ -513,38 +510,6 @@ void goe_box_shape(const goe_filter_t *filter, goe_shape_t *shape) {
     if (goe_filter_traits(filter)->one_face) {
         doubt_face(shape);
     }
-}
-
-/* Of the side, at a small viewing angle, only the product of length and angle shows. */
-static float side_share2(const goe_filter_t *filter, goe_xz_t camera_m) {
-    const float *x = filter->state;
-    goe_box_edges_t e;
-    goe_box_edges(x, &e);
-    const float scale_m = 1.0f / x[GOE_INVERSE_RANGE];
-    const float vx = e.side.along.x / e.side.length;
-    const float vz = e.side.along.z / e.side.length;
-    const float px = x[GOE_BEARING] - camera_m.x / scale_m;
-    const float pz = 1.0f - camera_m.z / scale_m;
-    const float augmented = goe_larger(goe_absolute(vz * px - vx * pz) - 0.5f * x[GOE_FRONT_X] / vz, 0.0f);
-    return goe_square(augmented) / (px * px + pz * pz);
-}
-
-float goe_box_outline_variance(const goe_filter_t *filter, const goe_shape_t *shape, goe_xz_t camera_m, int quantity,
-                               float *by_orientation) {
-    *by_orientation = 0.0f;
-    if (!goe_filter_traits(filter)->by_outline || quantity < GOE_ORIENTATION || quantity > GOE_LENGTH) {
-        return 0.0f;
-    }
-    if (quantity == GOE_ORIENTATION) {
-        return goe_square(OUTLINE_RAD);
-    }
-    const float size2 =
-        goe_square(OUTLINE_SHARE * (shape->quantity[GOE_WIDTH].value + shape->quantity[GOE_LENGTH].value));
-    if ((quantity == GOE_LENGTH) == filter->naming.exchanged) { /* the front of the state */
-        return size2;
-    }
-    *by_orientation = goe_square(shape->quantity[quantity].value) / (side_share2(filter, camera_m) + SINE2_MIN);
-    return size2;
 }
 
 #endif

@@ -39,14 +39,7 @@ void goe_box_name(goe_filter_t *filter);
 bool goe_box_change(goe_filter_t *filter, const goe_observation_t *obs);
 
 /* Quantities. Orientation, width and length depend on the square of the corner: while GOE_DEPTH_DIFFERENCE is not known well
- * their true error is larger than to first order, by goe_shape_t.corner_growth, (R24). */
+ * their true error is larger than to first order, by goe_shape_t.corner_growth, (R22). */
 void goe_box_shape(const goe_filter_t *filter, goe_shape_t *shape);
-
-/* Variance of orientation (rad^2), width and length (m^2) beyond that of the state, of a box that was found by its outline:
- * corners change unnoticed for some images. camera_m: the camera since the filter's start (goe_filter_camera). *by_orientation: how
- * many times the variance of the orientation (rad^2), this included, comes to it. */
-/*@ requires \valid_read(filter) && \valid_read(shape) && 0 <= quantity < GOE_QUANTITIES && \valid(by_orientation); */
-float goe_box_outline_variance(const goe_filter_t *filter, const goe_shape_t *shape, goe_xz_t camera_m, int quantity,
-                               float *by_orientation);
 
 #endif

@@ -9,7 +9,7 @@
 
 #if GOE_WITH_FILTER
 
-#define BEARING_GROWTH 4.0f    /* factor on the variance of the bearing: the disc's middle was another point */
+#define BEARING_GROWTH 4.0f    /* factor on the variance of the bearing: the footprint's middle was another point */
 #define BEARING_FREEDOM 4.0f   /* ... and sigma added to it, in the larger side */
 #define BEARING_FLOOR2 1.0e-6f /* ... and variance */
 #define RANGE_GROWTH 2.0f      /* factor on the variance of 1/Z0 */
@@ -38,7 +38,7 @@
 /* Into the state's scale; reference: middle of the front edge from the camera, in the footprint's axes. False if it is out of
  * bounds. */
 static bool scale(const goe_observation_t *obs, goe_xz_t reference, float width_m, float length_m, float range_m,
-                  goe_footprint_t *box) {
+                  goe_first_box_t *box) {
     const float c = box->turn_cos;
     const float s = box->turn_sin;
     const float z0_m = reference.z + s * obs->camera_m.x + c * obs->camera_m.z;
@@ -56,7 +56,7 @@ static float range_of(const goe_observation_t *obs) { return 1.0f / obs->state[G
 
 /* ----------------------------------------------------------------------------------------------------------- two faces -- */
 
-bool goe_footprint_two_faces(const goe_observation_t *obs, goe_footprint_t *box) {
+bool goe_box_of_two_faces(const goe_observation_t *obs, goe_first_box_t *box) {
     const float range_m = range_of(obs);
     if (!obs->base || !obs->point[GOE_POINT_BASE_NEAR].usable || !(range_m >= RANGE_MIN_M)) {
         return false;
@@ -123,7 +123,7 @@ static float edge_sigma(const goe_observation_t *obs, const face_t *face, float 
 }
 
 /* An edge that lies more across than along is the front, any other the side. */
-static goe_xz_t measure_face(const face_t *face, float x, float z, float size_m, goe_footprint_t *box) {
+static goe_xz_t measure_face(const face_t *face, float x, float z, float size_m, goe_first_box_t *box) {
     const bool front = goe_absolute(x) > goe_absolute(z);
     const float across = front ? -z : x;
     const float along = front ? x : z;
@@ -151,7 +151,7 @@ static float beyond(const face_t *face, float x, float z, float size_m) {
     return (along_m - 0.5f * size_m) / sqrtf(mx * mx + mz * mz);
 }
 
-bool goe_footprint_one_face(const goe_observation_t *obs, goe_footprint_t *box) {
+bool goe_box_of_one_face(const goe_observation_t *obs, goe_first_box_t *box) {
     face_t face = {{0.0f, 0.0f}, {0.0f, 0.0f}, range_of(obs), 0.0f};
     face.height_m = obs->height_m + obs->state[GOE_GROUND] / obs->state[GOE_INVERSE_RANGE];
     if (!obs->base || !(face.range_m >= RANGE_MIN_M) || !(obs->height_m >= HEIGHT_MIN_M) ||
@@ -184,7 +184,7 @@ static float difference_rad(float a, float b) {
 }
 
 /* One image alone may be lucky. */
-static bool one_face_agrees(goe_filter_t *filter, const goe_footprint_t *box) {
+static bool one_face_agrees(goe_filter_t *filter, const goe_first_box_t *box) {
     const float d = difference_rad(box->orientation_rad, filter->candidate.extent[0]);
     const bool alone = box->beyond_rad < box->sigma_rad; /* otherwise a second face would show */
     const bool agrees =
@@ -194,8 +194,14 @@ static bool one_face_agrees(goe_filter_t *filter, const goe_footprint_t *box) {
     return filter->candidate.agreeing >= ONE_FACE_IMAGES;
 }
 
+/* Of 1/Z0, without the part of the footprint's depth, which a box does not take over. */
+static float range_variance(const goe_filter_t *filter) {
+    float part[GOE_UNKNOWNS];
+    return goe_srif_part(&filter->root, GOE_INVERSE_RANGE, part) - goe_srif_last_variance(part);
+}
+
 /* An outlier must not become the start, and range and depth multiply in the image: the range must be known. */
-static bool two_faces_agree(goe_filter_t *filter, const goe_observation_t *obs, const goe_footprint_t *box) {
+static bool two_faces_agree(goe_filter_t *filter, const goe_observation_t *obs, const goe_first_box_t *box) {
     const float q = filter->state[GOE_INVERSE_RANGE];
     const float most = RANGE_SHARE * q * goe_observation_reference(obs).z;
     const float tolerance = AGREEING_PX * goe_observation_pixel(obs) + AGREEING_SHARE * (box->left + box->right);
@@ -205,13 +211,13 @@ static bool two_faces_agree(goe_filter_t *filter, const goe_observation_t *obs, 
     filter->candidate.agreeing = (uint8_t)(agree ? filter->candidate.agreeing + 1 : 1);
     filter->candidate.extent[0] = box->left;
     filter->candidate.extent[1] = box->right;
-    if (goe_filter_variance(filter, GOE_INVERSE_RANGE) > most * most) {
+    if (range_variance(filter) > most * most) {
         filter->candidate.agreeing = 0;
     }
     return filter->candidate.agreeing >= TWO_FACES_IMAGES;
 }
 
-static bool find_box(goe_filter_t *filter, const goe_observation_t *obs, goe_footprint_t *box) {
+static bool find_box(goe_filter_t *filter, const goe_observation_t *obs, goe_first_box_t *box) {
     const bool both = obs->point[GOE_POINT_BASE_NEAR].usable;
     if (!both && filter->candidate.near_images > 0) {
         return false; /* it was missed: the outer corners are the ends of two faces */
@@ -220,7 +226,7 @@ static bool find_box(goe_filter_t *filter, const goe_observation_t *obs, goe_foo
         filter->candidate.both = both;
         filter->candidate.agreeing = 0;
     }
-    if (!(both ? goe_footprint_two_faces(obs, box) : goe_footprint_one_face(obs, box))) {
+    if (!(both ? goe_box_of_two_faces(obs, box) : goe_box_of_one_face(obs, box))) {
         filter->candidate.agreeing = 0;
         return false;
     }
@@ -258,9 +264,9 @@ static void scale_ground(float scale, float covariance[GOE_KEPT][GOE_KEPT]) {
     covariance[GOE_GROUND][GOE_GROUND] *= scale;
 }
 
-/* From a disc to the box of the footprint. The nuisances and the range keep their covariance; the reference moves by up to
- * the box's size, and the disc was only a stand-in. both: two faces are visible. */
-static void start_box(goe_filter_t *filter, const goe_observation_t *obs, const goe_footprint_t *box, bool both) {
+/* From a footprint to the box. The nuisances and the range keep their covariance; the reference moves by up to
+ * the box's size, and the footprint was only a stand-in. both: two faces are visible. */
+static void start_box(goe_filter_t *filter, const goe_observation_t *obs, const goe_first_box_t *box, bool both) {
     float c[GOE_KEPT][GOE_KEPT];
     float *x = filter->state;
     const float size = goe_larger(box->width, box->length);
@@ -284,12 +290,14 @@ static void start_box(goe_filter_t *filter, const goe_observation_t *obs, const 
                                                 SIZE_FREEDOM * size, SIZE_FREEDOM * size,
                                                 (both ? DEPTH_FREEDOM : DEPTH_HELD) * size};
     goe_srif_from_covariance(c, sigma, &filter->root);
-    goe_filter_turn_axes(filter, box->turn_cos, box->turn_sin);
+    const goe_axes_t was = filter->axes;
+    goe_filter_turn_axes(filter, was.turn_cos * box->turn_cos - was.turn_sin * box->turn_sin,
+                         was.turn_sin * box->turn_cos + was.turn_cos * box->turn_sin);
     goe_box_enter(filter, both ? GOE_PHASE_BOX : GOE_PHASE_BOX_FACE);
 }
 
 bool goe_box_start(goe_filter_t *filter, const goe_observation_t *obs) {
-    goe_footprint_t box;
+    goe_first_box_t box;
     if (!obs->base || obs->settings->model == GOE_MODEL_DISC || !find_box(filter, obs, &box)) {
         return false;
     }

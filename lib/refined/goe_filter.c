@@ -17,18 +17,10 @@ GOE_STATIC_ASSERT((GOE_HAS_POSITION | GOE_HAS_LENGTH | GOE_HAS_HEIGHT | GOE_HAS_
                   known_mask_fits_its_byte);
 GOE_STATIC_ASSERT(GOE_BIAS_Y == GOE_BIAS_X + 1 && GOE_BIAS_Z == GOE_BIAS_X + 2, the_biases_follow_each_other);
 
-static const goe_traits_t traits_of[GOE_PHASES] = {
-    [GOE_PHASE_NONE] = {.model = GOE_MODEL_DISC},
-    [GOE_PHASE_PRISM] = {.model = GOE_MODEL_PRISM,
-                         .remembers_sides = true,
-                         .has_steady_height = true,
-                         .foot_gives_range = true,
-                         .is_ellipse = true},
-    [GOE_PHASE_DISC] = {.model = GOE_MODEL_DISC, .is_conditioned = true, .can_stand_in = true},
-    [GOE_PHASE_CHORD] = {.model = GOE_MODEL_DISC, .can_lose_an_end = true},
-    [GOE_PHASE_BOX_FACE] = {.model = GOE_MODEL_BOX, .is_box = true, .by_corners = true, .one_face = true},
-    [GOE_PHASE_BOX] = {.model = GOE_MODEL_BOX, .is_box = true, .by_corners = true},
-    [GOE_PHASE_BOX_OUTLINE] = {.model = GOE_MODEL_BOX, .is_box = true, .by_outline = true}};
+static const goe_traits_t traits_of[GOE_PHASES] = {[GOE_PHASE_NONE] = {.is_box = false},
+                                                   [GOE_PHASE_FOOTPRINT] = {.is_ellipse = true},
+                                                   [GOE_PHASE_BOX_FACE] = {.is_box = true, .one_face = true},
+                                                   [GOE_PHASE_BOX] = {.is_box = true}};
 
 const goe_traits_t *goe_filter_traits(const goe_filter_t *filter) {
     return &traits_of[filter->phase < GOE_PHASES ? filter->phase : GOE_PHASE_NONE];
@@ -93,7 +85,7 @@ static GOE_NOINLINE void walk_along_z(goe_filter_t *filter, float sigma) {
     float direction[GOE_STATES];
     memcpy(direction, filter->state, sizeof direction);
     if (goe_filter_traits(filter)->is_ellipse) {
-        direction[GOE_PRISM_DEPTH] = 0.0f;
+        direction[GOE_LOG_DEPTH] = 0.0f;
     }
     goe_srif_spread(&filter->root, direction, GOE_GROUND, GOE_STATES - 1u, sigma);
 }

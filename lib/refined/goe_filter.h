@@ -18,25 +18,23 @@ typedef enum {
     GOE_BEARING,       /* X0/Z0 */
     GOE_INVERSE_RANGE, /* 1/Z0, 1/m */
     GOE_TOP,           /* H/Z0 - GOE_GROUND: the top above the altimeter's own zero */
-    /* box: L sin(b)/Z0. Disc and chord, a depth: how much deeper the right end lies than the left one; 0 of a true disc */
-    GOE_SIDE_X,
-    /* box: W cos(b)/Z0; disc: diameter/Z0; chord: how much farther to the right its right end lies */
-    GOE_FRONT_X,
-    /* box: (L cos(b) - W |sin(b)|)/Z0: how much deeper the side reaches than the front; otherwise idle */
+    GOE_SIDE_X,        /* box: L sin(b)/Z0 */
+    GOE_FRONT_X,       /* box: W cos(b)/Z0 */
+    /* box: (L cos(b) - W |sin(b)|)/Z0: how much deeper the side reaches than the front */
     GOE_DEPTH_DIFFERENCE,
     GOE_STATE_COUNT
 } goe_state_index_t;
 
 GOE_STATIC_ASSERT(GOE_STATE_COUNT == GOE_STATES, every_state_has_a_name);
 
-/* What the same places hold while the obstacle is a prism, see goe_prism.h. All over Z0. */
+/* The same places of a footprint, see goe_footprint.h. All over Z0. */
 enum {
-    GOE_PRISM_SHEAR = GOE_SIDE_X,          /* how much deeper the right end lies than the middle */
-    GOE_PRISM_HALF = GOE_FRONT_X,          /* half width across Z */
-    GOE_PRISM_DEPTH = GOE_DEPTH_DIFFERENCE /* log of depth along Z over width: the last, which may be considered */
+    GOE_SHEAR = GOE_SIDE_X,              /* how much deeper the right end lies than the middle */
+    GOE_HALF = GOE_FRONT_X,              /* half width across Z */
+    GOE_LOG_DEPTH = GOE_DEPTH_DIFFERENCE /* log of depth along Z over width: the last, which may be considered */
 };
 
-GOE_STATIC_ASSERT(GOE_PRISM_DEPTH == GOE_STATES - 1, the_considered_state_comes_last);
+GOE_STATIC_ASSERT(GOE_LOG_DEPTH == GOE_STATES - 1, the_considered_state_comes_last);
 
 /* Places of the states in goe_substitution_t. */
 enum { GOE_OF_GROUND, GOE_OF_BEARING, GOE_OF_RANGE, GOE_OF_TOP, GOE_OF_SIDE, GOE_OF_FRONT, GOE_OF_DEPTH };
@@ -47,47 +45,30 @@ GOE_STATIC_ASSERT(GOE_KEPT == GOE_TOP, the_first_states_are_those_that_are_kept)
 
 /* The phases, and what leads from one to the next.
  *
- *           left and right, or base_left and base_right visible
- *  PRISM <--- NONE ------------------------> DISC
- *              ^                              |  \ deeper at one end, range known, no base edge: goe_chord_start
- *              |                              |   \-> CHORD -- an end has left it, a face came into view: learns that end
- *   captured,  |   base corners agree:        |         |  \   again, stays
- *   not sane   |   goe_box_start              |<--------/   \ ... a face turned away: goe_chord_change
- *   (health)   |                     one face | two faces    \
- *              |                         v        v           v
- *              |                     BOX_FACE -> BOX     BOX_OUTLINE
- *              |                      second face in view: goe_box_change
- *              \--- from every phase
- *
- * PRISM: an upright bounding box with left and right visible, no base corners, no line asked for; it stays one.
+ *          left and right visible,          base corners agree: goe_box_start
+ *          or both outer base corners         one face         two faces
+ *   NONE -----------------------> FOOTPRINT ---------> BOX_FACE      |
+ *    ^                                |                    | second face in view: goe_box_change
+ *    |                                |                    v         |
+ *    |                                \-------------------> BOX <----/
+ *    |  captured, not sane (health)
+ *    \--- from every phase
  *
  * A box may also exchange the names of front and side, without leaving its phase (goe_box_change). */
 typedef enum {
-    GOE_PHASE_NONE,       /* not started */
-    GOE_PHASE_PRISM,      /* something upright, by its bounding boxes */
-    GOE_PHASE_DISC,       /* a disc, also as a stand-in for a box whose orientation is not known yet */
-    GOE_PHASE_CHORD,      /* the line between the silhouette's ends: a box without a visible base corner */
-    GOE_PHASE_BOX_FACE,   /* a box with one visible face: its length is fixed, not estimated */
-    GOE_PHASE_BOX,        /* a box by its base corners */
-    GOE_PHASE_BOX_OUTLINE /* a box by its silhouette alone */
+    GOE_PHASE_NONE,      /* not started */
+    GOE_PHASE_FOOTPRINT, /* an ellipse, by the silhouette; also in place of a box whose orientation is not known yet */
+    GOE_PHASE_BOX_FACE,  /* a box with one visible face: its length is fixed, not estimated */
+    GOE_PHASE_BOX        /* a box by its base corners */
 } goe_phase_t;
 
-#define GOE_PHASES (GOE_PHASE_BOX_OUTLINE + 1)
+#define GOE_PHASES (GOE_PHASE_BOX + 1)
 
 /* What the model of a phase is like, for all that does not know the models. */
 typedef struct {
-    goe_model_t model;      /* as it is reported */
-    bool is_box;            /* two edges, with orientation and length */
-    bool by_corners;        /* ... by base corners */
-    bool by_outline;        /* ... by its silhouette alone: corners change unnoticed */
-    bool one_face;          /* ... of which one face is visible: its length is held, not estimated */
-    bool is_conditioned;    /* an answer takes it as free of skew, and doubts that */
-    bool can_stand_in;      /* it substitutes for a box whose orientation is not known yet */
-    bool can_lose_an_end;   /* a face that comes into view leaves it */
-    bool remembers_sides;   /* upright boxes show it, and the errors of their sides are modeled */
-    bool has_steady_height; /* it counts the camera's height by the changes of down */
-    bool foot_gives_range;  /* by the height, from the first image on; not base corners */
-    bool is_ellipse;        /* its last state is a ratio, and may be considered; GOE_FRONT_X is half a width */
+    bool is_ellipse; /* its last state is a ratio, and may be considered; GOE_FRONT_X is half a width */
+    bool is_box;     /* two edges by base corners, with orientation and length */
+    bool one_face;   /* ... of which one face is visible: its length is held, not estimated */
 } goe_traits_t;
 
 const goe_traits_t *goe_filter_traits(const goe_filter_t *filter);
@@ -95,6 +76,12 @@ const goe_traits_t *goe_filter_traits(const goe_filter_t *filter);
 static inline goe_phase_t goe_filter_phase(const goe_filter_t *filter) { return (goe_phase_t)filter->phase; }
 static inline bool goe_filter_has_started(const goe_filter_t *filter) { return filter->phase != GOE_PHASE_NONE; }
 static inline bool goe_filter_is_box(const goe_filter_t *filter) { return goe_filter_traits(filter)->is_box; }
+
+/* Upright boxes have started the footprint: the height counts by the changes of down, a side's error is remembered, and the foot gives
+ * the range from the first image on. */
+static inline bool goe_filter_by_boxes(const goe_filter_t *filter) {
+    return goe_filter_traits(filter)->is_ellipse && filter->datum.boxes;
+}
 
 /* Whether the phase is one that the settings let be reported: a forced line is a box, and no disc before it. */
 bool goe_filter_reports(const goe_filter_t *filter, goe_model_t asked);
@@ -128,7 +115,7 @@ float goe_filter_variance(const goe_filter_t *filter, goe_state_index_t state);
 
 /* --------------------------------------------------------------------------------------------------- process noise -- */
 
-/* (R14): the bias of the attitude drifts, the own position walks. R holds the errors as of the latest image that gave rows, and so
+/* (R12): the bias of the attitude drifts, the own position walks. R holds the errors as of the latest image that gave rows, and so
  * does an answer; the noise since then is due, and goes into R before the rows of the next, or before a change of the model.
  *
  * Time passes. */

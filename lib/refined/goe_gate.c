@@ -42,11 +42,13 @@ static void gather(const goe_rows_t *rows, goe_axis_t axis, group_t *group) {
 }
 
 /* Of the image's own position error in a row, or in the difference of two. */
-/*@ requires goe_rows_hold(rows) && row < rows->count && middle < rows->count && rows->count <= GOE_BOX_SIDES; */
+/*@ requires goe_rows_hold(rows) && row < rows->count && middle < rows->count; */
 static float shift_variance(const goe_rows_t *rows, size_t row, size_t middle, float other) {
     float sum = 0.0f;
     for (size_t c = 0; c < 3; c++) {
-        sum += goe_square(rows->shift[row][c] - other * rows->shift[middle][c]);
+        const float own = row < rows->remembered ? rows->shift[row][c] : 0.0f;
+        const float common = middle < rows->remembered ? rows->shift[middle][c] : 0.0f;
+        sum += goe_square(own - other * common);
     }
     return sum;
 }
@@ -70,7 +72,7 @@ typedef struct {
 
 GOE_STATIC_ASSERT(GOE_STATES % 5 == 0, a_difference_of_rows_is_taken_by_five_states_at_a_time);
 
-/* (R16): normalized square of a row's residual, or of the difference of two rows'. */
+/* (R14): normalized square of a row's residual, or of the difference of two rows'. */
 /*@ requires \valid_read(known) && goe_rows_hold(rows) && row < rows->count && middle < rows->count; */
 static float innovation(const known_t *known, const goe_rows_t *rows, size_t row, size_t middle) {
     const goe_filter_t *filter = known->filter;
@@ -113,16 +115,6 @@ typedef struct {
     goe_verdict_t verdict;
 } belief_t;
 
-/* Of two rows along x, the one that is not the middle. */
-/*@ requires goe_rows_hold(rows) && \valid_read(group) && \valid(verdict);
-    requires row < rows->count && group->middle < rows->count; */
-static void note_odd(const goe_rows_t *rows, const group_t *group, size_t row, float squared, goe_verdict_t *verdict) {
-    const bool more = residual_of(rows, row) > residual_of(rows, group->middle);
-    verdict->odd = rows->feature[row];
-    verdict->odd_sigmas2 = squared;
-    verdict->odd_outward = more == (verdict->odd == GOE_POINT_RIGHT);
-}
-
 static void judge(const goe_settings_t *settings, const known_t *known, const goe_rows_t *rows, goe_axis_t axis,
                   belief_t *belief) {
     group_t group;
@@ -135,9 +127,6 @@ static void judge(const goe_settings_t *settings, const known_t *known, const go
         const size_t row = group.row[i];
         const size_t feature = rows->feature[row];
         const float squared = row == group.middle ? alone : innovation(known, rows, row, common ? group.middle : row);
-        if (axis == GOE_ALONG_X && group.count == 2 && row != group.middle) {
-            note_odd(rows, &group, row, squared, &belief->verdict);
-        }
         if (squared > gate * gate) {
             belief->verdict.refused |= 1u << feature;
         } else if (squared > huber * huber) {
@@ -170,12 +159,12 @@ static void scale_row(float row[GOE_COLUMNS], float weight) {
 GOE_STATIC_ASSERT(GOE_FEATURES == 6, every_feature_begins_with_full_weight);
 
 float goe_gate_repeated(const goe_filter_t *filter, float point_correlation) {
-    const float correlation = goe_filter_traits(filter)->remembers_sides ? 0.0f : point_correlation;
+    const float correlation = goe_filter_by_boxes(filter) ? 0.0f : point_correlation;
     return (1.0f + correlation) / (1.0f - correlation);
 }
 
 goe_verdict_t goe_gate_apply(const goe_settings_t *settings, const goe_filter_t *filter, goe_rows_t *rows) {
-    belief_t belief = {{1.0f, 1.0f, 1.0f, 1.0f, 1.0f, 1.0f}, {0u, 0u, 0, GOE_FEATURES, 0.0f, false}};
+    belief_t belief = {{1.0f, 1.0f, 1.0f, 1.0f, 1.0f, 1.0f}, {0u, 0u, 0}};
     const float repeated = goe_gate_repeated(filter, settings->detector.point_correlation);
     known_t known;
     known.filter = filter;

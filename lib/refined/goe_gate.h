@@ -8,13 +8,9 @@
 typedef struct {
     unsigned measured, refused;
     int rows; /* that count */
-    /* if there are two rows along x, the point with the larger residual, compared with the other: */
-    size_t odd;        /* feature; GOE_FEATURES if there are not two */
-    float odd_sigmas2; /* normalized square of their difference */
-    bool odd_outward;  /* they lie farther apart than predicted */
 } goe_verdict_t;
 
-/* Factor on the variances for errors that are correlated from image to image: of points; a prism models them instead. */
+/* Factor on the variances for errors that are correlated from image to image: of points; those of a box's sides are modeled instead. */
 float goe_gate_repeated(const goe_filter_t *filter, float point_correlation);
 
 /* Whitens the rows: each divided by its sigma, less if it is suspicious, 0 if its point is refused: rows->weight. */

@@ -87,7 +87,7 @@ void goe_ground_climb(goe_filter_t *filter, const goe_navigation_t *navigation) 
 
 void goe_ground_widen(goe_filter_t *filter) {
     const float scale2 = goe_square(goe_larger(filter->ground_scale, SCALE_MIN));
-    if (goe_filter_traits(filter)->foot_gives_range || filter->ground_scale > NARROW) {
+    if (goe_filter_by_boxes(filter) || filter->ground_scale > NARROW) {
         return;
     }
     const float information = filter->datum.first / goe_square(filter->state[GOE_INVERSE_RANGE]);
@@ -102,7 +102,7 @@ void goe_ground_widen(goe_filter_t *filter) {
 /* Of the first height. */
 static int add_first(goe_filter_t *filter, goe_rows_t *rows) {
     const float scale = filter->ground_scale;
-    if (goe_filter_traits(filter)->foot_gives_range || !(scale >= WIDE) || rows->count >= GOE_ROWS_MAX) {
+    if (goe_filter_by_boxes(filter) || !(scale >= WIDE) || rows->count >= GOE_ROWS_MAX) {
         return 0;
     }
     const float weight =

@@ -16,7 +16,7 @@ static inline bool goe_ground_lacks_height(const goe_image_t *image) {
 
 /* Whether the height moves by the changes of down. */
 static inline bool goe_ground_is_steady(const goe_filter_t *filter, const goe_navigation_t *navigation) {
-    return goe_filter_traits(filter)->has_steady_height || navigation->height_white_sd_m > 0.0f;
+    return goe_filter_by_boxes(filter) || navigation->height_white_sd_m > 0.0f;
 }
 
 /* The autopilot's down jumped by this. */

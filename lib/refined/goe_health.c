@@ -2,7 +2,6 @@
 #include "refined/goe_health.h"
 
 #include "maths/goe_scalar.h"
-#include "refined/goe_chord.h"
 
 #if GOE_WITH_FILTER
 
@@ -13,7 +12,6 @@
 #define RECENT_MAX 6.0f      /* recent_nis that only a captured state reaches */
 #define POOR_IMAGES 3
 #define REFUSED_IMAGES 4 /* images in a row in which a point is refused before the state is doubted */
-#define REFUSED_ENDS 8   /* the same while an end may leave the chord */
 #define REFUSED_TOPS 3
 #define EARLY_IMAGES 32 /* of the track: what does not fit in them began with an outlier */
 #define FAILURES_MAX 2  /* times that a box of base corners may prove wrong */
@@ -78,13 +76,11 @@ void goe_health_take_refused(goe_health_t *health, goe_verdict_t verdict) {
 /* A point that is refused image after image: the state was captured by an outlier, not the other way round. */
 static bool is_captured(goe_filter_t *filter, goe_verdict_t verdict) {
     goe_health_t *health = &filter->health;
-    const bool has_ends = goe_filter_traits(filter)->can_lose_an_end;
-    const unsigned most = has_ends ? REFUSED_ENDS : REFUSED_IMAGES;
     bool captured = false;
     for (size_t i = 0; i < GOE_FEATURES; i++) {
         const unsigned flag = 1u << i;
         if ((verdict.refused & flag) != 0) {
-            captured = goe_count_image(&health->refused[i]) >= most || captured;
+            captured = goe_count_image(&health->refused[i]) >= REFUSED_IMAGES || captured;
         } else if ((verdict.measured & flag) != 0) {
             health->refused[i] = 0;
         }
@@ -94,18 +90,16 @@ static bool is_captured(goe_filter_t *filter, goe_verdict_t verdict) {
     } else if (verdict.measured != 0) {
         health->poor = 0;
     }
-    if (has_ends && goe_chord_is_leaving(filter)) {
-        health->poor = 0;
-        return false;
-    }
     return captured;
 }
 
 /* The top alone hangs on nothing else. */
 static void free_top(goe_filter_t *filter) {
     const float *x = filter->state;
-    const float depth = goe_filter_traits(filter)->is_ellipse ? 0.0f : goe_absolute(x[GOE_DEPTH_DIFFERENCE]);
-    const float size = goe_larger(goe_absolute(x[GOE_TOP]), goe_larger(x[GOE_FRONT_X], depth));
+    const float extent = goe_filter_traits(filter)->is_ellipse
+                             ? 2.0f * x[GOE_HALF] /* its width */
+                             : goe_larger(x[GOE_FRONT_X], goe_absolute(x[GOE_DEPTH_DIFFERENCE]));
+    const float size = goe_larger(goe_absolute(x[GOE_TOP]), extent);
     goe_filter_inflate(filter, GOE_TOP, TOP_FREED * size);
     filter->health.refused[GOE_POINT_TOP] = 0;
 }
@@ -122,7 +116,7 @@ static bool is_sane(const goe_filter_t *filter) {
 /* A box of base corners that proved wrong more than once: they are those of something else. Residuals alone do not decide:
  * noise that is given too small must not cost a true box its corners. */
 static void count_failure(goe_filter_t *filter, goe_model_t asked) {
-    if (goe_filter_traits(filter)->by_corners && asked == GOE_MODEL_AUTO && filter->health.images >= EARLY_IMAGES) {
+    if (goe_filter_is_box(filter) && asked == GOE_MODEL_AUTO && filter->health.images >= EARLY_IMAGES) {
         filter->health.base_refused = goe_count_image(&filter->health.failed) >= FAILURES_MAX;
     }
 }

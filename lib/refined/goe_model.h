@@ -6,11 +6,11 @@
 #include "refined/goe_observation.h"
 #include "refined/goe_shape.h"
 
-/* Places the filter's axes for a start by this image. Returns whether that would be a prism. */
-bool goe_model_place(goe_filter_t *filter, goe_model_t asked, const goe_view_t *view);
+/* Places the filter's axes for a start by this image. False if it shows no obstacle to start by. */
+bool goe_model_place(goe_filter_t *filter, const goe_view_t *view);
 
-/* Starts the filter by the first model, a disc or a prism. False if the image does not show enough. */
-bool goe_model_start(goe_filter_t *filter, const goe_observation_t *obs, bool prism);
+/* Starts the filter by a footprint. False if the image does not show enough. */
+bool goe_model_start(goe_filter_t *filter, const goe_observation_t *obs);
 
 /* Changes the model if the image shows that another fits. Returns whether it did; the image that brings a change is not used
  * for more, because it costs as much as a measurement. */
@@ -25,10 +25,7 @@ void goe_model_rows(const goe_filter_t *filter, goe_observation_t *obs, goe_rows
 void goe_model_recall(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows);
 
 /* After the gate. */
-void goe_model_learn(goe_filter_t *filter, goe_rows_t *rows, const goe_verdict_t *verdict);
-
-/* Before the update: what a model does not let the rows learn from those before. */
-void goe_model_doubt(goe_filter_t *filter, const goe_observation_t *obs);
+void goe_model_learn(goe_filter_t *filter, goe_rows_t *rows);
 
 /* The update by whitened rows, and the consequences of the change of the state. change: of it and of the augmented states. Returns the
  * normalized innovation squared. */

@@ -63,7 +63,7 @@ void goe_mover_doubt(goe_filter_t *filter) {
 
 static float sane(float column) { return goe_within(column, COLUMN_MAX) ? column : 0.0f; }
 
-/* (R35): the obstacle at velocity v has moved by v t; poses that are tau late have the attitude and the velocity of then. */
+/* (R33): the obstacle at velocity v has moved by v t; poses that are tau late have the attitude and the velocity of then. */
 void goe_mover_columns(const goe_observation_t *obs, goe_rows_t *rows) {
     const float q = obs->state[GOE_INVERSE_RANGE];
     for (size_t i = 0; i < rows->count; i++) {
@@ -106,7 +106,7 @@ float goe_mover_latency_sd(const goe_filter_t *filter) {
 
 /* ----------------------------------------------------------------------------------------------------------- judgement -- */
 
-/* (R36). What the images say of a velocity if the poses are in time, and how much of it each of the two explains: T'T and T'z of
+/* (R34). What the images say of a velocity if the poses are in time, and how much of it each of the two explains: T'T and T'z of
  * least squares, with what the latency has taken off put back. */
 typedef struct {
     goe_xz_t velocity_m_s;
@@ -151,9 +151,7 @@ static bool fit_augmented(const goe_filter_t *filter, const goe_observation_t *o
 }
 
 /* The image gives a scale that does not require a static obstacle: its foot, by the height. */
-static bool has_scale(const goe_filter_t *filter, const goe_observation_t *obs) {
-    return goe_filter_traits(filter)->foot_gives_range ? goe_sides_see(obs->sides, GOE_SIDE_BOTTOM) : obs->base;
-}
+static bool has_scale(const goe_observation_t *obs) { return goe_sides_see(obs->sides, GOE_SIDE_BOTTOM) || obs->base; }
 
 /* Of the covariance (x, both; both, z). One too close to singular for float is taken as wide as it may be. */
 static float determinant_of(float x, float both, float z) {
@@ -171,8 +169,7 @@ static bool is_unlike_static(const fit_t *fit, float least) {
 
 static bool is_moving(goe_filter_t *filter, const fit_t *fit, float since_s) {
     goe_mover_t *m = &filter->mover;
-    if (!(m->observed_s > SETTLED_S) ||
-        !is_unlike_static(fit, goe_filter_traits(filter)->remembers_sides ? BOXES_CHI2 : MOVES_CHI2)) {
+    if (!(m->observed_s > SETTLED_S) || !is_unlike_static(fit, goe_filter_by_boxes(filter) ? BOXES_CHI2 : MOVES_CHI2)) {
         m->unlike_s = 0.0f;
         m->images = 0;
         return false;
@@ -181,7 +178,7 @@ static bool is_moving(goe_filter_t *filter, const fit_t *fit, float since_s) {
     return goe_count_image(&m->images) >= MOVES_IMAGES && m->unlike_s >= MOVES_S;
 }
 
-/* (R37): from the velocity that the images showed, with more than its uncertainty, as it was linearized at a wrong
+/* (R35): from the velocity that the images showed, with more than its uncertainty, as it was linearized at a wrong
  * place; the latency is open again. */
 static void follow(goe_filter_t *filter, const fit_t *fit) {
     goe_mover_t *m = &filter->mover;
@@ -267,7 +264,7 @@ bool goe_mover_judge(goe_filter_t *filter, const goe_observation_t *obs, const f
     }
     judge_latency(filter, &fit);
     const bool seen = is_moving(filter, &fit, since_s);
-    if (!seen || !has_scale(filter, obs)) { /* an outline of another shape drifts, too, but fits */
+    if (!seen || !has_scale(obs)) { /* an outline of another shape drifts, too, but fits */
         m->moves = m->moves || (seen && filter->health.mean_nis > obs->settings->filter.nis_ratio_max);
         return false;
     }

@@ -1,4 +1,4 @@
-/* The augmented states: latency of the poses, and motion of the obstacle. (R35) to (R38). SPDX-License-Identifier: MIT
+/* The augmented states: latency of the poses, and motion of the obstacle. (R33) to (R36). SPDX-License-Identifier: MIT
  *
  * The latency is estimated with the state, from the first image on. The velocity is taken as 0, and the images' information on it is
  * kept separately, until it is significant: then the filter begins again, in axes that move along. */

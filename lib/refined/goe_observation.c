@@ -138,9 +138,10 @@ unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *sett
     turn_rotation(view->camera_to_trajectory, filter->axes.turn_cos, filter->axes.turn_sin, obs->camera_to_axes);
     find_body(obs, view->camera_to_body);
     obs->camera_m = goe_filter_camera(filter, view->motion);
-    obs->steady_height_m = filter->datum.height_m;
-    obs->height_m = view->motion->height_m;
     obs->sides = &view->sides;
+    const bool starts = !goe_filter_has_started(filter) && obs->sides->usable != 0;
+    const bool steady = starts || goe_filter_by_boxes(filter);
+    obs->height_m = steady ? filter->datum.height_m : view->motion->height_m;
     obs->fade = 0.0f;
     obs->position_sd = 0.0f;
     obs->height_sd_m = filter->datum.sd_m;
@@ -247,6 +248,7 @@ void goe_observation_prior(const goe_observation_t *obs, const float state[GOE_S
 void goe_rows_clear(goe_rows_t *rows, goe_matrix_t *matrix) {
     rows->matrix = matrix;
     rows->shifts = false;
+    rows->remembered = 0;
     rows->count = 0;
 }
 

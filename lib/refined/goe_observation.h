@@ -14,9 +14,8 @@ typedef struct {
     float camera_to_axes[9], body_to_axes[9];
     float ex, ey, ez;  /* attitude bias about the state's axes, rad */
     goe_xz_t camera_m; /* camera since the filter's start, the state's axes */
-    float height_m;    /* camera above ground, as given */
+    float height_m;    /* camera above ground: as given, or by the changes of down, see goe_datum_t */
     const goe_sides_t *sides;
-    float steady_height_m;   /* the same by the changes of down, see goe_datum_t */
     float height_sd_m;       /* one sigma of its error: of the constant one, and of the mean of all readings */
     float since_s;           /* the image before */
     float fade;              /* what the error of a box's side keeps since the image used before */
@@ -27,7 +26,7 @@ typedef struct {
     float range_variance;    /* of GOE_INVERSE_RANGE */
     float depth_variance;    /* box: of GOE_DEPTH_DIFFERENCE */
     bool two_faces;          /* box: both were visible, its length is estimated */
-    bool stand_in;           /* disc: it substitutes for a box */
+    bool stand_in;           /* footprint: it substitutes for a box */
     bool base;               /* both outer base corners are visible */
     bool edge;               /* an edge of the base is visible */
     uint8_t number;          /* of the camera */
@@ -59,7 +58,8 @@ typedef struct {
     uint8_t series[GOE_ROWS_MAX]; /* of residuals, see goe_scatter_t */
     uint8_t side[GOE_ROWS_MAX];   /* of an upright box: goe_box_side_t */
     size_t count;
-    float shift[GOE_BOX_SIDES][3]; /* prism: by unit errors of the image's own position, which all rows share */
+    size_t remembered;             /* the first of them are those of a box's sides, whose errors are remembered */
+    float shift[GOE_BOX_SIDES][3]; /* of these: by unit errors of the image's own position, which all rows share */
     float white_rad;               /* one sigma of the nuisances */
     bool shifts;                   /* there are such errors */
 } goe_rows_t;

@@ -8,21 +8,20 @@
 #include "maths/goe_scalar.h"
 #include "maths/goe_time.h"
 #include "refined/goe_box.h"
-#include "refined/goe_disc.h"
+#include "refined/goe_ellipse.h"
+#include "refined/goe_footprint.h"
 #include "refined/goe_gate.h"
 #include "refined/goe_model.h"
 #include "refined/goe_mover.h"
-#include "refined/goe_prism.h"
 #include "refined/goe_scatter.h"
 
 #if GOE_WITH_FILTER
 
 #define EXTENT_SHARE 0.3f /* ... width, length and height */
 #define HEIGHT_MIN_M 2.0f /* a lower obstacle's height may be off by the share of this */
+#define SHAPE_SHARE 0.05f /* of the width, by which the place is off if points show another shape: one sigma */
 #define FAR_ROOF 2.0f     /* of the width: one sigma of the position of the farthest corner of the roof */
 #define ORIENTATION_MAX_RAD 0.174532925f
-#define OUTLINE_IMAGES 10 /* of a box by its outline, before its extents are reported */
-#define OUTLINE_NIS 1.8f  /* recent_nis up to which they are */
 #define PATH_MIN_M 0.1f
 #define RANGE_MIN_M 1.0f
 #define METERS_MAX 1.0e6f
@@ -31,7 +30,7 @@ static bool depends_on_corner(int quantity) { return quantity >= GOE_ORIENTATION
 
 /* ------------------------------------------------------------------------------------------------------------- drift -- */
 
-/* (R23): constant velocity errors scale and turn the path flown since the filter's start, and the obstacle with it: no
+/* (R21): constant velocity errors scale and turn the path flown since the filter's start, and the obstacle with it: no
  * image shows that. */
 typedef struct {
     goe_xz_t camera_m; /* since the filter's start */
@@ -58,7 +57,7 @@ static drift_t drift_of(const goe_filter_t *filter, const goe_navigation_t *navi
     return drift;
 }
 
-/* (R23), from the track's first image to the filter's start: X0 and Z0 alone count from there. */
+/* (R21), from the track's first image to the filter's start: X0 and Z0 alone count from there. */
 static float variance_before(const goe_filter_t *filter, const goe_navigation_t *navigation,
                              const goe_motion_t *motion) {
     const float s = goe_time_between_s(motion->start_time_us, filter->axes.start_time_us, GOE_TIME_MAX_US);
@@ -99,10 +98,9 @@ static float drift_variance(const goe_motion_t *motion, drift_t drift, const goe
 
 /* What an answer is less certain by than the filter. */
 typedef struct {
-    float scatter;                /* factor on the variance of what it found, (R34) */
+    float scatter;                /* factor on the variance of what it found, (R32) */
     float reciprocal[GOE_STATES]; /* of R, for the projections */
-    float bend;                   /* factor on a prism's depth, goe_prism_bend() */
-    goe_disc_doubt_t doubt;
+    float bend;                   /* factor on a footprint's depth, goe_footprint_bend() */
 } widening_t;
 
 /* Of projected derivatives, whose first elements are 0. */
@@ -170,20 +168,14 @@ static counted_t counted_of(int quantity, float at_s) {
 typedef struct {
     float *by; /* of the state: the projected derivatives */
     augmented_t augmented;
-    float skewed; /* by the condition that makes a disc, (R7): a sum of its own, which no scatter widens */
 } deviation_t;
 
 /* The derivatives error->by become the error. Returns its squared norm, the variance, without what moves. */
 static float project(const goe_filter_t *filter, const widening_t *wider, counted_t counted, deviation_t *error) {
     float variance = goe_srif_project(&filter->root, wider->reciprocal, GOE_UNWEIGHTED, error->by);
-    error->skewed = 0.0f;
     augmented_of(filter, error->by, counted.x, counted.z, counted.at_s, &error->augmented);
-    if (goe_filter_traits(filter)->is_conditioned) {
-        error->skewed = goe_disc_condition(&wider->doubt, error->by);
-        variance = dot(error->by, error->by, 0.0f);
-    }
     if (goe_filter_traits(filter)->is_ellipse) {
-        float *depth = &error->by[GOE_PRISM_DEPTH];
+        float *depth = &error->by[GOE_LOG_DEPTH];
         variance += (goe_square(wider->bend) - 1.0f) * goe_square(*depth);
         *depth *= wider->bend;
     }
@@ -191,8 +183,7 @@ static float project(const goe_filter_t *filter, const widening_t *wider, counte
 }
 
 static float covariance_of(const widening_t *wider, const deviation_t *a, const deviation_t *b) {
-    return wider->scatter * dot(a->by, b->by, goe_srif_augmented_dot(a->augmented.part, b->augmented.part)) +
-           a->skewed * b->skewed;
+    return wider->scatter * dot(a->by, b->by, goe_srif_augmented_dot(a->augmented.part, b->augmented.part));
 }
 
 /* ---------------------------------------------------------------------------------------------------------- validity -- */
@@ -217,12 +208,6 @@ static bool is_position(const goe_quantities_t *q, goe_xz_t from, float share) {
            is_known(q->value[GOE_Z0], q->worked_out[GOE_Z0], 0.0f, share);
 }
 
-/* The extents of a box by its outline count only after some images, and if these fit. */
-static bool knows_extents(const goe_filter_t *filter) {
-    return !goe_filter_traits(filter)->by_outline ||
-           !(filter->phase_images < OUTLINE_IMAGES || filter->health.recent_nis > OUTLINE_NIS);
-}
-
 static unsigned known_extents(const goe_filter_t *filter, const goe_quantities_t *q) {
     unsigned known = 0;
     if ((q->box || !filter->candidate.stand_in) && is_extent(q, GOE_WIDTH, 0.0f)) {
@@ -242,8 +227,7 @@ static unsigned known_now(const goe_filter_t *filter, const goe_quantities_t *q,
     if (!is_position(q, from, range_share)) {
         return 0;
     }
-    return GOE_HAS_POSITION | (is_extent(q, GOE_HEIGHT, HEIGHT_MIN_M) ? GOE_HAS_HEIGHT : 0u) |
-           (knows_extents(filter) ? known_extents(filter, q) : 0u);
+    return GOE_HAS_POSITION | (is_extent(q, GOE_HEIGHT, HEIGHT_MIN_M) ? GOE_HAS_HEIGHT : 0u) | known_extents(filter, q);
 }
 
 /* --------------------------------------------------------------------------------------------------------- quantities -- */
@@ -265,18 +249,13 @@ static void set_quantities(const goe_filter_t *filter, const goe_motion_t *motio
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         deviation_t *error = i <= GOE_Z0 ? &place[i] : &other;
         error->by = shape->quantity[i].by;
-        error->skewed = 0.0f;
         float found = has(q, i) ? project(filter, wider, counted_of(i, elapsed_s), error) : 0.0f;
         found *= depends_on_corner(i) ? shape->corner_growth : 1.0f;
         const float excluded = goe_filter_traits(filter)->is_ellipse ? goe_srif_last_variance(error->by) : 0.0f;
-        float turns; /* with the orientation, whose own sigma comes first */
-        const float given = drift_variance(motion, drift, shape, q->box, i) +
-                            goe_box_outline_variance(filter, shape, drift.camera_m, i, &turns);
+        const float given = drift_variance(motion, drift, shape, q->box, i);
         q->value[i] = shape->quantity[i].value;
-        q->sigma[i] = sqrtf(wider->scatter * found + given + turns * goe_square(q->sigma[GOE_ORIENTATION]) +
-                            goe_square(error->skewed));
-        q->worked_out[i] =
-            sqrtf(goe_larger(found + given + turns * goe_square(q->worked_out[GOE_ORIENTATION]) - excluded, 0.0f));
+        q->sigma[i] = sqrtf(wider->scatter * found + given);
+        q->worked_out[i] = sqrtf(goe_larger(found + given - excluded, 0.0f));
     }
 }
 
@@ -296,7 +275,6 @@ static void find_middle(const goe_filter_t *filter, const goe_shape_t *shape, co
         return;
     }
     error->augmented = augmented_sum(&place[GOE_X0].augmented, along.x, &place[GOE_Z0].augmented, along.z);
-    error->skewed = along.x * place[GOE_X0].skewed + along.z * place[GOE_Z0].skewed;
     for (size_t k = GOE_UNWEIGHTED; k < GOE_STATES; k++) {
         by[k] = along.x * place[GOE_X0].by[k] + along.z * place[GOE_Z0].by[k];
     }
@@ -353,10 +331,10 @@ static void set_velocity(const goe_filter_t *filter, const goe_settings_t *setti
 #endif
 }
 
-/* (R41): the highest point of a roof from above is a far corner, and no image shows how far while one face is visible, or a disc
- * substitutes for the box. */
+/* (R37): the highest point of a roof from above is a far corner, and no image shows how far while one face is visible, or a
+ * footprint substitutes for the box. */
 static void doubt_far_roof(const goe_filter_t *filter, bool highest, goe_shape_t *shape) {
-    const bool is_substitute = goe_filter_traits(filter)->can_stand_in && filter->candidate.stand_in && highest;
+    const bool is_substitute = goe_filter_traits(filter)->is_ellipse && filter->candidate.stand_in && highest;
     const bool is_face = goe_filter_traits(filter)->one_face && (filter->datum.boxes || highest);
     if (is_substitute || is_face) {
         const float size_m = goe_larger(shape->quantity[GOE_WIDTH].value, shape->quantity[GOE_LENGTH].value);
@@ -364,22 +342,25 @@ static void doubt_far_roof(const goe_filter_t *filter, bool highest, goe_shape_t
     }
 }
 
-/* (R33). The near side, which a hazard meets, hardly depends on the depth: there the derivative suffices. */
-static float bend_of(const goe_filter_t *filter, bool for_hazard) {
-    const bool bends = goe_filter_traits(filter)->is_ellipse && !for_hazard;
-    return bends ? goe_prism_bend(filter) : 1.0f;
+/* Points of a silhouette do not show that the footprint is no ellipse. */
+static void doubt_shape(const goe_filter_t *filter, goe_model_t asked, goe_shape_t *shape) {
+    if (goe_filter_traits(filter)->is_ellipse && !goe_filter_by_boxes(filter) && asked != GOE_MODEL_DISC) {
+        shape->place_m2 += goe_square(SHAPE_SHARE * shape->quantity[GOE_WIDTH].value);
+    }
 }
 
-/* What the answer is less certain by; of a disc its shape learns of it, too. */
+/* (R31). The near side, which a hazard meets, hardly depends on the depth: there the derivative suffices. */
+static float bend_of(const goe_filter_t *filter, bool for_hazard) {
+    const bool bends = goe_filter_traits(filter)->is_ellipse && !for_hazard;
+    return bends ? goe_footprint_bend(filter) : 1.0f;
+}
+
+/* What the answer is less certain by. */
 static void widening_of(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
                         drift_t drift, goe_shape_t *shape, widening_t *wider) {
     wider->scatter = goe_scatter_factor(filter, goe_gate_repeated(filter, settings->detector.point_correlation));
-    wider->doubt.skew_variance = 0.0f;
-    wider->doubt.spread = 0.0f;
     goe_srif_reciprocals(&filter->root, wider->reciprocal);
-    if (goe_filter_traits(filter)->is_conditioned) {
-        goe_disc_doubt(filter, settings->model == GOE_MODEL_DISC, goe_filter_measured(filter), shape, &wider->doubt);
-    }
+    doubt_shape(filter, settings->model, shape);
     doubt_far_roof(filter, settings->filter.top_is_highest, shape);
     shape->top_m2 = shape->roof_m2 > 0.0f ? top_variance(motion, drift, shape) : 0.0f;
 }
@@ -398,15 +379,12 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
         return;
     }
     goe_model_shape(filter, &shape);
-    if (!(shape.scale_m > 0.0f)) { /* of a disc, by its condition */
-        return;
-    }
     const drift_t drift = drift_of(filter, &settings->navigation, motion);
     widening_of(filter, settings, motion, drift, &shape, &wider);
     wider.bend = bend_of(filter, false);
     q->before_m2 = variance_before(filter, &settings->navigation, motion);
-    q->model = goe_filter_traits(filter)->model;
     q->box = goe_filter_is_box(filter);
+    q->model = q->box ? GOE_MODEL_BOX : (settings->model == GOE_MODEL_DISC ? GOE_MODEL_DISC : GOE_MODEL_PRISM);
     q->length_axis = shape.length_axis;
     set_quantities(filter, motion, &shape, drift, &wider, q, place);
     const goe_xz_t gone = goe_filter_moved(filter, motion);
@@ -431,9 +409,9 @@ static void count_from_datum(goe_shape_t *shape) {
 /* by += factor times the derivatives of one reach, less those of another, of a length in units of Z0. */
 static void add_to_footprint(float factor, float scale_m, const goe_support_t *reach, const goe_support_t *less,
                              float by[GOE_STATES]) {
-    by[GOE_PRISM_SHEAR] += factor * (reach->by_shear - (less ? less->by_shear : 0.0f));
-    by[GOE_PRISM_HALF] += factor * (reach->by_half - (less ? less->by_half : 0.0f));
-    by[GOE_PRISM_DEPTH] += factor * (reach->by_depth - (less ? less->by_depth : 0.0f));
+    by[GOE_SHEAR] += factor * (reach->by.shear - (less ? less->by.shear : 0.0f));
+    by[GOE_HALF] += factor * (reach->by.half - (less ? less->by.half : 0.0f));
+    by[GOE_LOG_DEPTH] += factor * (reach->by.depth - (less ? less->by.depth : 0.0f));
     by[GOE_INVERSE_RANGE] -= factor * scale_m * (reach->reach - (less ? less->reach : 0.0f));
 }
 
@@ -444,7 +422,7 @@ static void meet_near_side(const goe_filter_t *filter, goe_xz_t camera_m, goe_sh
     if (!goe_filter_traits(filter)->is_ellipse) {
         return;
     }
-    goe_prism_face_camera(filter, camera_m, &aspect);
+    goe_ellipse_face_camera(filter, camera_m, &aspect);
     const goe_support_t *before = &aspect.before;
     const goe_support_t *across = &aspect.across;
     const goe_xz_t towards = goe_filter_into_trajectory(filter, aspect.towards);
@@ -464,7 +442,7 @@ void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t 
     goe_model_shape(filter, &shape);
     if (for_hazard) {
         count_from_datum(&shape);
-        meet_near_side(filter, drift.camera_m, &shape);
+        meet_near_side(filter, goe_filter_measured(filter), &shape);
     }
     widening_of(filter, settings, motion, drift, &shape, &wider);
     wider.bend = bend_of(filter, for_hazard);
@@ -483,18 +461,16 @@ void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t 
         augmented_scale(&error[i].augmented, factor);
         for (int j = 0; j <= i; j++) {
             const float drifted = i == j ? drift_variance(motion, drift, &shape, goe_filter_is_box(filter), i) : 0.0f;
-            const float shared = drifted + error[i].skewed * error[j].skewed +
-                                 goe_srif_augmented_dot(error[i].augmented.part, error[j].augmented.part);
+            const float shared = drifted + goe_srif_augmented_dot(error[i].augmented.part, error[j].augmented.part);
             const float sum = dot(by, shape.quantity[j].by, shared);
             covariance[i][j] = sum;
             covariance[j][i] = sum;
         }
-        if (i <= GOE_Z0 && !for_hazard) { /* the camera now has no part in it */
-            covariance[i][i] += variance_before(filter, &settings->navigation, motion);
-        }
-        float turns;
-        covariance[i][i] += goe_box_outline_variance(filter, &shape, drift.camera_m, i, &turns);
-        covariance[i][i] += turns > 0.0f ? turns * covariance[GOE_ORIENTATION][GOE_ORIENTATION] : 0.0f;
+    }
+    if (!for_hazard) { /* the camera now has no part in it */
+        const float before = variance_before(filter, &settings->navigation, motion);
+        covariance[GOE_X0][GOE_X0] += before;
+        covariance[GOE_Z0][GOE_Z0] += before;
     }
 }
 

@@ -25,7 +25,7 @@ typedef struct {
 void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
                          goe_quantities_t *quantities);
 
-/* (R22): covariance of the six quantities, meters and radians, of the filter's present state. for_hazard: the top's height
+/* (R20): covariance of the six quantities, meters and radians, of the filter's present state. for_hazard: the top's height
  * is counted from the altimeter's zero, not from the ground: its constant error cancels between camera and top. And a
  * prism's place and width are those of the circle that is as wide across the line of sight, and as near to the camera, as it is. */
 void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,

@@ -14,11 +14,11 @@
 #include "maths/goe_scalar.h"
 #include "maths/goe_time.h"
 #include "refined/goe_box.h"
+#include "refined/goe_ellipse.h"
 #include "refined/goe_ground.h"
 #include "refined/goe_health.h"
 #include "refined/goe_model.h"
 #include "refined/goe_mover.h"
-#include "refined/goe_prism.h"
 #include "refined/goe_report.h"
 #include "refined/goe_scatter.h"
 
@@ -48,12 +48,12 @@ static void fly_on(goe_filter_t *filter, const goe_motion_t *motion) {
 /* Whether an image comes so soon after the one before that the errors of its box are the same: it is not used. */
 static bool comes_too_soon(const goe_filter_t *filter, const goe_detector_t *detector, const goe_motion_t *motion) {
     const float since_s = goe_time_between_s(filter->time_us, motion->time_us, GAP_MAX_US);
-    return goe_filter_traits(filter)->remembers_sides && since_s < TOO_SOON_SHARE * detector->box_correlation_time_s;
+    return goe_filter_by_boxes(filter) && since_s < TOO_SOON_SHARE * detector->box_correlation_time_s;
 }
 
 /* ------------------------------------------------------------------------------------------------------------- update -- */
 
-/* (R15): possible linearization error at an uncertain range, the second order of 1/Z. */
+/* (R13): possible linearization error at an uncertain range, the second order of 1/Z. */
 static void allow_for_curvature(const goe_observation_t *obs, goe_rows_t *rows) {
     const float ahead = goe_observation_ahead(obs);
     const float missed = obs->camera_m.z * obs->range_variance / ahead;
@@ -67,7 +67,6 @@ static void doubt(goe_filter_t *filter, const goe_observation_t *obs) {
     goe_ground_widen(filter);
     goe_observation_age(filter, obs);
     goe_ground_climb(filter, &obs->settings->navigation);
-    goe_model_doubt(filter, obs);
 }
 
 /* The rows of the image, before the gate. */
@@ -86,7 +85,7 @@ static bool measure(goe_filter_t *filter, const goe_observation_t *obs, goe_rows
                     float change[GOE_UNKNOWNS]) {
     *verdict = goe_gate_apply(obs->settings, filter, rows);
     goe_scatter_take(&filter->scatter, rows);
-    goe_model_learn(filter, rows, verdict);
+    goe_model_learn(filter, rows);
     if (verdict->rows == 0) {
         goe_health_take_refused(&filter->health, *verdict);
         return false;
@@ -119,13 +118,12 @@ static void note_time(goe_filter_t *filter, goe_observation_t *obs) {
     const goe_detector_t *detector = &obs->settings->detector;
     obs->range_variance = goe_filter_variance(filter, GOE_INVERSE_RANGE);
     const float relative2 = obs->range_variance / goe_square(filter->state[GOE_INVERSE_RANGE]);
-    if (goe_filter_traits(filter)->remembers_sides || obs->sides->usable != 0) {
-        const bool same = filter->camera == obs->number; /* a correlation in one camera is no evidence about another */
-        obs->fade = same && detector->box_correlation_time_s > 0.0f
-                        ? goe_exp(-obs->since_s / detector->box_correlation_time_s)
-                        : 0.0f;
+    const bool same = filter->camera == obs->number; /* a correlation in one camera is no evidence about another */
+    const bool fades = same && detector->box_correlation_time_s > 0.0f;
+    obs->fade = fades ? goe_exp(-obs->since_s / detector->box_correlation_time_s) : 0.0f;
+    filter->camera = obs->number;
+    if (obs->sides->usable != 0) {
         obs->outline_share = outline_share(detector, obs->fade);
-        filter->camera = obs->number;
     }
     obs->position_sd = obs->settings->navigation.position_white_sd_m * sqrtf(1.0f + relative2);
 }
@@ -136,9 +134,11 @@ static void note_time(goe_filter_t *filter, goe_observation_t *obs) {
 static bool open_image(goe_filter_t *filter, const goe_settings_t *settings, const goe_view_t *view,
                        goe_observation_t *obs, unsigned *swapped) {
     const bool running = goe_filter_has_started(filter);
-    const bool prism = !running && goe_model_place(filter, settings->model, view);
+    if (!running && !goe_model_place(filter, view)) {
+        return false;
+    }
     *swapped = goe_observation_open(obs, settings, filter, view);
-    if (!running && !goe_model_start(filter, obs, prism)) {
+    if (!running && !goe_model_start(filter, obs)) {
         return false;
     }
     if (!running) {
@@ -220,15 +220,18 @@ bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, co
 
 /* ------------------------------------------------------------------------------------------------------------- answer -- */
 
-/* Half of the visible extent about the reference point, m, also while the width is not valid; and by how much a prism reaches nearer to
- * the camera than that. */
-static float reach_of(const goe_filter_t *filter, float *nearer_m) {
+/* Half of the visible extent about the reference point, m, also while the width is not valid; and of a footprint, the way to the middle
+ * of a circle of that reach that begins where it does, T axes. */
+static float reach_of(const goe_filter_t *filter, goe_xz_t *nearer_m) {
     const float *x = filter->state;
-    *nearer_m = 0.0f;
+    memset(nearer_m, 0, sizeof *nearer_m);
     if (goe_filter_traits(filter)->is_ellipse) {
         goe_aspect_t aspect;
-        goe_prism_face_camera(filter, goe_filter_measured(filter), &aspect);
-        *nearer_m = (aspect.before.reach - aspect.across.reach) / x[GOE_INVERSE_RANGE];
+        goe_ellipse_face_camera(filter, goe_filter_measured(filter), &aspect);
+        const float way_m = (aspect.before.reach - aspect.across.reach) / x[GOE_INVERSE_RANGE];
+        const goe_xz_t towards = goe_filter_into_trajectory(filter, aspect.towards);
+        nearer_m->x = way_m * towards.x;
+        nearer_m->z = way_m * towards.z;
         return aspect.across.reach / x[GOE_INVERSE_RANGE];
     }
     const float side = goe_filter_is_box(filter) ? goe_absolute(x[GOE_SIDE_X]) : 0.0f;
@@ -264,7 +267,10 @@ static bool keeps_previous(const goe_filter_t *filter, const goe_motion_t *motio
 /* Keeps what goe_hazard() needs of an answer when no new one follows. */
 static void keep_answer(goe_filter_t *filter, const goe_navigation_t *navigation, unsigned valid) {
     goe_answer_t *answer = &filter->answer;
-    const float reach_m = reach_of(filter, &answer->nearer_m);
+    goe_xz_t nearer_m;
+    const float reach_m = reach_of(filter, &nearer_m);
+    answer->nearer.dx_m = nearer_m.x;
+    answer->nearer.dz_m = nearer_m.z;
     answer->least_m = (valid & GOE_HAS_WIDTH) != 0u ? 0.0f : answer->least_m;
     if (goe_within(reach_m, REACH_MAX_M)) {
         answer->reach_m = goe_larger(reach_m, answer->least_m);
@@ -277,8 +283,9 @@ static void keep_answer(goe_filter_t *filter, const goe_navigation_t *navigation
 
 /* Whether a position lies behind the camera, with all of its extent, in an image that shows the obstacle ahead. */
 static bool lies_behind(const goe_filter_t *filter, const goe_quantities_t *quantities, const goe_motion_t *motion) {
-    float nearer_m;
-    const float reach_m = reach_of(filter, &nearer_m) + goe_larger(nearer_m, 0.0f);
+    goe_xz_t nearer_m;
+    const float circle_m = reach_of(filter, &nearer_m);
+    const float reach_m = circle_m + sqrtf(goe_xz_dot(nearer_m, nearer_m));
     return quantities->value[GOE_Z0] - motion->dz_m <
            -(reach_m + (quantities->box ? quantities->value[GOE_LENGTH] : 0.0f));
 }

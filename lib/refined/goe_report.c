@@ -7,7 +7,7 @@
 #include "image/goe_ego_motion.h"
 #include "maths/goe_angle.h"
 #include "maths/goe_scalar.h"
-#include "refined/goe_disc.h"
+#include "refined/goe_footprint.h"
 #include "refined/goe_mover.h"
 
 #if GOE_WITH_FILTER
@@ -96,7 +96,7 @@ static bool is_misfit(const goe_health_t *health, float most) {
 
 /* A disc was configured, and it is none. */
 static bool is_forced(const goe_filter_t *filter, goe_model_t asked) {
-    return asked == GOE_MODEL_DISC && goe_filter_traits(filter)->is_conditioned && goe_disc_is_skewed(filter);
+    return asked == GOE_MODEL_DISC && goe_filter_traits(filter)->is_ellipse && goe_footprint_is_forced(filter);
 }
 
 static bool moves(const goe_filter_t *filter) {

@@ -49,14 +49,4 @@ float goe_shape_turned(const goe_filter_t *filter, goe_xz_t camera_m) {
     return (x - a * z) / (goe_larger(sqrtf(x * x + z * z), RANGE_MIN) * sqrtf(1.0f + a * a));
 }
 
-void goe_shape_line(const goe_filter_t *filter, const float x[GOE_STATES], goe_shape_t *shape) {
-    const goe_spot_t middle = {{x[GOE_BEARING], 1.0f}, {0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
-    goe_linear_t *width = &shape->quantity[GOE_WIDTH];
-    goe_shape_start(filter, x, &middle, shape);
-    shape->middle = middle;
-    width->value = x[GOE_FRONT_X] * shape->scale_m;
-    width->by[GOE_INVERSE_RANGE] = -shape->scale_m * width->value;
-    width->by[GOE_FRONT_X] = shape->scale_m;
-}
-
 #endif

@@ -5,9 +5,6 @@
 
 #include "refined/goe_filter.h"
 
-/* Of the width by which the middle of a shape that is no disc may be off the center of the obstacle. */
-#define GOE_PLACE_SHARE 0.4f
-
 /* A quantity and its derivatives by the states. */
 typedef struct {
     float value;
@@ -50,8 +47,5 @@ void goe_shape_start(const goe_filter_t *filter, const float x[GOE_STATES], cons
 
 /* Sine of what the line of sight has turned by since the filter's start. camera_m: the camera since then (goe_filter_camera). */
 float goe_shape_turned(const goe_filter_t *filter, goe_xz_t camera_m);
-
-/* ... and of a disc or a chord: the width, and the middle, which is the reference point. */
-void goe_shape_line(const goe_filter_t *filter, const float x[GOE_STATES], goe_shape_t *shape);
 
 #endif

@@ -1,7 +1,7 @@
 /* The slowly varying (correlated) error of a box's side. SPDX-License-Identifier: MIT
  *
  * A first-order process of the sigma s and the time constant tau. As the obstacle stands still, the residuals so far determine
- * the error, given the state: it is linear in the state, so the process needs no state of its own. (R30) to (R32). */
+ * the error, given the state: it is linear in the state, so the process needs no state of its own. (R28) to (R30). */
 #ifndef GOE_SIDE_MEMORY_H
 #define GOE_SIDE_MEMORY_H
 

@@ -57,7 +57,7 @@ void goe_srif_clear(goe_triangle_t *root);
 /* An update by at most so many rows takes the shorter kernel. */
 #define GOE_ROWS_FEW 5
 
-/* (R17): rotates `count` whitened rows into R by Householder reflections and solves for the change of the state and of the estimated
+/* (R15): rotates `count` whitened rows into R by Householder reflections and solves for the change of the state and of the estimated
  * augmented states. The rows behind them must be 0. nuisance_root:
  * 1/sigma of the nuisances. *matrix is used up. Returns the remaining squared norm of the residuals: the normalized
  * innovation squared. */
@@ -131,7 +131,7 @@ typedef struct {
     float by[GOE_CHANGED][GOE_CHANGED]; /* [old][new] */
 } goe_substitution_t;
 
-/* (R21): R in the new states. */
+/* (R19): R in the new states. */
 void goe_srif_substitute(goe_triangle_t *root, const goe_substitution_t *old);
 
 #endif

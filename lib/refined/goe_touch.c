@@ -71,7 +71,7 @@ static inline void turn(const float r[9], const float v[3], float to[3]) {
     to[2] = r[6] * v[0] + r[7] * v[1] + r[8] * v[2];
 }
 
-/* (R27): the corner of a hull that lies farthest along the plane's normal. */
+/* (R25): the corner of a hull that lies farthest along the plane's normal. */
 /*@ requires goe_solid_is_closed(solid) && solid->corners > 0 && \valid(t) && \valid_read(n + (0 .. 2)); */
 static void reach_corner(const goe_solid_t *solid, const float n[3], goe_touch_t *t) {
     const goe_xz_t *corner = solid->corner;
@@ -94,16 +94,14 @@ static void reach_rim(const goe_solid_t *solid, const float n[3], goe_touch_t *t
     const bool tilts = level > LEVEL_MIN;
     t->outward.x = tilts ? n[0] / level : 0.0f;
     t->outward.z = tilts ? n[2] / level : -1.0f;
-    const goe_ellipse_t *e = &solid->ellipse;
-    const goe_reach_t r = goe_touch_reach(e, t->outward);
-    t->reach = r;
-    t->point[0] = solid->center.x + e->half * r.across / r.length;
-    t->point[2] = solid->center.z + (e->shear * r.across + e->depth * r.along) / r.length;
+    t->contact = goe_ellipse_touch(&solid->ellipse, t->outward);
+    t->point[0] = solid->center.x + t->contact.at.x;
+    t->point[2] = solid->center.z + t->contact.at.z;
 }
 
 typedef enum { FOOT, HEAD, EITHER } end_t;
 
-/* The touching point on the side of the outward normal, which is given in the camera's axes. (R26), (R27). False if it is not
+/* The touching point on the side of the outward normal, which is given in the camera's axes. (R24), (R25). False if it is not
  * ahead. */
 static bool touch(const goe_solid_t *solid, const float normal[3], end_t end, goe_touch_t *t) {
     const float *r = solid->unbiased_from_camera;
@@ -147,7 +145,7 @@ static line_t line_at(const goe_camera_t *camera, size_t side, float x, float y)
 
 static float sign_of(size_t side) { return side == GOE_BOX_LEFT || side == GOE_BOX_TOP ? -1.0f : 1.0f; }
 
-/* By the line at its touching point, which the first call gives, (R28). */
+/* By the line at its touching point, which the first call gives, (R26). */
 /*@ requires goe_observation_is_open(obs) && goe_solid_is_closed(solid) && \valid_read(straight + (0 .. 2));
     requires \valid(t) && side < GOE_BOX_SIDES; */
 static bool touch_bent(const goe_observation_t *obs, const goe_solid_t *solid, size_t side, const float straight[3],
@@ -209,7 +207,7 @@ static bool is_hidden(const goe_observation_t *obs, const goe_touch_t *t) {
     return !goe_sides_see(obs->sides, t->foot ? GOE_SIDE_BOTTOM : GOE_SIDE_TOP) && !(t->foot && obs->edge);
 }
 
-/* (R29a): then the side touches the visible part's end, anywhere between foot and head. The row takes the middle and says
+/* (R27a): then the side touches the visible part's end, anywhere between foot and head. The row takes the middle and says
  * nothing about either height. Returns the variance to add. */
 /*@ requires \valid_read(solid) && \valid_read(t) && \valid(gradient); */
 static float forget_height(const goe_solid_t *solid, const goe_touch_t *t, goe_gradient_t *gradient) {

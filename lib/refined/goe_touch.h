@@ -2,34 +2,12 @@
  *
  * A side of the box is a line of the raw image, and the plane through that line and the camera touches the solid: at its foot
  * or at its head, at the point of the footprint that lies farthest along the plane's normal. This is exact at any roll and
- * from above the roof as from below. (R26) to (R29). */
+ * from above the roof as from below. (R24) to (R27). */
 #ifndef GOE_TOUCH_H
 #define GOE_TOUCH_H
 
-#include <math.h>
-
+#include "refined/goe_ellipse.h"
 #include "refined/goe_observation.h"
-
-/* A horizontal ellipse: A v from its middle, abs(v) <= 1, with A = (half 0; shear depth), across and along Z; units of Z0. */
-typedef struct {
-    float half, shear, depth;
-} goe_ellipse_t;
-
-/* How far it reaches along a horizontal unit vector. */
-typedef struct {
-    float across, along; /* A' times that vector ... */
-    float length;        /* ... and the length of this, the support function */
-} goe_reach_t;
-
-#define GOE_REACH_MIN 1.0e-9f /* of the footprint, units of Z0 */
-
-/* (R25). */
-static inline goe_reach_t goe_touch_reach(const goe_ellipse_t *ellipse, goe_xz_t outward) {
-    const float across = ellipse->half * outward.x + ellipse->shear * outward.z;
-    const float along = ellipse->depth * outward.z;
-    const goe_reach_t reach = {across, along, goe_larger(sqrtf(across * across + along * along), GOE_REACH_MIN)};
-    return reach;
-}
 
 /* An upright solid relative to the camera now, in the state's axes and units of Z0. Its footprint is the convex hull of its
  * corners or, without corners, an ellipse. */
@@ -44,12 +22,12 @@ typedef struct {
 
 /* Where a plane through the camera touches a solid. */
 typedef struct {
-    float point[3];       /* from the camera, the state's axes */
-    float x, y, nearness; /* the point in the image, focal lengths, no lens; 1/(range along the optical axis) */
-    goe_xz_t outward;     /* unit normal of the plane, horizontal part */
-    goe_reach_t reach;    /* of an ellipse, along that */
-    size_t corner;        /* of a hull: the one that is touched */
-    bool foot;            /* at the foot, not at the head */
+    float point[3];        /* from the camera, the state's axes */
+    float x, y, nearness;  /* the point in the image, focal lengths, no lens; 1/(range along the optical axis) */
+    goe_xz_t outward;      /* unit normal of the plane, horizontal part */
+    goe_contact_t contact; /* of an ellipse, along that */
+    size_t corner;         /* of a hull: the one that is touched */
+    bool foot;             /* at the foot, not at the head */
 } goe_touch_t;
 
 /*@ predicate goe_solid_is_closed(goe_solid_t *solid) =
@@ -80,7 +58,7 @@ float goe_touch_variance(const goe_observation_t *obs, size_t side, float size);
 /*@ requires goe_observation_is_open(obs) && \valid(solid); */
 void goe_touch_open(const goe_observation_t *obs, float height_m, goe_solid_t *solid);
 
-/* Adds the row of a side, (R29), and returns its derivatives by the states as goe_rows_add() does: those by GOE_GROUND and GOE_TOP
+/* Adds the row of a side, (R27), and returns its derivatives by the states as goe_rows_add() does: those by GOE_GROUND and GOE_TOP
  * are set, the others are the model's. Null if the side is not visible, or the touching point is not ahead. */
 /*@ requires goe_observation_is_open(obs) && goe_solid_is_closed(solid) && goe_rows_hold(rows);
     requires side < GOE_BOX_SIDES && rows->count < GOE_ROWS_MAX && \valid(touch) && \valid(gradient); */

@@ -120,7 +120,7 @@ static void add_refined_run(planned_flight_t *flight) {
     flight->run[flight->runs++] = setting;
 }
 
-/* The boxes' own model first; for the cylinder there is only the disc. */
+/* The boxes' own model first; for the cylinder the window has only the disc. */
 static goe_model_t usual_model(const planned_flight_t *flight) {
     return flight->setup.obstacle.kind == OBSTACLE_BOX ? GOE_MODEL_AUTO : GOE_MODEL_DISC;
 }

@@ -2,14 +2,14 @@
  * How far the estimates of one run are off.
  *
  * The truth is what the estimate means, from the true motion, with the true camera of the first frame as the origin:
- *   disc model   reference point = the obstacle's center
- *   line, box    reference point = middle of the front edge
+ *   disc, prism   reference point = the obstacle's center
+ *   line, box     reference point = middle of the front edge
  * Which side of a box is called the side edge is a convention; near 45 degrees noise decides it. An estimate that calls the
  * other one so (its orientation is more than 45 degrees off, modulo 180) is compared with the truth renamed accordingly:
  * width and length change places, the front edge is the other one, the orientation differs by 90 degrees.
  *
  * Only frames that were solved count: those whose image gave a solution of its own. A run that switches from the disc to the
- * line or the box can also be judged by its frames of one model alone.
+ * line, or from the prism to the box, can also be judged by its frames of one model alone.
  *
  * Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT
  */

@@ -1,4 +1,4 @@
-/* The rim of a prism, by many points of it, in double. SPDX-License-Identifier: MIT */
+/* The rim of a footprint, by many points of it, in double. SPDX-License-Identifier: MIT */
 #ifndef RIM_H
 #define RIM_H
 

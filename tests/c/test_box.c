@@ -222,7 +222,7 @@ static void check_rows(void) {
 
 static const int faces_to_feature[3] = {GOE_POINT_BASE_LEFT, GOE_POINT_BASE_NEAR, GOE_POINT_BASE_RIGHT};
 
-/* [goe_image_t.base_left, goe_image_t.pose, goe_image_t.top, (R1), (R10), (R11), (R12), (R13), (R2), (R9)]
+/* [goe_image_t.base_left, goe_image_t.pose, goe_image_t.top, (R1), (R8), (R9), (R10), (R11), (R2), (R7)]
  * GIVEN boxes of any size, side and orientation WHEN all visible features are measured at their brute-force places THEN all
  * residuals are 0, which shows that the same corners were taken, and all derivatives are those of the projection. */
 static void rows_are_those_of_the_corners_that_are_visible(void) {
@@ -261,7 +261,7 @@ static void rows_are_those_of_the_corners_that_are_visible(void) {
     TEST_ASSERT_TRUE(faces[1] > CASES / 20 && faces[2] > CASES / 2);
 }
 
-/* [(R12)] GIVEN a silhouette alone THEN its corners are the outermost ones. */
+/* [(R10)] GIVEN a silhouette alone THEN its corners are the outermost ones. */
 static void a_silhouette_alone_takes_the_outermost_corners(void) {
     any = check_random_start("silhouette");
     for (int n = 0; n < CASES; n++) {
@@ -324,7 +324,7 @@ static void a_missed_near_corner_is_distinguished_from_a_single_face(void) {
     TEST_ASSERT_TRUE(checked > 50);
 }
 
-/* [(R9)] The depths solve their two equations for any sign and size of their difference. */
+/* [(R7)] The depths solve their two equations for any sign and size of their difference. */
 static void depths_solve_their_equations(void) {
     any = check_random_start("depths");
     for (int n = 0; n < CASES; n++) {
@@ -388,7 +388,7 @@ static void an_edge_keeps_its_name_until_it_lies_clearly_across(void) {
     }
 }
 
-/* [A8, goe_estimate_t.center_north_m, goe_shape.c, (R10)]
+/* [A8, goe_estimate_t.center_north_m, goe_shape.c, (R8)]
  * GIVEN a box WHEN its edges exchange their names THEN width, length, orientation and the reference point are those of the other
  * edge, and the middle of the base is where it was. */
 static void names_move_the_reference_point_and_not_the_middle(void) {
@@ -420,7 +420,7 @@ static void names_move_the_reference_point_and_not_the_middle(void) {
     }
 }
 
-/* [(R24)] 1 + 12 var(d)/(sz + fz)^2, of which the ratio is at most 4. */
+/* [(R22)] 1 + 12 var(d)/(sz + fz)^2, of which the ratio is at most 4. */
 static void an_uncertain_depth_widens_corner_quantities(void) {
     goe_box_edges_t edges;
     goe_shape_t shape;

@@ -17,7 +17,7 @@ typedef struct {
 
 static check_random_t any;
 static sighting_t sighting;
-static goe_footprint_t box;
+static goe_first_box_t box;
 
 void setUp(void) { memset(&box, 0, sizeof box); }
 void tearDown(void) {}
@@ -40,7 +40,7 @@ static void measure(size_t feature, place_t at) {
 }
 
 /* Reference point in T from a and q, relative to the camera now. */
-static place_t reference_of(const goe_footprint_t *of) {
+static place_t reference_of(const goe_first_box_t *of) {
     const double c = (double)of->turn_cos;
     const double s = (double)of->turn_sin;
     const double z = 1.0 / (double)of->q - (s * 3.0 + c * 25.0);
@@ -49,8 +49,8 @@ static place_t reference_of(const goe_footprint_t *of) {
     return place;
 }
 
-static double width_of(const goe_footprint_t *of) { return (double)of->width / (double)of->q; }
-static double length_of(const goe_footprint_t *of) { return (double)of->length / (double)of->q; }
+static double width_of(const goe_first_box_t *of) { return (double)of->width / (double)of->q; }
+static double length_of(const goe_first_box_t *of) { return (double)of->length / (double)of->q; }
 
 /* ------------------------------------------------------------------------------------------------------------ one face -- */
 
@@ -61,7 +61,7 @@ static void show_face(place_t left, place_t right) {
     measure(GOE_POINT_BASE_RIGHT, right);
 }
 
-/* [(R20)] GIVEN the front of any box, exact corners and range THEN orientation, width and reference point are exact. */
+/* [(R18)] GIVEN the front of any box, exact corners and range THEN orientation, width and reference point are exact. */
 static void a_front_alone_is_exact(void) {
     any = check_random_start("front");
     for (int n = 0; n < CASES; n++) {
@@ -73,7 +73,7 @@ static void a_front_alone_is_exact(void) {
         show_face(left, right);
         sighting.sight.point_px = 0.05f;
         sighting.settings.navigation.attitude_bias_sd_deg = 0.05f;
-        TEST_ASSERT_TRUE(goe_footprint_one_face(&sighting.sight, &box));
+        TEST_ASSERT_TRUE(goe_box_of_one_face(&sighting.sight, &box));
         const place_t reference = reference_of(&box);
         CHECK_CLOSE(1.0e-4, b, box.orientation_rad);
         CHECK_CLOSE(1.0e-4, sin(b), box.sine);
@@ -85,7 +85,7 @@ static void a_front_alone_is_exact(void) {
     }
 }
 
-/* [(R20)] GIVEN a face that lies more along than across THEN it is the side, and its near end is a corner of the front: the right one
+/* [(R18)] GIVEN a face that lies more along than across THEN it is the side, and its near end is a corner of the front: the right one
  * if the side lies to the right of it, viewed from outside. */
 static void a_side_alone_has_its_near_end_on_the_front(void) {
     any = check_random_start("side");
@@ -102,7 +102,7 @@ static void a_side_alone_has_its_near_end_on_the_front(void) {
         show_face(on_right ? near : far, on_right ? far : near);
         sighting.sight.point_px = 0.05f;
         sighting.settings.navigation.attitude_bias_sd_deg = 0.05f;
-        TEST_ASSERT_TRUE(goe_footprint_one_face(&sighting.sight, &box));
+        TEST_ASSERT_TRUE(goe_box_of_one_face(&sighting.sight, &box));
         const place_t reference = reference_of(&box);
         const double half = (on_right ? -0.5 : 0.5) * width_of(&box); /* from the corner to the middle of the front */
         CHECK_CLOSE(2.0e-4, b, box.orientation_rad);
@@ -112,7 +112,7 @@ static void a_side_alone_has_its_near_end_on_the_front(void) {
     }
 }
 
-/* [(R20)] GIVEN noise THEN the reported sigma of the orientation is at least its effect on the orientation. */
+/* [(R18)] GIVEN noise THEN the reported sigma of the orientation is at least its effect on the orientation. */
 static void the_sigma_covers_the_noise(void) {
     const int draws = 2000;
     double sum2 = 0.0;
@@ -125,7 +125,7 @@ static void the_sigma_covers_the_noise(void) {
             sighting.sight.point[i].x += (float)(0.3 / 914.0 * check_random_normal(&any));
             sighting.sight.point[i].y += (float)(0.3 / 914.0 * check_random_normal(&any));
         }
-        TEST_ASSERT_TRUE(goe_footprint_one_face(&sighting.sight, &box));
+        TEST_ASSERT_TRUE(goe_box_of_one_face(&sighting.sight, &box));
         const double error = (double)box.orientation_rad - atan2(2.0, 8.0);
         sum2 += error * error;
         reported = (double)box.sigma_rad;
@@ -146,7 +146,7 @@ static void a_roll_looks_like_a_depth(void) {
         show_face(left, right);
         sighting.sight.point_px = 0.05f;
         sighting.settings.navigation.attitude_bias_sd_deg = n == 0 ? 0.001f : 1.0f;
-        TEST_ASSERT_TRUE(goe_footprint_one_face(&sighting.sight, &box));
+        TEST_ASSERT_TRUE(goe_box_of_one_face(&sighting.sight, &box));
         sigma[n] = (double)box.sigma_rad;
     }
     const double tilt = 60.0 / 20.0 * (1.0 * RAD_PER_DEG) * 10.0 * 10.0; /* m of depth times m of width */
@@ -219,7 +219,7 @@ static void show_two_faces(double left_m, double right_m, double range_m, double
     }
 }
 
-/* [(R19)] GIVEN a box whose faces reach equally deep, as the guess takes all boxes WHEN it is small against its range THEN the guess is
+/* [(R17)] GIVEN a box whose faces reach equally deep, as the guess takes all boxes WHEN it is small against its range THEN the guess is
  * right to twice its size over its range. */
 static void two_faces_of_equal_depth_are_right_to_first_order(void) {
     any = check_random_start("two faces");
@@ -230,7 +230,7 @@ static void two_faces_of_equal_depth_are_right_to_first_order(void) {
         const double bearing = check_random_between(&any, -0.5, 0.5);
         show_two_faces(left, right, range, bearing);
         sighting.sight.point_px = 0.1f;
-        TEST_ASSERT_TRUE(goe_footprint_two_faces(&sighting.sight, &box));
+        TEST_ASSERT_TRUE(goe_box_of_two_faces(&sighting.sight, &box));
         const double deep = sqrt(left * right);
         const double share = 3.0 * deep / range * (1.0 + fabs(tan(bearing)) * deep);
         const double on_left = hypot(left, deep);
@@ -255,8 +255,8 @@ static void two_faces_of_equal_depth_are_right_to_first_order(void) {
 
 /* ------------------------------------------------------------------------------------------------------------ refusals -- */
 
-static bool one_face(void) { return goe_footprint_one_face(&sighting.sight, &box); }
-static bool two_faces(void) { return goe_footprint_two_faces(&sighting.sight, &box); }
+static bool one_face(void) { return goe_box_of_one_face(&sighting.sight, &box); }
+static bool two_faces(void) { return goe_box_of_two_faces(&sighting.sight, &box); }
 
 static void good_face(void) {
     show_face((place_t){-6.0, 51.0}, (place_t){2.0, 49.0});
@@ -268,7 +268,7 @@ static void good_box(void) {
     TEST_ASSERT_TRUE(two_faces());
 }
 
-/* [(R20)] */
+/* [(R18)] */
 static void an_unobservable_quantity_of_one_face_is_refused(void) {
     any = check_random_start("refusals");
     good_face();
@@ -300,7 +300,7 @@ static void an_unobservable_quantity_of_one_face_is_refused(void) {
     TEST_ASSERT_TRUE(box.sigma_rad < 0.2f);
 }
 
-/* [(R19)] */
+/* [(R17)] */
 static void an_unobservable_quantity_of_two_faces_is_refused(void) {
     any = check_random_start("refusals");
     good_box();

@@ -10,7 +10,6 @@
 #include "check.h"
 #include "maths/goe_angle.h"
 #include "refined/goe_observation.h"
-#include "refined/goe_prism.h"
 #include "refined/goe_quantities.h"
 #include "scene.h"
 
@@ -109,13 +108,15 @@ static void the_position_of_a_moving_target_grows_uncertain(void) {
 static void inputs_of_a_hazard_are_kept_with_the_answer(void) {
     goe_answer_t *answer = &estimator.filter.answer;
     answer->reach_m = 7.0f;
-    answer->nearer_m = 3.0f;
+    answer->nearer.dx_m = 3.0f;
+    answer->nearer.dz_m = -4.0f;
     answer->height_bias_m = 0.5f;
     estimator.filter.datum.height_m = 35.0f;
     for (int fresh = 0; fresh < 2; fresh++) {
         estimator.estimate.fresh = fresh == 1;
         CHECK_SAME(7.0f, goe_latest_reach(&estimator));
-        CHECK_SAME(3.0f, goe_latest_nearer(&estimator));
+        CHECK_SAME(3.0f, goe_latest_nearer(&estimator).dx_m);
+        CHECK_SAME(-4.0f, goe_latest_nearer(&estimator).dz_m);
         CHECK_SAME(0.5f, goe_latest_height_bias(&estimator));
         answer->steady = false;
         CHECK_SAME(40.0f, goe_latest_camera_height(&estimator));
@@ -124,7 +125,8 @@ static void inputs_of_a_hazard_are_kept_with_the_answer(void) {
     }
     estimator.estimate.method = GOE_METHOD_WINDOW;
     CHECK_SAME(0.0f, goe_latest_reach(&estimator));
-    CHECK_SAME(0.0f, goe_latest_nearer(&estimator));
+    CHECK_SAME(0.0f, goe_latest_nearer(&estimator).dx_m);
+    CHECK_SAME(0.0f, goe_latest_nearer(&estimator).dz_m);
     CHECK_SAME(0.0f, goe_latest_height_bias(&estimator));
     CHECK_SAME(40.0f, goe_latest_camera_height(&estimator));
 }
@@ -188,7 +190,7 @@ static void start(flight_t flight) {
     scene.top_nearest = true;
     if (flight == CHIMNEY) {
         scene_make_cylinder(&scene);
-    } else if (flight == OUTLINE) { /* whose front turns away on the way: a box comes out of it */
+    } else if (flight == OUTLINE) { /* whose front turns away on the way */
         scene.width_m = 5.0;
         scene.length_m = 9.0;
         scene.height_m = 6.0;
@@ -198,6 +200,7 @@ static void start(flight_t flight) {
         scene.image_rate_hz = 20.0;
     }
     goe_settings_t settings = scene_settings(&scene);
+    settings.model = flight == CHIMNEY ? GOE_MODEL_DISC : GOE_MODEL_AUTO;
     if (flight == OUTLINE) {
         scene_clear_noise(&settings);
     }
@@ -269,7 +272,7 @@ static void sigmas_and_covariance_agree_in_flight(void) {
         TEST_ASSERT_TRUE(valid > 60);
     }
     TEST_ASSERT_EQUAL_HEX(1u << GOE_MODEL_DISC | 1u << GOE_MODEL_BOX | 1u << GOE_MODEL_PRISM, models);
-    TEST_ASSERT_TRUE(phases & 1u << GOE_PHASE_CHORD && phases & 1u << GOE_PHASE_BOX_OUTLINE);
+    TEST_ASSERT_TRUE(phases & 1u << GOE_PHASE_FOOTPRINT && phases & 1u << GOE_PHASE_BOX);
 }
 
 int main(void) {

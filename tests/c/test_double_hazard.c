@@ -538,19 +538,19 @@ static void draw_from_covariance(check_random_t *random, const obstacle_t *mean,
     }
 }
 
-/* A filter that holds a disc 150 m ahead, 30 m to the right and 35 m high, whose direction and top share their error. */
-static void give_disc(float shared) {
+/* A filter that holds a round footprint 150 m ahead, 30 m to the right and 35 m high, whose direction and top share their error. */
+static void give_round(float shared) {
     goe_filter_t *f = &estimator.filter;
     memset(f, 0, sizeof *f);
-    f->phase = GOE_PHASE_DISC;
+    f->phase = GOE_PHASE_FOOTPRINT;
     f->axes.turn_cos = 1.0f;
     f->state[GOE_INVERSE_RANGE] = 1.0f / 150.0f;
     f->state[GOE_BEARING] = 30.0f / 150.0f;
-    f->state[GOE_FRONT_X] = 10.0f / 150.0f;
+    f->state[GOE_HALF] = 5.0f / 150.0f;
     f->state[GOE_TOP] = 35.0f / 150.0f;
     inverse_start(&f->root, 1.0e-9);
     inverse_set(&f->root, GOE_INVERSE_RANGE, GOE_INVERSE_RANGE, 1.0e-4);
-    inverse_set(&f->root, GOE_FRONT_X, GOE_FRONT_X, 1.0e-3);
+    inverse_set(&f->root, GOE_HALF, GOE_HALF, 5.0e-4);
     inverse_set(&f->root, GOE_BEARING, GOE_BEARING, 0.02 * sqrt(1.0 - (double)shared * (double)shared));
     inverse_set(&f->root, GOE_BEARING, GOE_TOP, 0.02 * (double)shared);
     inverse_set(&f->root, GOE_TOP, GOE_TOP, 0.02);
@@ -564,7 +564,7 @@ static void correlation_moves_the_probability(void) {
     const obstacle_t mean = {false, 30.0, 150.0, 10.0, 0.0, 0.0, 35.0};
     float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
     for (int i = 0; i < 5; i++) {
-        give_disc(shared[i]);
+        give_round(shared[i]);
         give(&estimator.estimate, &mean);
         estimator.estimate.method = GOE_METHOD_FILTER;
         goe_latest_covariance(&estimator, true, 0.0f, covariance);

@@ -98,7 +98,7 @@ static void rows_without_suspicion_are_divided_by_their_sigma(void) {
     }
 }
 
-/* [(R16)] GIVEN one point that is 15 px off, whichever it is, along one coordinate or both THEN it alone is refused, and all of its
+/* [(R14)] GIVEN one point that is 15 px off, whichever it is, along one coordinate or both THEN it alone is refused, and all of its
  * rows are 0. */
 static void one_outlier_is_refused_alone(void) {
     for (size_t feature = 0; feature < GOE_FEATURES; feature++) {
@@ -126,7 +126,7 @@ static void one_outlier_is_refused_alone(void) {
     }
 }
 
-/* [(R16)] GIVEN an attitude error of twice its sigma about each axis in turn, which is many pixels THEN no point is suspicious;
+/* [(R14)] GIVEN an attitude error of twice its sigma about each axis in turn, which is many pixels THEN no point is suspicious;
  * GIVEN four times THEN still none is refused. */
 static void a_shift_of_all_points_refuses_none(void) {
     for (int axis = 0; axis < 3; axis++) {
@@ -144,7 +144,7 @@ static void a_shift_of_all_points_refuses_none(void) {
     }
 }
 
-/* [(R16)] ... and an outlier is found in a shifted image, too. */
+/* [(R14)] ... and an outlier is found in a shifted image, too. */
 static void an_outlier_is_found_in_a_shifted_image(void) {
     for (size_t feature = 0; feature < GOE_FEATURES; feature++) {
         setUp();
@@ -157,7 +157,7 @@ static void an_outlier_is_found_in_a_shifted_image(void) {
     }
 }
 
-/* [filter.huber_sigma, (R16)]
+/* [filter.huber_sigma, (R14)]
  * GIVEN a point between Huber's limit and the gate THEN its weight is that of a residual on the limit, for both of its rows:
  * weight^2 = huber / residual. */
 static void a_suspicious_point_counts_less(void) {
@@ -204,7 +204,7 @@ static void correlated_errors_count_less(void) {
     }
 }
 
-/* [(R16)] GIVEN a state that is not sure of what moves one point THEN that point may be far off; the same for what the state gained
+/* [(R14)] GIVEN a state that is not sure of what moves one point THEN that point may be far off; the same for what the state gained
  * since the latest rows. */
 static void an_unsure_state_opens_the_gate(void) {
     for (int n = 0; n < 3; n++) {
@@ -231,7 +231,7 @@ static void the_own_position_s_error_opens_the_gate(void) {
             setUp();
             memset(rows.shift, 0, sizeof rows.shift);
             rows.shifts = reported != 0;
-            rows.count = GOE_BOX_SIDES; /* so many of a box: along x, x, y, x */
+            rows.count = rows.remembered = GOE_BOX_SIDES; /* so many of a box: along x, x, y, x */
             for (size_t i = 0; i < rows.count; i++) {
                 rows.shift[i][1] = shared || i == 0 ? 0.01f : 0.0f;
             }
@@ -249,7 +249,7 @@ static double sigmas_of_left(double white_deg, size_t axis, double own_sigmas, d
     rows.white_rad = (float)(white_deg * RAD_PER_DEG);
     rows.shifts = own_sigmas > 0.0 || others_sigmas > 0.0;
     memset(rows.shift, 0, sizeof rows.shift);
-    rows.count = 4; /* of a box: left, right, top, foot */
+    rows.count = rows.remembered = 4; /* of a box: left, right, top, foot */
     memset(&matrix, 0, sizeof matrix);
     for (size_t i = 0; i < rows.count; i++) {
         rows.feature[i] = (uint8_t)i;

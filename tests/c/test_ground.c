@@ -52,7 +52,7 @@ static void start(float range_m, float height_sd_m) {
     for (size_t i = 0; i < GOE_STATES; i++) {
         *goe_srif_at(&filter.root, i, i) = 1.0f;
     }
-    filter.phase = GOE_PHASE_DISC;
+    filter.phase = GOE_PHASE_FOOTPRINT;
     filter.known = GOE_HAS_POSITION;
     filter.state[GOE_INVERSE_RANGE] = 1.0f / range_m;
     *goe_srif_at(&filter.root, GOE_INVERSE_RANGE, GOE_INVERSE_RANGE) = RANGE_KNOWN * range_m;
@@ -237,7 +237,7 @@ static void a_height_that_is_kept_has_no_slope(void) {
     settings.navigation.terrain_slope_sd = SLOPE;
     for (int kept = 0; kept < 2; kept++) {
         start(RANGE_M, CONSTANT_M);
-        filter.phase = kept == 0 ? GOE_PHASE_PRISM : GOE_PHASE_DISC;
+        filter.datum.boxes = kept == 0;
         settings.navigation.height_white_sd_m = kept == 0 ? 0.0f : WHITE_M;
         TEST_ASSERT_TRUE(goe_ground_is_steady(&filter, &settings.navigation));
         filter.flown_m = FLOWN_M;
@@ -316,7 +316,6 @@ static void the_arm_moves_the_camera_up_and_down(void) {
     read_height(HEIGHT_M, 0.0f);
     const double ground =
         (double)HEIGHT_M + first_down; /* the mean of two heights above what moved does not matter here */
-    filter.phase = GOE_PHASE_DISC;
     CHECK_CLOSE(1.0e-4, (double)filter.datum.ground_m - down, filter.datum.height_m);
     CHECK_CLOSE(1.0e-4, 0.5 * (ground + (double)HEIGHT_M + down), filter.datum.ground_m);
 }

@@ -5,7 +5,6 @@
 #include "check.h"
 #include "goe_covariance.h"
 #include "refined/goe_filter.h"
-#include "refined/goe_prism.h"
 #include "rim.h"
 #include "scene.h"
 
@@ -187,7 +186,8 @@ static void a_new_start_of_the_filter_takes_no_warning_back(void) {
 
 /* [A34]
  * GIVEN a building 36 m wide, by points and base corners without noise, every eighth detection missed WHEN the width is not valid THEN the
- * probability stays: once it was 1.0000 with the detection, and 0.0000 an image later. */
+ * probability stays: once it was 1.0000 with the detection, and 0.0000 an image later. It is not 1, as images before the line of sight
+ * turns do not show how deep the building is. */
 static void a_wide_building_stays_wide(void) {
     scene.width_m = scene.length_m = 36.0;
     scene.height_m = 17.0;
@@ -200,6 +200,7 @@ static void a_wide_building_stays_wide(void) {
     scene.top_nearest = true;
     start();
     int missed = 0;
+    float before = 0.0f;
     for (int k = 0; k < 40; k++) {
         scene_image(&scene, k, &image, NULL);
         if (k % 8 == 7) {
@@ -208,7 +209,9 @@ static void a_wide_building_stays_wide(void) {
         (void)goe_update(&estimator, &image, &estimate);
         if (k > 8) {
             CHECK_STATUS(GOE_OK, ask(0.0));
-            TEST_ASSERT_TRUE(hazard.conflict_probability > 0.95f);
+            TEST_ASSERT_TRUE(hazard.conflict_probability > 0.85f);
+            TEST_ASSERT_TRUE(hazard.conflict_probability > before - (float)LOST_MAX);
+            before = hazard.conflict_probability;
             missed += estimate.fresh ? 0 : 1;
         }
     }
@@ -219,15 +222,14 @@ static void a_wide_building_stays_wide(void) {
 static double reach_by_state(void) {
     const float *x = estimator.filter.state;
     const double q = (double)x[GOE_INVERSE_RANGE];
-    if (estimator.filter.phase == GOE_PHASE_PRISM) {
+    if (estimator.filter.phase == GOE_PHASE_FOOTPRINT) {
         const goe_xz_t camera = goe_filter_measured(&estimator.filter);
         const double ahead_x = (double)x[GOE_BEARING] - (double)camera.x * q;
         const double ahead_z = 1.0 - (double)camera.z * q;
         const double range = hypot(ahead_x, ahead_z);
         return rim_reach(x, ahead_z / range, -ahead_x / range) / q;
     }
-    const double side = estimator.filter.phase >= GOE_PHASE_BOX_FACE ? fabs((double)x[GOE_SIDE_X]) : 0.0;
-    return 0.5 * ((double)x[GOE_FRONT_X] + side) / q;
+    return 0.5 * ((double)x[GOE_FRONT_X] + fabs((double)x[GOE_SIDE_X])) / q;
 }
 
 /* [A34]
@@ -255,8 +257,7 @@ static void the_reach_is_that_of_the_state(void) {
         CHECK_SAME(before, goe_latest_reach(&estimator));
         TEST_ASSERT_TRUE(estimator.filter.answer.least_m >= before);
     }
-    TEST_ASSERT_TRUE(phases & (1u << GOE_PHASE_PRISM));
-    TEST_ASSERT_TRUE(phases & (1u << GOE_PHASE_DISC));
+    TEST_ASSERT_TRUE(phases & (1u << GOE_PHASE_FOOTPRINT));
     TEST_ASSERT_TRUE(phases & (1u << GOE_PHASE_BOX));
 }
 

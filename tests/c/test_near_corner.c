@@ -121,7 +121,7 @@ static void a_missed_corner_makes_no_face_of_two(void) {
     TEST_ASSERT_TRUE(worst < SIGMAS_MAX);
 }
 
-/* [(R41)]
+/* [(R37)]
  * GIVEN two faces WHEN the corner between them is never visible THEN their ends are taken for a face only where one is possible, across the
  * line of sight; and the reported sigmas then include that. */
 static void two_ends_are_no_sure_face(void) {
@@ -160,7 +160,7 @@ static void a_second_face_comes_late_in_a_turn(void) {
     TEST_ASSERT_TRUE(beyond <= FLIGHTS / 20); /* a length that is first viewed at a grazing angle */
 }
 
-/* [(R41)]
+/* [(R37)]
  * GIVEN a truck ahead, end on, viewed from above WHEN its top is the highest point of the roof in the image, which is over the far end
  * THEN the height is uncertain by the unobserved length. */
 static void a_truck_viewed_end_on_hides_its_length(void) {

@@ -5,7 +5,6 @@
 
 #include "check.h"
 #include "inverse.h"
-#include "refined/goe_prism.h"
 #include "refined/goe_quantities.h"
 #include "scene.h"
 
@@ -244,10 +243,10 @@ static void a_center_that_is_nowhere_is_not_reported(void) {
         memset(&motion, 0, sizeof motion);
         motion.heading_cos = i < 2 ? sqrtf(0.5f) : 1.0f;
         motion.heading_sin = i < 2 ? sqrtf(0.5f) : 0.0f;
-        filter.phase = GOE_PHASE_PRISM;
+        filter.phase = GOE_PHASE_FOOTPRINT;
         filter.known = GOE_HAS_POSITION;
         filter.state[GOE_INVERSE_RANGE] = 1.0f / range_m;
-        filter.state[GOE_PRISM_HALF] = 1.0e-3f;
+        filter.state[GOE_HALF] = 1.0e-3f;
         inverse_start(&filter.root, 1.0e-9);
         inverse_set(&filter.root, GOE_BEARING, GOE_INVERSE_RANGE, (double)spread);
         inverse_set(&filter.root, GOE_INVERSE_RANGE, GOE_INVERSE_RANGE,

@@ -35,7 +35,7 @@ static void fly_the_worked_example(goe_method_t method, int first) {
         }
     }
     TEST_ASSERT_FLOAT_WITHIN(0.1f, 150.0f, estimate.z_m);
-    TEST_ASSERT_EQUAL_INT(GOE_MODEL_DISC, estimate.model);
+    TEST_ASSERT_EQUAL_INT(method == GOE_METHOD_FILTER ? GOE_MODEL_PRISM : GOE_MODEL_DISC, estimate.model);
     TEST_ASSERT_TRUE(estimate.fresh);
 }
 

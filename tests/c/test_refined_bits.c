@@ -54,7 +54,7 @@ typedef struct {
     double north_m, east_m;       /* of the obstacle's middle */
     double altitude_m, speed_m_s; /* of the flight to the north */
     double sway, pixels;          /* of the attitude, as tangents of half angles; noise */
-    goe_model_t model, at_least;  /* asked for; that must be met */
+    goe_model_t model, reported;  /* asked for; that must be met */
     unsigned valid;               /* that must be met */
     goe_reason_t reason;          /* ... */
     uint64_t hash;
@@ -338,27 +338,27 @@ static goe_settings_t settings_of(const flight_t *flight) {
 
 static const flight_t flights[] = {
     {"a house by its corners", &house, POINTS | BASE, 70, 130.0, -25.0, 20.0, 10.0, 0.03, 0.5, GOE_MODEL_AUTO,
-     GOE_MODEL_BOX, 0x3Fu, GOE_REASON_NONE, 0xE222C6E3A4BA53C6u},
+     GOE_MODEL_BOX, 0x3Fu, GOE_REASON_NONE, 0x9C64C26E29905030u},
     {"a turned one, with gaps and a jump", &turned_house, POINTS | BASE | GAPS | JUMPS | WHITE | LENS, 70, 140.0, 20.0,
-     25.0, 11.0, 0.04, 0.7, GOE_MODEL_AUTO, GOE_MODEL_BOX, 0x3Fu, GOE_REASON_NONE, 0xBC3BD4C454421158u},
+     25.0, 11.0, 0.04, 0.7, GOE_MODEL_AUTO, GOE_MODEL_BOX, 0x3Fu, GOE_REASON_NONE, 0xFCB645ACD353C39Du},
     {"a box asked for, passed closely", &turned_house, POINTS | BASE, 70, 90.0, -20.0, 15.0, 10.0, 0.03, 0.3,
-     GOE_MODEL_LINE, GOE_MODEL_BOX, 0x3Fu, GOE_REASON_NONE, 0x89C4500BA32E5CA2u},
-    {"a mast by its outline", &mast, POINTS, 60, 150.0, 12.0, 15.0, 12.0, 0.03, 0.4, GOE_MODEL_AUTO, GOE_MODEL_DISC,
-     0x35u, GOE_REASON_NONE, 0xC65E182548D52D65u},
+     GOE_MODEL_LINE, GOE_MODEL_BOX, 0x3Fu, GOE_REASON_NONE, 0x775BF8F9324C7E75u},
+    {"a mast by its outline", &mast, POINTS, 60, 150.0, 12.0, 15.0, 12.0, 0.03, 0.4, GOE_MODEL_AUTO, GOE_MODEL_PRISM,
+     0x35u, GOE_REASON_NONE, 0x9739657C7808ED44u},
     {"a house for which a disc was configured", &turned_house, POINTS | WINDY, 60, 110.0, -25.0, 15.0, 11.0, 0.02, 0.2,
-     GOE_MODEL_DISC, GOE_MODEL_DISC, 0x01u, GOE_REASON_SHAPE, 0xB1695E141BC9C545u},
-    {"a house by its outline, one face turning away", &turned_house, POINTS | WINDY, 110, 130.0, 25.0, 15.0, 9.5, 0.02,
-     0.2, GOE_MODEL_AUTO, GOE_MODEL_BOX, 0x01u, GOE_REASON_NONE, 0x619C50DFB3BD54FDu},
+     GOE_MODEL_DISC, GOE_MODEL_DISC, 0x01u, GOE_REASON_SHAPE, 0x2B53694B4454C069u},
+    {"a house by its outline", &turned_house, POINTS | WINDY, 110, 130.0, 25.0, 15.0, 9.5, 0.02, 0.2, GOE_MODEL_AUTO,
+     GOE_MODEL_PRISM, 0x01u, GOE_REASON_NONE, 0x9575820244620D20u},
     {"a mast by upright boxes", &mast, BOXES | WINDY | LENS, 60, 150.0, 10.0, 15.0, 12.0, 0.08, 0.5, GOE_MODEL_AUTO,
-     GOE_MODEL_PRISM, 0x05u, GOE_REASON_NONE, 0x1F64CE2C88C3792Au},
+     GOE_MODEL_PRISM, 0x05u, GOE_REASON_NONE, 0x6499E6C2DC4D2C92u},
     {"a house by upright boxes, with gaps", &turned_house, BOXES | GAPS | WINDY, 70, 150.0, -20.0, 30.0, 11.0, 0.05,
-     0.8, GOE_MODEL_AUTO, GOE_MODEL_PRISM, 0x01u, GOE_REASON_NONE, 0x1C91C12DA4FD819Bu},
+     0.8, GOE_MODEL_AUTO, GOE_MODEL_PRISM, 0x01u, GOE_REASON_NONE, 0x26247B9B1B581E39u},
     {"boxes and corners", &house, POINTS | BASE | BOXES, 50, 120.0, 18.0, 18.0, 11.0, 0.04, 0.5, GOE_MODEL_AUTO,
-     GOE_MODEL_BOX, 0x3Fu, GOE_REASON_NONE, 0x3C52ED0DE49AAC06u},
+     GOE_MODEL_BOX, 0x3Fu, GOE_REASON_NONE, 0x067C86A09D9EF17Bu},
     {"a truck that moves", &turned_house, POINTS | BASE | MOVING, 60, 160.0, -30.0, 20.0, 10.0, 0.03, 0.4,
-     GOE_MODEL_AUTO, GOE_MODEL_DISC, GOE_HAS_VELOCITY, GOE_REASON_MOVES, 0x44A7E056DAA340ACu},
+     GOE_MODEL_AUTO, GOE_MODEL_PRISM, GOE_HAS_VELOCITY, GOE_REASON_MOVES, 0xF326B0073C56DDCDu},
     {"poses that are late", &house, POINTS | BASE | LATE, 70, 140.0, 15.0, 20.0, 10.0, 0.06, 0.4, GOE_MODEL_AUTO,
-     GOE_MODEL_BOX, 0x01u, GOE_REASON_LATE, 0xA9817A74E14EAB3Fu},
+     GOE_MODEL_BOX, 0x01u, GOE_REASON_LATE, 0x925E2B7AF7BBD4EFu},
 };
 
 static void print_hash(const flight_t *flight) {
@@ -372,7 +372,7 @@ static void print_hash(const flight_t *flight) {
 /* Flies it; the flight must show its purpose. Returns whether the bits are the stored ones. */
 static bool is_as_stored(const flight_t *flight) {
     const goe_settings_t settings = settings_of(flight);
-    goe_model_t model = GOE_MODEL_NONE;
+    unsigned models = 0;
     unsigned reasons = 1u << GOE_REASON_NONE;
     unsigned valid = 0;
     hash = FNV_OFFSET;
@@ -385,12 +385,12 @@ static bool is_as_stored(const flight_t *flight) {
         hash_word((uint32_t)(int)goe_update(&estimator, &image, &estimate));
         hash_estimate(&estimate);
         hash_answers();
-        model = estimate.method == GOE_METHOD_FILTER && estimate.model > model ? estimate.model : model;
+        models |= estimate.method == GOE_METHOD_FILTER ? 1u << estimate.model : 0u;
         reasons |= 1u << estimate.reason;
         valid |= estimate.method == GOE_METHOD_FILTER ? estimate.valid : 0u;
     }
     print_hash(flight);
-    TEST_ASSERT_TRUE_MESSAGE(model >= flight->at_least, "the model that the flight is there for");
+    TEST_ASSERT_TRUE_MESSAGE((models >> flight->reported & 1u) != 0u, "the model that the flight is there for");
     TEST_ASSERT_EQUAL_HEX_MESSAGE(flight->valid, valid & flight->valid, "the answers that it is there for");
     TEST_ASSERT_TRUE_MESSAGE((reasons >> flight->reason & 1u) != 0u, "the reason that it is there for");
     return hash == flight->hash;

@@ -7,7 +7,7 @@
 
 #include "check.h"
 #include "inverse.h"
-#include "refined/goe_disc.h"
+#include "refined/goe_filter.h"
 
 static goe_filter_t filter;
 static goe_settings_t settings;
@@ -44,11 +44,11 @@ static void check_reason(goe_reason_t reason, bool suspect) {
     TEST_ASSERT_EQUAL_INT(suspect, estimate.suspect);
 }
 
-/* A disc that was configured, whose skew is beyond chance. */
-static void be_skewed(void) {
-    filter.phase = GOE_PHASE_DISC;
+/* A footprint for which a disc was configured, whose shear is beyond chance. */
+static void be_sheared(void) {
+    filter.phase = GOE_PHASE_FOOTPRINT;
     settings.model = GOE_MODEL_DISC;
-    filter.state[GOE_SIDE_X] = 1.0f;
+    filter.state[GOE_SHEAR] = 1.0f;
     inverse_start(&filter.root, 0.1);
     know_latency();
 }
@@ -63,7 +63,7 @@ static void the_most_informative_reason_is_reported(void) {
     check_reason(GOE_REASON_CONVENTION, true);
     filter.mover.late = true;
     check_reason(GOE_REASON_LATE, true); /* as it does not fit either */
-    be_skewed();
+    be_sheared();
     check_reason(GOE_REASON_SHAPE, true);
     filter.health.base_refused = true;
     check_reason(GOE_REASON_BASE, true);
@@ -88,17 +88,17 @@ static void few_images_make_nothing_suspect(void) {
     check_reason(GOE_REASON_NONE, false);
 }
 
-/* GIVEN a skewed silhouette THEN it is reported as no disc only if a disc was configured, and only while the model is one. */
-static void a_skew_matters_where_a_disc_was_requested(void) {
-    be_skewed();
+/* GIVEN a sheared footprint THEN it is reported as no disc only if a disc was configured, and only while the model is one. */
+static void a_shear_matters_where_a_disc_was_requested(void) {
+    be_sheared();
     check_reason(GOE_REASON_SHAPE, true);
     settings.model = GOE_MODEL_AUTO;
     check_reason(GOE_REASON_NONE, false);
-    be_skewed();
-    filter.phase = GOE_PHASE_PRISM;
+    be_sheared();
+    filter.phase = GOE_PHASE_BOX;
     check_reason(GOE_REASON_NONE, false);
-    be_skewed();
-    filter.state[GOE_SIDE_X] = 0.4f; /* 4 sigma; 4.2 are too many for a cylinder */
+    be_sheared();
+    filter.state[GOE_SHEAR] = 0.4f; /* 4 sigma; 4.2 are too many for a cylinder */
     check_reason(GOE_REASON_NONE, false);
 }
 
@@ -251,7 +251,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_most_informative_reason_is_reported);
     RUN_TEST(few_images_make_nothing_suspect);
-    RUN_TEST(a_skew_matters_where_a_disc_was_requested);
+    RUN_TEST(a_shear_matters_where_a_disc_was_requested);
     RUN_TEST(the_windows_answer_is_doubted_too);
     RUN_TEST(the_fit_is_reported_with_the_filters_answer);
     RUN_TEST(only_known_values_are_reported);

@@ -49,7 +49,7 @@ static double mean_factor(double kept, float repeated) {
     return sum / TRACKS;
 }
 
-/* [(R34)] GIVEN residuals that are new in each image and as large as configured THEN nothing is widened by more than chance. */
+/* [(R32)] GIVEN residuals that are new in each image and as large as configured THEN nothing is widened by more than chance. */
 static void nothing_is_widened_without_need(void) {
     const double factor = mean_factor(0.0, 1.0f);
     check_report("factor of white residuals", factor);
@@ -58,7 +58,7 @@ static void nothing_is_widened_without_need(void) {
     CHECK_SAME(1.0f, goe_scatter_factor(&filter, 1.0f)); /* a new track */
 }
 
-/* [goe_estimate_t.sigma, (R34)]
+/* [goe_estimate_t.sigma, (R32)]
  * GIVEN residuals that keep a share from image to image THEN the factor is that of the variance of a long mean of them. */
 static void correlated_residuals_count_less(void) {
     static const double kept[] = {0.3, 0.5, 0.7};
@@ -70,13 +70,13 @@ static void correlated_residuals_count_less(void) {
     }
 }
 
-/* [detector.point_correlation, (R34)] GIVEN a configured correlation THEN it is not counted twice. */
+/* [detector.point_correlation, (R32)] GIVEN a configured correlation THEN it is not counted twice. */
 static void an_external_value_is_not_counted_twice(void) {
     const double factor = mean_factor(0.5, 3.0f);
     TEST_ASSERT_TRUE(factor >= 1.0 && factor < 1.15);
 }
 
-/* [goe_estimate_t.sigma, (R34)]
+/* [goe_estimate_t.sigma, (R32)]
  * GIVEN images that scatter more than configured THEN the larger of the two means counts; GIVEN ones that scatter less THEN nothing
  * shrinks. */
 static void doubt_widens_and_trust_does_not_shrink(void) {
@@ -104,7 +104,7 @@ static void doubt_widens_and_trust_does_not_shrink(void) {
     CHECK_CLOSE(1.0e-3, 19.0, goe_scatter_factor(&filter, 1.0f));
 }
 
-/* [(R34)] GIVEN a feature that is refused or not visible in an image THEN the next one is not correlated with an earlier one; GIVEN an
+/* [(R32)] GIVEN a feature that is refused or not visible in an image THEN the next one is not correlated with an earlier one; GIVEN an
  * outlier THEN it counts as ten sigmas. */
 static void gaps_join_nothing_and_outliers_are_clipped(void) {
     double residual[4] = {5.0, 5.0, 5.0, 5.0};

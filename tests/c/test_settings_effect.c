@@ -182,7 +182,7 @@ static void fly(flight_t flight, const goe_settings_t *settings, answers_t *answ
 
 static answers_t plain, changed;
 
-/* [A2, (R14), (R23)]
+/* [A2, (R12), (R21)]
  * GIVEN a flight WHEN one setting alone is changed THEN the answers change; one that configures an error makes the sigma larger
  * that includes that error. */
 static void every_setting_does_what_it_says(void) {

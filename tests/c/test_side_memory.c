@@ -123,7 +123,7 @@ static series_t any_series(void) {
     return s;
 }
 
-/* [detector.box_noise_rel, (R30), (R31), (R32)]
+/* [detector.box_noise_rel, (R28), (R29), (R30)]
  * GIVEN a side whose error is a first-order process WHEN its images come one by one THEN value and variance are those of all
  * images at once, with the error's whole covariance. */
 static void it_is_as_good_as_all_images_at_once(void) {
@@ -141,7 +141,7 @@ static void it_is_as_good_as_all_images_at_once(void) {
     }
 }
 
-/* [(R32)] GIVEN a row that was refused THEN nothing is learned from it. */
+/* [(R30)] GIVEN a row that was refused THEN nothing is learned from it. */
 static void a_refused_row_teaches_nothing(void) {
     goe_side_memory_t side;
     goe_side_memory_t before;
@@ -156,7 +156,7 @@ static void a_refused_row_teaches_nothing(void) {
     TEST_ASSERT_EQUAL_MEMORY(&before, &side, sizeof side);
 }
 
-/* [(R30)] GIVEN a side that comes into view late, of a box that has grown THEN its error is as large as that box makes it. */
+/* [(R28)] GIVEN a side that comes into view late, of a box that has grown THEN its error is as large as that box makes it. */
 static void a_side_measured_late_starts_afresh(void) {
     goe_side_memory_t side;
     float row[GOE_COLUMNS] = {0.0f};

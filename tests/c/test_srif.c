@@ -212,7 +212,7 @@ static void check_update(goe_triangle_t *root, double nuisance_root, goe_matrix_
     CHECK_CLOSE(SHARE * (1.0 + expected.nis), expected.nis, nis);
 }
 
-/* [GOE_METHOD_FILTER, goe_estimate_t.nis, (R17)]
+/* [GOE_METHOD_FILTER, goe_estimate_t.nis, (R15)]
  * GIVEN any triangle and any 1 to 9 rows WHEN they are rotated in THEN information, change and the rest are those of the
  * normal equations with the temporaries' noise in the rows' covariance. */
 static void an_update_solves_the_normal_equations(void) {
@@ -256,7 +256,7 @@ static void a_considered_state_is_held_and_depended_on(void) {
     }
 }
 
-/* [goe_estimate_t.nis, (R17)]
+/* [goe_estimate_t.nis, (R15)]
  * GIVEN measurements drawn from the model WHEN updated many times THEN the squares that are left over average to the number
  * of rows: that is what makes them an innovation statistic. */
 static void the_squares_left_over_average_to_the_number_of_rows(void) {
@@ -299,7 +299,7 @@ static void the_squares_left_over_average_to_the_number_of_rows(void) {
     CHECK_CLOSE(5.0 * sqrt(2.0 * (double)rows / draws), (double)rows, sum / draws); /* 5 sigma */
 }
 
-/* [(R17)] */
+/* [(R15)] */
 static void rows_of_zeros_change_nothing(void) {
     any = check_random_start("zeros");
     goe_triangle_t root = no_root;
@@ -327,7 +327,7 @@ static void a_row_without_derivatives_is_left_over(void) {
     CHECK_SAME(9.0f, goe_srif_update(&root, 100.0f, &matrix, GOE_ROWS_MAX, change));
 }
 
-/* [(R17)]
+/* [(R15)]
  * GIVEN up to five rows WHEN they are counted THEN the shorter kernel gives the bits of the longer one, which reads rows of zeros behind
  * them. */
 static void few_rows_give_the_same_bits(void) {
@@ -356,7 +356,7 @@ static void few_rows_give_the_same_bits(void) {
     }
 }
 
-/* [(R17)] Each row of R with the other sign is the same information. */
+/* [(R15)] Each row of R with the other sign is the same information. */
 static void the_signs_of_the_rows_are_free(void) {
     any = check_random_start("signs");
     for (size_t i = 0; i < N; i++) {
@@ -398,7 +398,7 @@ static void check_spread(const float direction[GOE_STATES], size_t first, size_t
     check_equal(5.0 * SHARE, &expected, &actual);
 }
 
-/* [navigation.attitude_walk_sd_deg, navigation.position_walk_sd_m, (R14)]
+/* [navigation.attitude_walk_sd_deg, navigation.position_walk_sd_m, (R12)]
  * GIVEN a variance along one state, or along several at once THEN the covariance grows by sigma^2 d d', and nothing else
  * changes. */
 static void spreading_adds_to_the_covariance(void) {
@@ -416,7 +416,7 @@ static void spreading_adds_to_the_covariance(void) {
     }
 }
 
-/* [(R14)] GIVEN a sigma so small that its inverse squared is no float any more THEN the root stays as it is. */
+/* [(R12)] GIVEN a sigma so small that its inverse squared is no float any more THEN the root stays as it is. */
 static void a_tiny_sigma_changes_nothing(void) {
     static const float tiny[] = {1.0e-45f, 1.0e-38f, 1.0e-30f, 1.0e-20f, 1.0e-19f, 1.0e-17f};
     static const float one[N] = {1.0f};
@@ -435,7 +435,7 @@ static void a_tiny_sigma_changes_nothing(void) {
 
 /* ---------------------------------------------------------------------------------------------------------- variances -- */
 
-/* [(R22)] GIVEN any triangle THEN the part of each state is its column of the inverse of R', and its square is the variance. */
+/* [(R20)] GIVEN any triangle THEN the part of each state is its column of the inverse of R', and its square is the variance. */
 static void the_root_times_a_part_is_one(void) {
     any = check_random_start("part");
     for (int n = 0; n < CASES; n++) {
@@ -462,7 +462,7 @@ static void the_root_times_a_part_is_one(void) {
     }
 }
 
-/* [(R22)] GIVEN weights with zeros among them THEN projected'projected = w'Pw. */
+/* [(R20)] GIVEN weights with zeros among them THEN projected'projected = w'Pw. */
 static void a_variance_is_the_covariance_projected_along_the_weights(void) {
     any = check_random_start("variance");
     for (int n = 0; n < CASES; n++) {
@@ -551,7 +551,7 @@ static void a_singular_covariance_gives_a_finite_root(void) {
     }
 }
 
-/* [(R21)] GIVEN new states of which the last seven old ones are functions THEN the information in the new ones is D'(R'R)D. */
+/* [(R19)] GIVEN new states of which the last seven old ones are functions THEN the information in the new ones is D'(R'R)D. */
 static void a_substitution_keeps_the_information(void) {
     any = check_random_start("substitution");
     for (int c = 0; c < CASES; c++) {

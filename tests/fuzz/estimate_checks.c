@@ -8,7 +8,6 @@
 #include "fuzz_input.h"
 
 #define ROUNDING 1.0e-3       /* of a sigma or a correlation that was stored as float */
-#define WIDENING_MAX 20.0     /* of a sigma with the track's own residual scatter */
 #define UNIT_ROUNDING 2.0e-5f /* of a unit vector's squared norm */
 #define AGE_MAX_S 4000.5f     /* 4000 s, rounded to float */
 #define METERS_MAX 1.0e6f     /* no position or sigma of the filter method is beyond */
@@ -148,7 +147,7 @@ static void check_correlations(float covariance[GOE_QUANTITIES][GOE_QUANTITIES])
 }
 
 /* The diagonal equals the squared sigmas: bit by bit for the window method, otherwise up to rounding. For a stale answer it is at least as
- * large. For a box it may be larger: the outline's uncertainty includes the track's scatter, and the sigma does not. */
+ * large. */
 static void check_diagonal(const goe_estimate_t *e, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]) {
     const goe_sigma_t *s = &e->sigma;
     const float sigma[GOE_QUANTITIES] = {s->x0_m, s->z0_m, s->orientation_deg, s->width_m, s->length_m, s->height_m};
@@ -163,8 +162,8 @@ static void check_diagonal(const goe_estimate_t *e, float covariance[GOE_QUANTIT
             }
         } else if (of_filter) {
             const double reported = sqrt((double)covariance[i][i]);
-            const double most = e->model == GOE_MODEL_BOX ? WIDENING_MAX : 1.0 + ROUNDING;
-            FUZZ_CHECK(reported >= (double)sigma[i] * (1.0 - ROUNDING) && reported <= (double)sigma[i] * most);
+            FUZZ_CHECK(reported >= (double)sigma[i] * (1.0 - ROUNDING) &&
+                       reported <= (double)sigma[i] * (1.0 + ROUNDING));
         } else if (e->method == GOE_METHOD_FILTER) {
             FUZZ_CHECK(sqrt((double)covariance[i][i]) >= (double)sigma[i] * (1.0 - ROUNDING));
         } else if (stationary || i > GOE_Z0) {

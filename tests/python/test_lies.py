@@ -7,6 +7,7 @@ import copy
 import csv
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -33,7 +34,7 @@ from bench.lies import (
 from bench.lies.decode import decode
 from bench.lies.finds import CAUSES, COLUMNS, FRESH_MOST_S, GONE_MOST, KINDS, SAFE_MOST, WARNS_LEAST, find
 from bench.lies.genes import BASE, BOXES, MIXES, OUTLINES, POINTS, Params
-from bench.lies.judge import QUANTITIES, judge
+from bench.lies.judge import BOX, DISC, PRISM, QUANTITIES, judge
 from bench.lies.record import write
 from bench.lies.search import Flown
 from bench.lies.shapes import Solid
@@ -293,6 +294,15 @@ def test_the_truth_is_no_lie(honest: Flown) -> None:
     assert np.isfinite(honest.lies.ratio[:, : len(QUANTITIES)]).all()
     assert honest.judged.violated.mean() > 0.3
     assert not honest.lies.false_safety.any() and not honest.lies.vanished.any()
+
+
+def test_a_hazard_of_a_cylinder_counts_by_a_disc_and_by_a_prism(honest: Flown) -> None:
+    cylinders, found = copy.copy(honest.world), copy.deepcopy(honest.found)
+    cylinders.solid = replace(cylinders.solid, round=np.ones_like(cylinders.solid.round))
+    for model, counts in ((DISC, True), (PRISM, True), (BOX, False)):
+        found.estimates["model"] = model
+        time = find(cylinders, found, honest.judged).ratio[:, COLUMNS.index("time")]
+        assert np.isfinite(time).any() == counts
 
 
 def test_names_of_sides_may_be_exchanged(honest: Flown) -> None:

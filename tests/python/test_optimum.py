@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from bench.__main__ import main as bench_main
-from bench.optimum.goals import command
+from bench.optimum.goals import command, outcome
 from bench.optimum.goals.goal import Goal
 from bench.optimum.goals.kitti import caught
 from goe_tools.__main__ import main
@@ -307,11 +307,12 @@ def test_the_bound_under_the_other_name() -> None:
     assert np.allclose(other[[2, 3, 4, 5]], best.sigma[[2, 4, 3, 5]])
 
 
-def test_a_disc_for_a_box_is_held_against_its_middle() -> None:
+@pytest.mark.parametrize("model_number", [MODEL_DISC, MODEL_PRISM])
+def test_a_footprint_for_a_box_is_held_against_its_middle(model_number: int) -> None:
     flight = measure(box_scene(), EXACT)
     values = np.tile(flight.truth.values, (2, 1))
     values[:, :2] = flight.truth.corners().mean(0)
-    error = judge(track_of(values, MODEL_DISC), flight).error
+    error = judge(track_of(values, model_number), flight).error
     assert np.abs(error[:, :2]).max() < 1e-9
     assert np.isnan(error[:, 2:]).all()
 
@@ -362,6 +363,21 @@ def test_the_library_over_two_cameras(built: None, double: bool) -> None:
     assert ((none.status == -11) == cameras).all()  # out of range
     with pytest.raises(ValueError, match=r"more_cameras\[0\]\.of_nothing"):
         estimate(flight, one | {"more_cameras[0].of_nothing": 1.0})
+
+
+def test_a_cylinder_is_configured_as_one_where_the_shape_is_known(built: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    models: list[set[int]] = []
+
+    def watched(*arguments: object, **change: object) -> Track:
+        track = estimate(*arguments, **change)  # type: ignore[arg-type]
+        models.append(set(track.model[track.valid[:, 1]]))
+        return track
+
+    monkeypatch.setattr(outcome, "estimate", watched)
+    for scene, known in ((disc_scene(), True), (disc_scene(), False), (box_scene(), True)):
+        outcome.perform(outcome.Task(scene, NOISES["gauss1"], (1, 1), shape_known=known))
+    by_filter = models[::2]  # the window method comes second
+    assert by_filter == [{MODEL_DISC}, {MODEL_PRISM}, {MODEL_PRISM, MODEL_BOX}]
 
 
 def boxed(images: int) -> Flight:

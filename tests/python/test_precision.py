@@ -29,8 +29,8 @@ def built() -> None:
 
 @pytest.fixture(scope="module")
 def scenes() -> list[Scene]:
-    """Every twelfth of the paper's cases, and a few random ones."""
-    return paper_scenes()[::12] + random_scenes(12)
+    """Every sixth of the paper's cases, and a few random ones."""
+    return paper_scenes()[::6] + random_scenes(24)
 
 
 @pytest.fixture(scope="module")

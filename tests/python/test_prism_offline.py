@@ -77,7 +77,7 @@ def test_sides_are_those_of_one_image(change: dict[str, float], most: float, slo
     state[:3], state[S], state[D] = [0.01, -0.005, 0.008], 0.3 * state[W], 0.2
     state[Q] *= 0.9
     predicted, slope = track.predicted(state)
-    size = np.where(np.arange(UNKNOWNS) == S, 3.0, 1.0)  # the shear is most sensitive to the touching point
+    size = np.where(np.arange(UNKNOWNS) == S, 4.0, 1.0)  # the shear is most sensitive to the touching point
     unknowns = np.append(state[: len(STATES)], np.zeros(UNKNOWNS - len(STATES)))
     for n in range(0, len(track.side), 7):
         sight, side = track.sight[n], track.side[n]

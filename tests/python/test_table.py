@@ -141,7 +141,7 @@ def test_the_demo(replay: Path, tmp_path: Path, capsys) -> None:
     assert main(["table", str(out), "--truth", str(folder / "truth.csv")]) == 0
     output = capsys.readouterr().out
     assert "suspect:" not in output
-    assert re.search(r" disc +$", output, re.MULTILINE) and re.search(r" box +$", output, re.MULTILINE)
+    assert re.search(r" upright +$", output, re.MULTILINE) and re.search(r" box +$", output, re.MULTILINE)
     errors = [line.split()[-2] for line in output.splitlines() if line.startswith(("width of", "length of", "height "))]
     assert len(errors) == 3
     assert all(abs(float(error)) < 1.0 for error in errors)

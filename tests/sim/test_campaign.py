@@ -271,7 +271,7 @@ def test_in_process_is_sim_and_replay(
         probe = [str(programs["campaign_probe"]), case, noise, cylinder, method, model, str(window)]
         direct = subprocess.run(probe, capture_output=True, text=True, check=True).stdout
         assert direct == replay(programs, tmp_path / "log", model, window, method, noise)
-        assert direct.count("ok,disc,") + direct.count("ok,line,") + direct.count("ok,box,") > 20
+        assert sum(direct.count(f"ok,{name},") for name in ("disc", "line", "box", "prism")) > 20
 
 
 @pytest.mark.parametrize("roll", ["0", "25"])

@@ -223,7 +223,7 @@ def test_bad_options_are_named(goe_sim: Path, tmp_path: Path, options: tuple[str
 def test_goe_replay_answers_a_prism_within_two_sigma(
     programs: dict[str, Path], goe_sim: Path, tmp_path: Path, roll: int
 ) -> None:
-    """[GOE_MODEL_PRISM, (R33)] With the library's default settings, which allow larger errors than these boxes have."""
+    """[GOE_MODEL_PRISM, (R31)] With the library's default settings, which allow larger errors than these boxes have."""
     replay, errors = programs["goe_replay"], []
     for seed in range(1, 9):
         options = ("--roll-amplitude-deg", roll, "--seed", seed, "--run", "17")

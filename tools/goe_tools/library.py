@@ -168,6 +168,12 @@ def settings_of(flight: Flight, noise: Noise | None = None, method: str = "filte
     return {name: max(value, SMALLEST.get(name, value)) for name, value in result.items()}
 
 
+def known_shape(flight: Flight) -> dict[str, float]:
+    """The setting of a user who knows what the camera looks at, as the paper does: a cylinder is configured as a disc,
+    and is round. By default the filter does not know how deep an obstacle is before the line of sight has turned."""
+    return {"model": float(MODEL_DISC)} if flight.truth.kind == "disc" else {}
+
+
 def estimate(
     flight: Flight, settings: dict[str, float] | None = None, *, double: bool = False,
     cameras: np.ndarray | None = None, **change: float,

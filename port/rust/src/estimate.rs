@@ -41,13 +41,13 @@ pub struct Sigma {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Model {
-    /// An upright cylinder, or the circle that replaces anything else.
+    /// An upright cylinder. Filter: only if the settings require it; window: also the circle that replaces anything else.
     Disc,
     /// The front edge of a box. Window method.
     Line,
     /// A box with an upright, level outline. Filter method.
     Box,
-    /// Something upright by its bounding boxes, whose depth along the line of sight is not reported. Filter method.
+    /// Something upright by its silhouette, whose depth along the line of sight is not reported. Filter method.
     Prism,
 }
 

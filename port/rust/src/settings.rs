@@ -162,11 +162,11 @@ impl Method {
 /// Which shapes the estimator may answer with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Shape {
-    /// A disc until the images show a box (filter), or enough of its base (window).
+    /// Filter: a prism until base corners show a box. Window: a disc until the images show enough of the base.
     Auto,
     /// Discs only.
     Disc,
-    /// Window: the line through the front edge; filter: a box, and no disc before it.
+    /// Window: the line through the front edge; filter: a box, and no prism before it.
     Line,
 }
 

@@ -94,9 +94,9 @@ def width_across(truth: Truth) -> float:
 
 
 def judge(answers: Answers, truth: Truth) -> Outcome:
-    """For a box, either naming of front and side is right; the one nearer in angle counts. A disc that represents
-    another shape gives the place of its middle and no size; a prism (upright boxes) its middle, and the width across
-    the first line of sight."""
+    """For a box, either naming of front and side is right; the one nearer in angle counts. A prism gives the place of
+    its middle, the height, and the width across the first line of sight; a disc that represents another shape only the
+    place of its middle."""
     values, solid = answers.values, truth.solid
     error = np.full_like(values, np.nan)
     if solid.kind == "cylinder":

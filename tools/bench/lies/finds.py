@@ -8,7 +8,18 @@ import numpy as np
 
 from .answers import RULES, Answers
 from .genes import ORBIT, TURNING
-from .judge import BOX, DISC, FILTER, FLIGHT_QUANTITIES, LENGTH, ORIENTATION, QUANTITIES, REFUSED_STATUS, Judged
+from .judge import (
+    BOX,
+    DISC,
+    FILTER,
+    FLIGHT_QUANTITIES,
+    LENGTH,
+    ORIENTATION,
+    PRISM,
+    QUANTITIES,
+    REFUSED_STATUS,
+    Judged,
+)
 from .world import World
 
 CONFIDENT_SIGMA = 6.0
@@ -73,7 +84,7 @@ def find(world: World, found: Answers, judged: Judged) -> Finds:
     counts = (e["method"] == FILTER) & ~e["suspect"]
     is_round = world.solid.round[world.flight]
     whole_box = (e["model"] == BOX) & ((e["valid"] & LENGTH) != 0) & ((e["valid"] & ORIENTATION) != 0)
-    outline_known = np.where(is_round, e["model"] == DISC, whole_box) & counts
+    outline_known = np.where(is_round, np.isin(e["model"], (DISC, PRISM)), whole_box) & counts
     hazard = np.abs(judged.hazard_ratio)
     worst = np.where(np.isnan(hazard).all(1), np.nan, np.nanmax(np.where(np.isnan(hazard), -1.0, hazard), 1))
     level = np.abs(world.velocity[:, 2]) < LEVEL_M_S  # the clearance then does not depend on the place of the outline

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from goe_tools.flights.flight import Flight
 from goe_tools.flights.rotations import fold
-from goe_tools.library import METHODS, Track, estimate
+from goe_tools.library import METHODS, Track, estimate, known_shape
 from goe_tools.models.judge import ORIENTATION
 
 
@@ -40,8 +40,9 @@ def _refined(track: Track) -> np.ndarray:
 
 
 def rounding_of(flight: Flight) -> Rounding:
-    """Runs both builds over a flight."""
-    single, double = estimate(flight), estimate(flight, double=True)
+    """Runs both builds over a flight, with the obstacle's shape configured (``known_shape``)."""
+    shape = known_shape(flight)
+    single, double = estimate(flight, **shape), estimate(flight, double=True, **shape)
     either = _refined(single) | _refined(double)
     same = (single.method == double.method) & (single.model == double.model) & (single.valid == double.valid).all(1)
     difference = single.values - double.values

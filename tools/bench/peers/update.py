@@ -43,7 +43,7 @@ CASE = (TRIANGLE, TRIANGLE, STATES**2, 1, COLUMNS * ROWS)  # peer_case_t
 ANSWER = (STATES, 1, STATES**2)  # peer_answer_t
 QUICK_CASES = 4
 TEN_STATES = "-DGOE_WITH_TARGET_MOTION=0"  # without augmented states, which no peer has
-GROUPS = (9, 5, 3)  # by used rows: a box with all points visible, mostly discs, bounding boxes alone
+GROUPS = (9, 5, 3)  # by used rows: a box with all points visible, silhouettes, bounding boxes alone
 
 
 @dataclass(frozen=True)

@@ -20,10 +20,9 @@ WIDTH_WORDS = {"disc": "diameter", "prism": "width across the line of sight"}
 REASON_WORDS = {"late": "poses late"}
 HINT = (
     "Ahead and aside: from the aircraft to the obstacle's reference point, along and across the direction of flight "
-    "(disc: its center; front edge and box: the middle of the front edge). Turned: the side edge from the direction of "
-    "flight, clockwise. "
-    "± is one sigma. A row marked * repeats an older solution. Suspect: the track does not fit its model, "
-    "so its sigmas may be too small; widen the margins."
+    "(disc and upright: its center; front edge and box: the middle of the front edge). Turned: the side edge from the "
+    "direction of flight, clockwise. ± is one sigma. A row marked * repeats an older solution. Suspect: the track does "
+    "not fit its model, so its sigmas may be too small; widen the margins."
 )
 
 

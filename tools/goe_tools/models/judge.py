@@ -1,8 +1,8 @@
 """The error of an estimate against the truth.
 
 If a box is observed nearly along a diagonal, front and side may swap: the estimate is compared with the naming that is
-nearer in angle. If a disc represents a box, its place is compared with the middle of the box, and nothing else is
-judged."""
+nearer in angle. If a footprint (a disc or a prism) represents a box, its place is compared with the middle of the
+box, and nothing else is judged."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import numpy as np
 
 from ..flights.flight import Flight, Obstacle
 from ..flights.rotations import fold
-from ..library import MODEL_BOX, MODEL_DISC, MODEL_LINE, Track
+from ..library import MODEL_BOX, MODEL_DISC, MODEL_LINE, MODEL_PRISM, Track
 from .model import COMPLEX_STEP
 
 X0, Z0, ORIENTATION, WIDTH, LENGTH, HEIGHT = range(6)
@@ -75,10 +75,10 @@ def judge(track: Track, flight: Flight) -> Judgement:
         with np.errstate(invalid="ignore"):
             other = as_box & (np.abs(fold(angles - truth.orientation_rad)) > EXCHANGE_ANGLE)
         error[other] = values[other] - renamed(truth.values, _visible_side(truth))
-        disc = track.model == MODEL_DISC
+        footprint = (track.model == MODEL_DISC) | (track.model == MODEL_PRISM)
         middle = truth.corners().mean(0)
-        error[disc, :2] = values[disc, :2] - middle
-        error[disc, 2:] = np.nan
+        error[footprint, :2] = values[footprint, :2] - middle
+        error[footprint, 2:] = np.nan
     error[:, ORIENTATION] = fold(error[:, ORIENTATION])
     sigma[~np.isfinite(error)] = np.nan
     return Judgement(error, sigma, other)

@@ -13,12 +13,12 @@ A side of the box is an image line; the plane through it and the camera touches 
 the plane's outward normal n, in level axes (X, Y down, Z) at the camera, and u = (nX, nZ)/|(nX, nZ)|, the touching
 point is
 
-    (X, Z) = M + L L' u/h(u)                     h(u) = |L' u| = sqrt((w uX + s uZ)^2 + (D uZ)^2)
-           = M + h(u) u + (a part along the line)
+    (X, Z) = M + L v          v = L' u/h(u)      h(u) = |L' u| = sqrt((w uX + s uZ)^2 + (D uZ)^2)
     Y      = ground if nY > 0, otherwise roof
 
-h is the support function of the ellipse; to first order the point moves with it along u. All lengths are in units
-of Z0, the range of the middle at the filter's start; the camera at that time is the origin:
+h is the support function of the ellipse. v is where h(u) = u L v is largest, so that to first order the touching point
+keeps its v. All lengths are in units of Z0, the range of the middle at the filter's start; the camera at that time is
+the origin:
 
     M = (a - dX q, 1 - dZ q)        ground = height q + g        roof = height q - e
 
@@ -177,11 +177,10 @@ def sights(flight: Flight, errors: ErrorModel) -> list[Sight]:
 
 @dataclass(frozen=True)
 class Touch:
-    """The point where a plane touches. ``along``: the part of it that does not move with the support function."""
+    """The point where a plane touches."""
 
-    u: np.ndarray  # (2,) outward, (X, Z)
+    v: np.ndarray  # (2,) on the unit circle
     foot: bool
-    along: np.ndarray  # (2,)
 
 
 def _reach(unknowns: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -209,11 +208,11 @@ def in_camera(sight: Sight, unknowns: np.ndarray, touch: Touch) -> np.ndarray:
     """(..., 3): the touching point in the camera's axes at the estimated attitude; also for complex unknowns."""
     a, q, g, e = (unknowns[..., i] for i in (A, Q, G, E))
     dx, dy, dz = (sight.moved_m[i] + unknowns[..., PX + i] for i in range(3))
-    reach = support(unknowns, touch.u)
+    w, s, d = (unknowns[..., i] for i in (W, S, D))
     height = (sight.height_m - (dy - sight.moved_m[1])) * q
     y = height + g if touch.foot else height - e
-    x = a - dx * q + reach * touch.u[0] + touch.along[0]
-    z = 1 - dz * q + reach * touch.u[1] + touch.along[1]
+    x = a - dx * q + w * touch.v[0]
+    z = 1 - dz * q + s * touch.v[0] + w * np.exp(d) * touch.v[1]
     point = np.stack([x, y, z], -1)
     return (point + np.cross(unknowns[..., :3] @ sight.axes_from_body.T, point)) @ sight.axes_from_camera
 
@@ -224,7 +223,7 @@ def _touch(sight: Sight, state: np.ndarray, normal: np.ndarray, foot: bool | Non
     n = n - np.cross(sight.axes_from_body @ state[:3], n)
     level = np.hypot(n[0], n[2])
     u = n[[0, 2]] / level if level > LEVEL_MIN else np.array([0.0, -1.0])
-    return Touch(u, bool(n[1] > 0) if foot is None else foot, rim_point(state, u) - support(state, u) * u)
+    return Touch(np.stack(_reach(state, u)) / support(state, u), bool(n[1] > 0) if foot is None else foot)
 
 
 def has_lens(camera: Camera) -> bool:
@@ -283,7 +282,7 @@ def row_of(sight: Sight, state: np.ndarray, side: int, at: float) -> Row | None:
 
 def visible_row_of(sight: Sight, state: np.ndarray, side: int, at: float) -> Row | None:
     """Like ``row_of``, unless no level side shows the end that a left or right side touches. Then the visible part may
-    end anywhere between foot and roof: the row takes the middle and has no derivative by the heights, (R29a)."""
+    end anywhere between foot and roof: the row takes the middle and has no derivative by the heights, (R27a)."""
     row = row_of(sight, state, side, at)
     if row is None or AXIS[side] == 1:
         return row

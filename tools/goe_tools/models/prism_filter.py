@@ -79,7 +79,7 @@ GROUND_MIN = 1e-6  # units of Z0
 PATH_MIN_M = 0.1
 SHEAR_SHARE = 0.6  # sigma of s, of the first half width
 DEPTH_SD = 1.0  # of d
-DISC_SD = 1e-3  # of both if the model is a disc
+ROUND_SHEAR_SHARE, ROUND_DEPTH_SD = 0.02, 1e-3  # the same if the model is a disc
 DEPTH_TURNED = float(np.float32(0.3))  # sine of the turn of the line of sight above which an image estimates d
 
 SCATTER_KEPT, CORRELATION_MOST = (float(np.float32(share)) for share in (0.985, 0.9))  # as in the library
@@ -90,7 +90,7 @@ CHANCE = float(np.float32(0.07))  # one sigma of both means: only an excess wide
 
 def footprint_sds(errors: ErrorModel, half: float) -> tuple[float, float]:
     """Sigmas of s and of d before the first image, for the first half width."""
-    return (DISC_SD * half, DISC_SD) if errors.disc else (SHEAR_SHARE * half, DEPTH_SD)
+    return (ROUND_SHEAR_SHARE * half, ROUND_DEPTH_SD) if errors.disc else (SHEAR_SHARE * half, DEPTH_SD)
 
 
 def knows_depth(sight: Sight, state: np.ndarray) -> bool:

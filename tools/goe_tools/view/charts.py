@@ -36,7 +36,7 @@ class Chart:
 CHARTS = (
     Chart("z_m", "Distance ahead", "m", "along the direction of flight, to the reference point", "z_sd_m"),
     Chart("x_m", "Distance to the side", "m", "right of the direction of flight; negative: left", "x_sd_m"),
-    Chart("width_m", "Width", "m", "of the front; disc: diameter; upright box: across the first line of sight",
+    Chart("width_m", "Width", "m", "of the front; disc: diameter; upright obstacle: across the first line of sight",
           "width_sd_m", least=0.0),
     Chart("height_m", "Height", "m", "top above ground", "height_sd_m", least=0.0),
     Chart("length_m", "Length", "m", "of the side", "length_sd_m", least=0.0),

@@ -1,7 +1,7 @@
 """The outline of an estimate from above, as goe_hazard uses it, and its 2-sigma region.
 
-Outline: the box; without orientation or length, and for discs and upright boxes, the circle of its width around the
-reference point. goe_hazard's circle of upright boxes is that across the present line of sight, as near as the near
+Outline: the box; without orientation or length, and for discs and prisms, the circle of its width around the
+reference point. goe_hazard's circle of a prism is that across the present line of sight, as near as the near
 side: after a turn it differs from the drawn one. Region: the hull of the 2-sigma ellipses of the outline's points (a
 box's corners, points of a circle), each to the first order from the covariance of x, z, orientation, width, length.
 

@@ -1,6 +1,6 @@
 """The true value of each quantity: of the point that the estimate describes, with front and side named as in it.
 
-Disc and upright box: the obstacle's center; width: of an upright box the extent across the line of sight of the first
+Disc and prism: the obstacle's center; width: of a prism the extent across the line of sight of the first
 image, of a disc that represents a box none. Front edge and box: the center of the front edge; front and side so that
 the true orientation is nearer to the estimate's. NaN: unknown; also the position of a moving obstacle.
 """

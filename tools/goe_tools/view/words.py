@@ -13,7 +13,7 @@ NOTHING = "–"
 OLD_S = 0.05  # an estimate of less age counts as new
 NOT_YET = "Not detected yet"
 HARD = "\u00a0"  # no line break here
-MODELS = {"disc": "a disc", "line": "a front edge", "box": "a box", "prism": "an upright box of unknown depth"}
+MODELS = {"disc": "a disc", "line": "a front edge", "box": "a box", "prism": "an upright obstacle of unknown depth"}
 STATUS = {
     "converging": "collecting images",
     "stale": "no new information in this image",

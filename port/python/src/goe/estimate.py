@@ -18,7 +18,7 @@ class Length(NamedTuple):
 
 
 class Position(NamedTuple):
-    """Position of the reference point: of a disc the center, of a line or box the middle of the front edge."""
+    """Position of the reference point: of a disc or prism the center, of a line or box the middle of the front edge."""
 
     x0: Length
     """From where the camera was at the track's first image, across."""
@@ -98,7 +98,7 @@ class Estimate(Renamed):
     position: Position | None
     """Where the obstacle is."""
     width: Length | None
-    """Disc: diameter; line, box: the front edge."""
+    """Disc: diameter; prism: across the first line of sight; line, box: the front edge."""
     length: Length | None
     """The side edge."""
     height: Length | None

@@ -296,7 +296,7 @@ class Obstacle(Renamed):
     height: Length | None
     """Of its top above the ground."""
     width_m: float | None
-    """Disc: diameter; box: the front edge; m."""
+    """Disc: diameter; prism: across the first line of sight; box: the front edge; m."""
     length_m: float | None
     """The side edge, m."""
     length_heading_deg: float | None

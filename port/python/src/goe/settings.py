@@ -130,7 +130,7 @@ class Detector(_Group):
     point_correlation: float = real("detector.point_correlation")
     """Correlation of a point's error from image to image."""
     shape_error_rel: float = real("detector.shape_error_rel")
-    """How far a real silhouette departs from a cylinder's, fraction of its width; cars as discs: about 0.12."""
+    """How far a real silhouette departs from that of a disc or prism, fraction of its width; cars: about 0.12."""
     box_noise_px: float = real("detector.box_noise_px")
     """Error of a box's side that is new in each image, px."""
     box_noise_rel: float = real("detector.box_noise_rel")

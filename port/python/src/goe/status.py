@@ -83,11 +83,11 @@ class Shape(IntEnum):
     """Which shapes the estimator may take the obstacle for; the setting ``model`` of C."""
 
     AUTO = 1
-    """All that the method knows."""
+    """Filter: a prism until base corners show a box. Window: a disc until the images show enough of the base."""
     DISC = 2
-    """An upright cylinder alone."""
+    """An upright cylinder alone: its depth along the line of sight is known."""
     LINE = 3
-    """The front edge of a box; of the filter method a box."""
+    """Window: the front edge of a box. Filter: a box, and no prism before it."""
 
     def __str__(self) -> str:
         return self.name.lower()
@@ -97,13 +97,14 @@ class Model(IntEnum):
     """The shape behind an estimate."""
 
     DISC = 2
-    """An upright cylinder, or the circle that replaces anything else."""
+    """An upright cylinder. Filter: only if the settings require it. Window: also the circle that replaces anything
+    else."""
     LINE = 3
     """The front edge of a box. Window method."""
     BOX = 4
     """A box with an upright, level outline. Filter method."""
     PRISM = 5
-    """Something upright by its bounding boxes, whose depth along the line of sight is not reported. Filter method."""
+    """Something upright by its silhouette, whose depth along the line of sight is not reported. Filter method."""
 
     def __str__(self) -> str:
         return self.name.lower()

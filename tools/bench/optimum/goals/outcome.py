@@ -11,7 +11,7 @@ from goe_tools.flights.measured import measure
 from goe_tools.flights.noise import Noise
 from goe_tools.flights.rotations import fold
 from goe_tools.flights.scene import Scene
-from goe_tools.library import METHODS, Track, estimate, settings_of
+from goe_tools.library import METHODS, Track, estimate, known_shape, settings_of
 from goe_tools.models import offline
 from goe_tools.models.bound import bound
 from goe_tools.models.judge import DISC_QUANTITIES, ORIENTATION, X0, Z0, Judgement, judge, renamed, renamed_sigma
@@ -24,6 +24,7 @@ class Task:
     scene: Scene
     noise: Noise
     seed: tuple[int, int]
+    shape_known: bool = True  # a cylinder is configured as a disc, see ``known_shape``
     bound: bool = False
     offline: bool = False
     rivals: bool = False
@@ -69,12 +70,12 @@ def _misfit_most(track: Track) -> float:
     return float(track.nis_ratio[np.cumsum(track.nis_rows > 0) >= SUSPECT_IMAGES].max(initial=0.0))
 
 
-def outcome_of(flight: Flight) -> Outcome:
-    """Runs both methods over a flight."""
-    track = estimate(flight)
+def outcome_of(flight: Flight, **shape: float) -> Outcome:
+    """Runs both methods over a flight. ``shape``: settings for the obstacle's shape."""
+    track = estimate(flight, **shape)
     position = track.valid[:, Z0]
     by_window = int((position & (track.method == METHODS["window"])).sum())
-    window = estimate(flight, settings_of(flight, method="window"))
+    window = estimate(flight, settings_of(flight, method="window"), **shape)
     return Outcome(
         flight.name, flight.group, flight.truth, flight.time_s, flight.reach_s, judge(_filter_only(track), flight),
         judge(window, flight), track.covariance[-1], float(track.nis.sum()), float(track.nis_rows.sum()),
@@ -84,7 +85,7 @@ def outcome_of(flight: Flight) -> Outcome:
 
 def perform(task: Task) -> Outcome:
     flight = measure(task.scene, task.noise, task.seed)
-    result = outcome_of(flight)
+    result = outcome_of(flight, **(known_shape(flight) if task.shape_known else {}))
     result.seed = task.seed
     if task.bound:
         best = bound(flight)

@@ -17,7 +17,9 @@ def recorded_group(group: str, amount: Amount) -> list[Goal]:
     scenes = [s for seed in range(amount.recorded_seeds) for s in recorded_scenes(amount.recorded, seed=seed + 1)]
     for autopilot in sorted({scene.group for scene in scenes}):
         tasks = [
-            Task(scene, scene.noise, (1, number)) for number, scene in enumerate(scenes) if scene.group == autopilot
+            Task(scene, scene.noise, (1, number), shape_known=False)
+            for number, scene in enumerate(scenes)
+            if scene.group == autopilot
         ]
         outcomes = perform_all(tasks, amount, autopilot)
         name = f"{group} {autopilot}"

@@ -1,7 +1,7 @@
 """Joins promises and tests by marks; tests/README.md ("Marks") describes how to add one.
 
 A promise in a header or page has a mark after its sentence, [A12]. A named item is its own mark: a function, an
-enumerator, a constant, a field and a setting of a public header, an equation of a source, (R12), a source file. The
+enumerator, a constant, a field and a setting of a public header, an equation of a source, (R10), a source file. The
 test that would fail starts its comment with that mark, /* [A12, GOE_ABEAM, (R7)] ... */, or names it in its code.
 """
 
@@ -39,7 +39,7 @@ SPAN = re.compile(r"\((R?)([1-9]\d?)\) to \(R?([1-9]\d?)\)")
 
 @dataclass(frozen=True)
 class Promise:
-    key: str  # A12, goe_update, goe_pose_t.height_m, camera.k1, (R12), goe_status.c
+    key: str  # A12, goe_update, goe_pose_t.height_m, camera.k1, (R10), goe_status.c
     place: str  # file:line
     words: frozenset[str] = frozenset()  # any of them in a test's code refers to it
     text: str = ""
@@ -138,7 +138,7 @@ def names_in(name: str, listed: str, root: Path) -> Iterator[Promise]:
 
 
 def equations_in(text: str) -> set[str]:
-    """(7), (R21); for (R35) to (R38) all four."""
+    """(7), (R19); for (R33) to (R36) all four."""
     spans = [f"({kind}{number})" for kind, low, high in SPAN.findall(text) for number in range(int(low), int(high) + 1)]
     return {*EQUATION.findall(text), *spans}
 
