@@ -199,8 +199,6 @@ static void add_points(const goe_observation_t *obs, const goe_solid_t *o, bool 
     if (!sides) {
         add_edge(obs, o, corners ? GOE_POINT_BASE_LEFT : GOE_POINT_LEFT, -1.0f, more, rows);
         add_edge(obs, o, corners ? GOE_POINT_BASE_RIGHT : GOE_POINT_RIGHT, 1.0f, more, rows);
-    }
-    if (!sides) {
         add_rim(obs, o, more, rows);
     }
     if (obs->base) {
