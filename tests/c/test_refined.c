@@ -420,9 +420,9 @@ static void fly_once(honesty_t *honesty, double sigma_px) {
 }
 
 /* [A1, A2, goe_covariance, goe_estimate_t.sigma, goe_estimate_t.suspect, goe_quantities.c, (R22)]
- * GIVEN 80 boxes, and 80 cylinders that are configured as discs, Gaussian noise of 0.5 px and nothing else wrong, and configured so THEN the truth lies within
- * 2 sigma in 88 % of the flights or more for each quantity, the error squared by the covariance is that of its number of
- * quantities (of cylinders 3/4 of it: a little too careful), the innovations are as configured, and none is suspected. */
+ * GIVEN 80 boxes, and 80 cylinders that are configured as discs, Gaussian noise of 0.5 px and nothing else wrong, and configured so
+ * THEN the truth lies within 2 sigma in 88 % of the flights or more for each quantity, the error squared by the covariance is that of its
+ * number of quantities (of cylinders 0.6 of it: a little too careful), the innovations are as configured, and none is suspected. */
 static void sigmas_cover_the_error(void) {
     any = check_random_start("honesty");
     for (int shape = 0; shape < 2; shape++) {
