@@ -499,7 +499,7 @@ void goe_box_shape(const goe_filter_t *filter, goe_shape_t *shape) {
     const float length = nearer ? -edge->length : edge->length;
     const float half = nearer ? 0.5f : -0.5f; /* from the end of the front from which it leads away */
     find_spot(x, &e, exchanged ? half : 0.0f, exchanged ? 0.5f : 0.0f, &reference);
-    goe_shape_start(filter, x, &reference, shape);
+    goe_shape_start(filter, &reference, shape);
     find_spot(x, &e, 0.0f, 0.5f, &shape->middle);
     shape->length_axis.x = axis.x / length;
     shape->length_axis.z = axis.z / length;

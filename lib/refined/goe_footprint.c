@@ -1,11 +1,9 @@
-/* Start, rows and quantities of a footprint. SPDX-License-Identifier: MIT */
+/* Rows, errors and quantities of a footprint. SPDX-License-Identifier: MIT */
 #include "refined/goe_footprint.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "image/goe_camera.h"
-#include "maths/goe_angle.h"
 #include "maths/goe_exp.h"
 #include "maths/goe_scalar.h"
 #include "refined/goe_side_memory.h"
@@ -13,26 +11,11 @@
 
 #if GOE_WITH_FILTER
 
-#define RAY_AHEAD_MIN 0.02f    /* third component of a ray that is faced */
-#define WIDTH_MIN 1.0e-5f      /* between left and right, focal lengths */
 #define DEPTH_MAX 2.0f         /* |d|, and its sigma in (R31): 7 times as deep as wide, or as flat */
 #define SHIFT_RATIO_MAX 300.0f /* of a shift that rows share, over a row's own noise */
-#define GROUND_SIGMAS 3.0f     /* by which the foot must lie below the horizon to give the range */
-#define FOOT_SHARE 0.6f        /* of box_noise_rel of the width, in that sigma */
-#define NEAR_SIDE 0.5f         /* a box's foot is nearer than the middle by half the width */
-#define RANGE_MIN_M 1.0f       /* of a first guess */
-#define RANGE_MAX_M 1.0e6f     /* the same */
-#define NO_ALTIMETER_M 50.0f   /* sigma of the height from which on the first box sets it */
-#define HALF_FREEDOM 2.5f      /* one sigma of the first guess of the half width, in widths */
-#define SHEAR_FREEDOM 0.6f     /* ... of the shear, in half widths */
-#define DEPTH_FREEDOM 1.0f /* ... of the log of the depth: a population of masts, cars and houses, in any direction */
-#define DEPTH_TURNED 0.3f  /* sine of the turn of the line of sight from which on images give the depth */
-#define BENT_MIN 0.01f     /* sigma of the log of the depth below which its exponential is a line */
-#define ROUND_FREEDOM 1.0e-3f /* of the depth, where a disc is configured */
-#define ROUND_SHEAR 0.02f     /* ... of the shear, in half widths: enough to show that it is none */
-#define FORCED_SIGMAS2 18.0f  /* squared sigmas of the shear from which on it is no disc */
-#define GROUND_MIN 1.0e-6f    /* one sigma of the ground's offset, units of Z0 */
-#define BOX_SIZE_MIN 1.0e-12f /* of a box, angular: a smaller one gives no range */
+#define DEPTH_TURNED 0.3f      /* sine of the turn of the line of sight from which on images give the depth */
+#define BENT_MIN 0.01f         /* sigma of the log of the depth below which its exponential is a line */
+#define FORCED_SIGMAS2 18.0f   /* squared sigmas of the shear from which on it is no disc */
 #define SIDE_SHAPE                                                                                                     \
     0.05f /* one sigma of what corners move the points left and right by, of the width, if it may be no disc */
 #define SHAPE_TURN 0.3f     /* sine of the turn of the line of sight in which this fades to 1/e */
@@ -45,6 +28,16 @@
 enum { SHAPE_LEFT = GOE_BOX_SIDES, SHAPE_RIGHT, MEMORIES };
 
 GOE_STATIC_ASSERT(sizeof(((goe_filter_t *)0)->side) == MEMORIES * sizeof(goe_side_memory_t), every_side_has_a_memory);
+
+/* Sine of the turn of the line of sight between two places of the camera, since the filter's start. */
+static float turned(const goe_filter_t *filter, goe_xz_t from_m, goe_xz_t to_m) {
+    const float q = filter->state[GOE_INVERSE_RANGE];
+    const float a = filter->state[GOE_BEARING];
+    const goe_xz_t was = {a - from_m.x * q, 1.0f - from_m.z * q};
+    const goe_xz_t is = {a - to_m.x * q, 1.0f - to_m.z * q};
+    const float lengths = sqrtf(goe_xz_dot(was, was) * goe_xz_dot(is, is));
+    return (is.x * was.z - is.z * was.x) / goe_larger(lengths, GOE_AHEAD_MIN);
+}
 
 /* -------------------------------------------------------------------------------------------------------------- rows -- */
 
@@ -174,31 +167,19 @@ static void add_base(const goe_observation_t *obs, const goe_solid_t *o, goe_fea
     by[GOE_INVERSE_RANGE] += g.y * obs->height_m;
 }
 
-static bool sees_silhouette(const goe_observation_t *obs) {
-    return obs->point[GOE_POINT_LEFT].usable && obs->point[GOE_POINT_RIGHT].usable;
-}
-
-/* Between left and right, or the outer base corners; or as predicted. */
-static float width_of(const goe_observation_t *obs, const goe_solid_t *o) {
-    const goe_point_t *p = obs->point;
-    if (sees_silhouette(obs)) {
-        return p[GOE_POINT_RIGHT].x - p[GOE_POINT_LEFT].x;
-    }
-    return obs->base ? p[GOE_POINT_BASE_RIGHT].x - p[GOE_POINT_BASE_LEFT].x
-                     : 2.0f * o->ellipse.half / goe_larger(o->center.z, GOE_AHEAD_MIN);
-}
-
 /* Points, where no sides replace them; base corners besides. */
 /*@ requires goe_observation_is_open(obs) && \valid_read(o) && goe_rows_hold(rows) && rows->count <= GOE_BOX_SIDES; */
 static void add_points(const goe_observation_t *obs, const goe_solid_t *o, bool sides, goe_rows_t *rows) {
-    const float width = width_of(obs, o);
+    goe_feature_t left;
+    goe_feature_t right;
+    const bool wide = goe_observation_ends(obs->point, &left, &right);
+    const float width = wide ? obs->point[right].x - obs->point[left].x : 2.0f * o->ellipse.half / o->center.z;
     const float shape_rel =
         obs->settings->detector.shape_error_rel + (obs->base || obs->stand_in ? STAND_IN_SHAPE : 0.0f);
     const float more = goe_square(shape_rel * width) + goe_square(obs->outline_share * width);
-    const bool corners = obs->base && !sees_silhouette(obs);
     if (!sides) {
-        add_edge(obs, o, corners ? GOE_POINT_BASE_LEFT : GOE_POINT_LEFT, -1.0f, more, rows);
-        add_edge(obs, o, corners ? GOE_POINT_BASE_RIGHT : GOE_POINT_RIGHT, 1.0f, more, rows);
+        add_edge(obs, o, left, -1.0f, more, rows);
+        add_edge(obs, o, right, 1.0f, more, rows);
         add_rim(obs, o, more, rows);
     }
     if (obs->base) {
@@ -223,19 +204,9 @@ void goe_footprint_rows(const goe_observation_t *obs, goe_rows_t *rows) {
 
 /* ------------------------------------------------------------------------------------------------------ sides' errors -- */
 
-/* Sine of the turn of the line of sight since the latest image that gave rows. */
-static float turned_since(const goe_filter_t *filter, const goe_observation_t *obs) {
-    const float q = filter->state[GOE_INVERSE_RANGE];
-    const goe_xz_t at = goe_filter_measured(filter);
-    const goe_xz_t was = {filter->state[GOE_BEARING] - at.x * q, 1.0f - at.z * q};
-    const goe_xz_t is = goe_observation_reference(obs);
-    const float lengths = sqrtf(goe_xz_dot(was, was) * goe_xz_dot(is, is));
-    return (is.x * was.z - is.z * was.x) / goe_larger(lengths, GOE_AHEAD_MIN);
-}
-
 /* The errors of a box's sides fade with time, those of a shape that is no ellipse with the turn of the line of sight. */
 static void fade(goe_filter_t *filter, const goe_observation_t *obs, const goe_rows_t *rows) {
-    const float kept = goe_exp(-goe_absolute(turned_since(filter, obs)) / SHAPE_TURN);
+    const float kept = goe_exp(-goe_absolute(turned(filter, goe_filter_measured(filter), obs->camera_m)) / SHAPE_TURN);
     const float shape2 = is_round(obs) ? 0.0f : goe_square(SIDE_SHAPE * size_of(obs, GOE_BOX_LEFT));
     for (size_t side = 0; side < GOE_BOX_SIDES; side++) {
         const float share = obs->settings->detector.box_noise_rel;
@@ -316,174 +287,6 @@ void goe_footprint_follow(goe_filter_t *filter, const float change[GOE_UNKNOWNS]
     *depth = *depth > DEPTH_MAX ? DEPTH_MAX : (*depth > -DEPTH_MAX ? *depth : -DEPTH_MAX);
 }
 
-/* -------------------------------------------------------------------------------------------------------------- start -- */
-
-/* Aligned ray, in the state's axes, of the raw point (x, y) focal lengths. False if it does not point ahead. */
-static bool ray_of(const goe_camera_t *camera, const float camera_to_axes[9], float x, float y, goe_point_t *ray) {
-    float undistorted[2] = {x, y};
-    if (goe_camera_distorts(camera) && !goe_camera_undistort(camera, &undistorted[0], &undistorted[1])) {
-        return false;
-    }
-    const float *r = camera_to_axes;
-    const float z = r[6] * undistorted[0] + r[7] * undistorted[1] + r[8];
-    ray->usable = z > RAY_AHEAD_MIN;
-    const float ahead = ray->usable ? z : 1.0f;
-    ray->x = (r[0] * undistorted[0] + r[1] * undistorted[1] + r[2]) / ahead;
-    ray->y = (r[3] * undistorted[0] + r[4] * undistorted[1] + r[5]) / ahead;
-    return ray->usable;
-}
-
-/* Of the visible part of the box. */
-static void middle_of(const goe_camera_t *camera, const goe_sides_t *sides, float *x, float *y) {
-    *x =
-        0.5f * (goe_touch_coordinate(camera, sides, GOE_BOX_LEFT) + goe_touch_coordinate(camera, sides, GOE_BOX_RIGHT));
-    *y = goe_sides_see(sides, GOE_SIDE_TOP | GOE_SIDE_BOTTOM)
-             ? 0.5f * (goe_touch_coordinate(camera, sides, GOE_BOX_TOP) +
-                       goe_touch_coordinate(camera, sides, GOE_BOX_BOTTOM))
-             : 0.0f;
-}
-
-/* The ends of the silhouette, or else the outer base corners. False if neither pair is visible in its order. */
-static bool ends_of(const goe_point_t point[GOE_FEATURES], const goe_point_t **left, const goe_point_t **right) {
-    const goe_point_t *p = point;
-    const bool silhouette = p[GOE_POINT_LEFT].usable && p[GOE_POINT_RIGHT].usable;
-    *left = &p[silhouette ? GOE_POINT_LEFT : GOE_POINT_BASE_LEFT];
-    *right = &p[silhouette ? GOE_POINT_RIGHT : GOE_POINT_BASE_RIGHT];
-    return (*left)->usable && (*right)->usable && (*right)->x - (*left)->x >= WIDTH_MIN;
-}
-
-/* x of the ray to the obstacle. */
-static bool find_middle(const goe_view_t *view, float *x) {
-    const goe_point_t *left;
-    const goe_point_t *right;
-    if (goe_sides_see(&view->sides, GOE_SIDE_LEFT | GOE_SIDE_RIGHT)) {
-        goe_point_t ray;
-        float at_x;
-        float at_y;
-        middle_of(view->camera, &view->sides, &at_x, &at_y);
-        const bool ahead = ray_of(view->camera, view->camera_to_trajectory, at_x, at_y, &ray);
-        *x = ray.x;
-        return ahead;
-    }
-    if (!ends_of(view->point, &left, &right)) {
-        return false;
-    }
-    const float to_left = 1.0f / sqrtf(1.0f + goe_square(left->x)); /* cosines from Z */
-    const float to_right = 1.0f / sqrtf(1.0f + goe_square(right->x));
-    *x = (left->x * to_left + right->x * to_right) / (to_left + to_right);
-    return true;
-}
-
-bool goe_footprint_face(goe_filter_t *filter, const goe_view_t *view) {
-    float x;
-    if (!find_middle(view, &x)) {
-        return false;
-    }
-    const float norm = sqrtf(1.0f + x * x);
-    goe_filter_turn_axes(filter, 1.0f / norm, x / norm);
-    return true;
-}
-
-/* What a first image shows: the angular width, and the rays to head and foot. */
-typedef struct {
-    float size;
-    goe_point_t head, foot;
-    bool box; /* by an upright box */
-} sight_t;
-
-static void see_box(const goe_observation_t *obs, sight_t *sight) {
-    const goe_camera_t *camera = obs->camera;
-    const goe_sides_t *sides = obs->sides;
-    float x;
-    float y;
-    middle_of(camera, sides, &x, &y);
-    if (goe_sides_see(sides, GOE_SIDE_TOP)) {
-        (void)ray_of(camera, obs->camera_to_axes, x, goe_touch_coordinate(camera, sides, GOE_BOX_TOP), &sight->head);
-    }
-    if (goe_sides_see(sides, GOE_SIDE_BOTTOM)) {
-        (void)ray_of(camera, obs->camera_to_axes, x, goe_touch_coordinate(camera, sides, GOE_BOX_BOTTOM), &sight->foot);
-    }
-    sight->size = size_of(obs, GOE_BOX_LEFT) / (1.0f + x * x);
-    sight->box = true;
-}
-
-static bool see_points(const goe_observation_t *obs, sight_t *sight) {
-    const goe_point_t *left;
-    const goe_point_t *right;
-    if (!ends_of(obs->point, &left, &right)) {
-        return false;
-    }
-    sight->size = right->x - left->x;
-    sight->head = obs->point[GOE_POINT_TOP];
-    sight->foot.usable = obs->base;
-    sight->foot.y = 0.5f * (obs->point[GOE_POINT_BASE_LEFT].y + obs->point[GOE_POINT_BASE_RIGHT].y);
-    return true;
-}
-
-static bool see(const goe_observation_t *obs, sight_t *sight) {
-    memset(sight, 0, sizeof *sight);
-    if (!goe_sides_see(obs->sides, GOE_SIDE_LEFT | GOE_SIDE_RIGHT)) {
-        return see_points(obs, sight);
-    }
-    see_box(obs, sight);
-    return true;
-}
-
-static float height_sd_m(const goe_observation_t *obs) {
-    return sqrtf(goe_observation_height_variance(obs, obs->sides->usable != 0));
-}
-
-/* (R16): from flat ground, if the foot lies clearly below the horizon; otherwise from the typical size. */
-static float first_range_m(const goe_observation_t *obs, const sight_t *sight) {
-    const goe_settings_t *s = obs->settings;
-    const float attitude =
-        goe_square(s->navigation.attitude_bias_sd_deg * GOE_RAD_PER_DEG) + goe_square(obs->white_rad);
-    const float pixel = sight->box ? obs->side_px / obs->camera->fy_px : goe_observation_pixel(obs);
-    const float share = sight->box ? FOOT_SHARE * s->detector.box_noise_rel : 0.0f;
-    const float foot_sd = sqrtf(attitude + goe_square(pixel) + goe_square(share * sight->size));
-    const bool grounded = sight->foot.usable && sight->foot.y > GROUND_SIGMAS * foot_sd &&
-                          obs->height_m > GROUND_SIGMAS * height_sd_m(obs);
-    const float nearer = sight->box ? NEAR_SIDE * sight->size : 0.0f;
-    return grounded ? obs->height_m / sight->foot.y * (1.0f + nearer)
-                    : s->filter.prior_width_m / goe_larger(sight->size, BOX_SIZE_MIN);
-}
-
-static void set_root(const goe_observation_t *obs, const float state[GOE_STATES], float width, goe_triangle_t *root) {
-    const bool disc = is_round(obs);
-    float sd[GOE_STATES];
-    goe_observation_prior(obs, state, width, sd);
-    sd[GOE_GROUND] = goe_larger(height_sd_m(obs) * state[GOE_INVERSE_RANGE], GROUND_MIN);
-    sd[GOE_SHEAR] = (disc ? ROUND_SHEAR : SHEAR_FREEDOM) * state[GOE_HALF];
-    sd[GOE_HALF] = HALF_FREEDOM * width;
-    sd[GOE_LOG_DEPTH] = disc ? ROUND_FREEDOM : DEPTH_FREEDOM;
-    goe_srif_from_sigmas(sd, root);
-}
-
-bool goe_footprint_start(const goe_observation_t *obs, float state[GOE_STATES], goe_triangle_t *root) {
-    sight_t sight;
-    if (!see(obs, &sight)) {
-        return false;
-    }
-    const float range_m = first_range_m(obs, &sight);
-    if (!(range_m >= RANGE_MIN_M) || !goe_within(range_m, RANGE_MAX_M)) {
-        return false;
-    }
-    const float q = 1.0f / range_m;
-    memset(state, 0, GOE_STATES * sizeof state[0]);
-    state[GOE_INVERSE_RANGE] = q;
-    state[GOE_HALF] = 0.5f * sight.size;
-    state[GOE_TOP] = obs->height_m * q - (sight.head.usable ? sight.head.y : 0.0f);
-    if (height_sd_m(obs) > NO_ALTIMETER_M && sight.foot.usable) {
-        state[GOE_GROUND] = sight.foot.y - obs->height_m * q;
-    }
-    set_root(obs, state, sight.size, root);
-    return true;
-}
-
-bool goe_footprint_is_forced(const goe_filter_t *filter) {
-    return goe_square(filter->state[GOE_SHEAR]) > FORCED_SIGMAS2 * goe_filter_variance(filter, GOE_SIDE_X);
-}
-
 /* --------------------------------------------------------------------------------------------------------- quantities -- */
 
 /* (R31). */
@@ -493,7 +296,7 @@ void goe_footprint_shape(const goe_filter_t *filter, goe_shape_t *shape) {
     memset(&reference, 0, sizeof reference);
     reference.at.x = x[GOE_BEARING];
     reference.at.z = 1.0f;
-    goe_shape_start(filter, x, &reference, shape);
+    goe_shape_start(filter, &reference, shape);
     shape->middle = reference;
     const float scale_m = shape->scale_m;
     goe_linear_t *width = &shape->quantity[GOE_WIDTH];
@@ -509,7 +312,8 @@ void goe_footprint_shape(const goe_filter_t *filter, goe_shape_t *shape) {
 /* ------------------------------------------------------------------------------------------------------ depth -- */
 
 bool goe_footprint_knows_depth(const goe_filter_t *filter) {
-    return goe_absolute(goe_shape_turned(filter, goe_filter_measured(filter))) > DEPTH_TURNED;
+    const goe_xz_t start_m = {0.0f, 0.0f};
+    return goe_absolute(turned(filter, start_m, goe_filter_measured(filter))) > DEPTH_TURNED;
 }
 
 /* The last state's sigma is that of its own row. */
@@ -517,6 +321,10 @@ float goe_footprint_bend(const goe_filter_t *filter) {
     const float last = filter->root.element[goe_srif_row(GOE_LOG_DEPTH) + GOE_LOG_DEPTH];
     const float sd = 1.0f / goe_larger(goe_absolute(last), 1.0f / DEPTH_MAX);
     return sd > BENT_MIN ? (goe_exp(sd) - 1.0f) / sd : 1.0f;
+}
+
+bool goe_footprint_is_forced(const goe_filter_t *filter) {
+    return goe_square(filter->state[GOE_SHEAR]) > FORCED_SIGMAS2 * goe_filter_variance(filter, GOE_SIDE_X);
 }
 
 #endif

@@ -13,12 +13,6 @@
 #include "refined/goe_observation.h"
 #include "refined/goe_shape.h"
 
-/* Turns the filter's axes so that Z points at the obstacle. False if neither a box's left and right nor two ends are measured. */
-bool goe_footprint_face(goe_filter_t *filter, const goe_view_t *view);
-
-/* First guess: state and root from one image, in axes that face the obstacle. False if it is out of range. */
-bool goe_footprint_start(const goe_observation_t *obs, float state[GOE_STATES], goe_triangle_t *root);
-
 /* Appends the rows of an image. If base corners are visible, it substitutes for a box whose orientation is not known yet: then they give
  * the range over flat ground. */
 /*@ requires goe_observation_is_open(obs) && goe_rows_hold(rows) && rows->count == 0; */

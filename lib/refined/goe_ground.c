@@ -59,13 +59,25 @@ void goe_ground_read(goe_filter_t *filter, const goe_navigation_t *navigation, c
 
 /* --------------------------------------------------------------------------------------------------------------- known -- */
 
-void goe_ground_start(goe_filter_t *filter, float variance_m2) {
-    filter->datum.first = 1.0f / variance_m2;
+void goe_ground_start(goe_filter_t *filter, const goe_observation_t *obs) {
+    filter->datum.boxes = obs->sides->usable != 0;
+    filter->datum.first = 1.0f / goe_observation_height_variance(obs, filter->datum.boxes);
     filter->datum.information = filter->datum.first;
     filter->datum.moment = 0.0f;
     filter->ground_scale = 1.0f;
     filter->flown_m = 0.0f;
     filter->sloped_m = 0.0f;
+}
+
+void goe_ground_meet_box(goe_filter_t *filter, const goe_navigation_t *navigation) {
+    const float sigma = navigation->terrain_height_sd_m * filter->state[GOE_INVERSE_RANGE];
+    if (filter->datum.boxes) {
+        return;
+    }
+    filter->datum.boxes = true;
+    if (sigma > 0.0f) {
+        goe_filter_inflate(filter, GOE_GROUND, sigma);
+    }
 }
 
 /* The ground below the altimeter rises or falls, one does not know which: after a way d the height is off by slope d more,

@@ -22,8 +22,12 @@ static inline bool goe_ground_is_steady(const goe_filter_t *filter, const goe_na
 /* The autopilot's down jumped by this. */
 static inline void goe_ground_move(goe_filter_t *filter, float down_m) { filter->datum.ground_m += down_m; }
 
-/* The filter starts: its model already has the height so far with this variance, m2. */
-void goe_ground_start(goe_filter_t *filter, float variance_m2);
+/* The filter starts by this image: its model already has the height so far. */
+void goe_ground_start(goe_filter_t *filter, const goe_observation_t *obs);
+
+/* The first upright box of a footprint that began by points: from here on the height counts by the changes of down, and the obstacle's
+ * own ground may lie off. */
+void goe_ground_meet_box(goe_filter_t *filter, const goe_navigation_t *navigation);
 
 /* The camera flew on: the slope of the ground below it. */
 void goe_ground_climb(goe_filter_t *filter, const goe_navigation_t *navigation);

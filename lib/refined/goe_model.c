@@ -6,6 +6,7 @@
 #include "refined/goe_box.h"
 #include "refined/goe_box_start.h"
 #include "refined/goe_footprint.h"
+#include "refined/goe_footprint_start.h"
 #include "refined/goe_ground.h"
 
 #if GOE_WITH_FILTER
@@ -23,8 +24,7 @@ bool goe_model_start(goe_filter_t *filter, const goe_observation_t *obs) {
     }
     goe_filter_enter(filter, GOE_PHASE_FOOTPRINT);
     memset(filter->side, 0, sizeof filter->side);
-    filter->datum.boxes = obs->sides->usable != 0;
-    goe_ground_start(filter, goe_observation_height_variance(obs, filter->datum.boxes));
+    goe_ground_start(filter, obs);
     memset(filter->walk_s, 0, sizeof filter->walk_s);
     filter->due_s = 0.0f;
     filter->candidate.stand_in = false;
@@ -40,22 +40,11 @@ static void note_near(goe_filter_t *filter, const goe_observation_t *obs) {
     }
 }
 
-/* The first upright box of a footprint that began by points: from here on the height counts by the changes of down, and the obstacle's own
- * ground may lie off. */
-static void meet_boxes(goe_filter_t *filter, const goe_observation_t *obs) {
-    const float sigma = obs->settings->navigation.terrain_height_sd_m * filter->state[GOE_INVERSE_RANGE];
-    if (!goe_filter_traits(filter)->is_ellipse || filter->datum.boxes || obs->sides->usable == 0) {
-        return;
-    }
-    filter->datum.boxes = true;
-    if (sigma > 0.0f) {
-        goe_filter_inflate(filter, GOE_GROUND, sigma);
-    }
-}
-
 bool goe_model_change(goe_filter_t *filter, const goe_observation_t *obs) {
     note_near(filter, obs);
-    meet_boxes(filter, obs);
+    if (goe_filter_traits(filter)->is_ellipse && obs->sides->usable != 0) {
+        goe_ground_meet_box(filter, &obs->settings->navigation);
+    }
     filter->candidate.stand_in = filter->candidate.stand_in || (obs->base && obs->settings->model != GOE_MODEL_DISC);
     if (goe_filter_is_box(filter)) {
         return goe_box_change(filter, obs);

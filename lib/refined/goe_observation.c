@@ -19,6 +19,7 @@
 #define BEARING_FREEDOM 1.0f  /* one sigma of the first guess of X0/Z0 */
 #define RANGE_FREEDOM 2.0f    /* ... of 1/Z0, relative */
 #define TOP_FREEDOM 10.0f     /* ... of the top, in the larger of top and width */
+#define WIDTH_MIN 1.0e-5f     /* between two ends, focal lengths */
 #define FORWARD_MIN 1.0e-4f   /* a predicted point is taken to lie at least this far ahead, in units of Z0 */
 
 /* Left must lie left of right, or neither counts. Where base_near lies between them is not asked: the gate judges it. */
@@ -165,6 +166,15 @@ void goe_observation_linearise(goe_observation_t *obs) {
     obs->ey -= obs->latency_s * obs->rate_rad_s[1];
     obs->ez -= obs->latency_s * obs->rate_rad_s[2];
 #endif
+}
+
+bool goe_observation_ends(const goe_point_t point[GOE_FEATURES], goe_feature_t *left, goe_feature_t *right) {
+    const bool base = !(point[GOE_POINT_LEFT].usable && point[GOE_POINT_RIGHT].usable) &&
+                      point[GOE_POINT_BASE_LEFT].usable && point[GOE_POINT_BASE_RIGHT].usable;
+    *left = base ? GOE_POINT_BASE_LEFT : GOE_POINT_LEFT;
+    *right = base ? GOE_POINT_BASE_RIGHT : GOE_POINT_RIGHT;
+    const goe_point_t *p = point;
+    return p[*left].usable && p[*right].usable && p[*right].x - p[*left].x >= WIDTH_MIN;
 }
 
 /* 1/Z of the point as the given attitude shows it. */

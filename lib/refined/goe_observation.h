@@ -128,6 +128,9 @@ static inline float goe_observation_roof(const goe_observation_t *obs) {
     return obs->height_m * obs->state[GOE_INVERSE_RANGE] - obs->state[GOE_TOP];
 }
 
+/* The ends of the silhouette, or else the outer base corners: features. False if neither pair is visible in its order. */
+bool goe_observation_ends(const goe_point_t point[GOE_FEATURES], goe_feature_t *left, goe_feature_t *right);
+
 /* A measured point with the attitude bias taken off, to first order. */
 /*@ requires goe_observation_is_open(obs) && feature < GOE_FEATURES; */
 goe_point_t goe_observation_unbiased(const goe_observation_t *obs, goe_feature_t feature);

@@ -234,8 +234,7 @@ static float reach_of(const goe_filter_t *filter, goe_xz_t *nearer_m) {
         nearer_m->z = way_m * towards.z;
         return aspect.across.reach / x[GOE_INVERSE_RANGE];
     }
-    const float side = goe_filter_is_box(filter) ? goe_absolute(x[GOE_SIDE_X]) : 0.0f;
-    return 0.5f * (x[GOE_FRONT_X] + side) / x[GOE_INVERSE_RANGE];
+    return 0.5f * (x[GOE_FRONT_X] + goe_absolute(x[GOE_SIDE_X])) / x[GOE_INVERSE_RANGE];
 }
 
 /* One coordinate of the place. */

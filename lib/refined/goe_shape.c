@@ -8,8 +8,6 @@
 
 #if GOE_WITH_FILTER
 
-#define RANGE_MIN 1.0e-3f /* units of Z0 */
-
 void goe_shape_place(const goe_spot_t *spot, float scale_m, float by_x, float by_z, float by[GOE_STATES]) {
     by[GOE_BEARING] = by_x * scale_m;
     by[GOE_INVERSE_RANGE] = -scale_m * scale_m * (by_x * spot->at.x + by_z * spot->at.z);
@@ -18,12 +16,12 @@ void goe_shape_place(const goe_spot_t *spot, float scale_m, float by_x, float by
     }
 }
 
-void goe_shape_start(const goe_filter_t *filter, const float x[GOE_STATES], const goe_spot_t *reference,
-                     goe_shape_t *shape) {
+void goe_shape_start(const goe_filter_t *filter, const goe_spot_t *reference, goe_shape_t *shape) {
+    const float *x = filter->state;
     const float c = filter->axes.turn_cos;
     const float s = filter->axes.turn_sin;
     const float q = x[GOE_INVERSE_RANGE];
-    const float scale_m = q > 0.0f ? 1.0f / q : 0.0f; /* conditioned on no skew, a disc may lie behind or nowhere */
+    const float scale_m = q > 0.0f ? 1.0f / q : 0.0f; /* a flipped bit */
     const goe_xz_t place = goe_filter_into_trajectory(filter, reference->at);
     goe_linear_t *height = &shape->quantity[GOE_HEIGHT];
     memset(shape, 0, sizeof *shape);
@@ -39,14 +37,6 @@ void goe_shape_start(const goe_filter_t *filter, const float x[GOE_STATES], cons
     height->by[GOE_GROUND] = scale_m;
     height->by[GOE_TOP] = scale_m;
     shape->datum_by_range = x[GOE_GROUND] * scale_m * scale_m;
-}
-
-float goe_shape_turned(const goe_filter_t *filter, goe_xz_t camera_m) {
-    const float q = filter->state[GOE_INVERSE_RANGE];
-    const float a = filter->state[GOE_BEARING];
-    const float x = a - camera_m.x * q;
-    const float z = 1.0f - camera_m.z * q;
-    return (x - a * z) / (goe_larger(sqrtf(x * x + z * z), RANGE_MIN) * sqrtf(1.0f + a * a));
 }
 
 #endif

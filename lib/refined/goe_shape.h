@@ -40,12 +40,7 @@ typedef struct {
 /* Sets by[] to the derivatives of by_x X + by_z Z of a spot, meters, X and Z in the state's axes. */
 void goe_shape_place(const goe_spot_t *spot, float scale_m, float by_x, float by_z, float by[GOE_STATES]);
 
-/* The common part of all models, from the state x (the filter's own, or that under a condition): scale, height, and X0, Z0 of
- * the reference point. The rest becomes 0. */
-void goe_shape_start(const goe_filter_t *filter, const float x[GOE_STATES], const goe_spot_t *reference,
-                     goe_shape_t *shape);
-
-/* Sine of what the line of sight has turned by since the filter's start. camera_m: the camera since then (goe_filter_camera). */
-float goe_shape_turned(const goe_filter_t *filter, goe_xz_t camera_m);
+/* The common part of all models: scale, height, and X0, Z0 of the reference point. The rest becomes 0. */
+void goe_shape_start(const goe_filter_t *filter, const goe_spot_t *reference, goe_shape_t *shape);
 
 #endif

@@ -8,6 +8,7 @@
 
 #include "check.h"
 #include "maths/goe_scalar.h"
+#include "refined/goe_footprint_start.h"
 #include "scene.h"
 #include "upright.h"
 

@@ -1,11 +1,12 @@
 /* A footprint by points: rows against the extremes of its rim, in double, start, and flights. SPDX-License-Identifier: MIT */
-/* tests: lib/refined/goe_footprint.c */
+/* tests: lib/refined/goe_footprint.c, lib/refined/goe_footprint_start.c */
 #include "refined/goe_footprint.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "check.h"
+#include "refined/goe_footprint_start.h"
 #include "refined/goe_report.h"
 #include "scene.h"
 #include "sighting.h"
@@ -368,9 +369,10 @@ static void see_base(double y) {
     sighting.settings.filter.prior_width_m = 4.0f;
 }
 
-/* [filter.prior_width_m, (R16)] GIVEN base corners clearly below the horizon THEN flat ground gives the first range; GIVEN ones that lie so near to it that
- * the attitude's error alone may have put them there, a camera below the ground or a height as good as unknown, or no base corners,
- * THEN the typical size does. */
+/* [filter.prior_width_m, (R16)]
+ * GIVEN base corners clearly below the horizon THEN flat ground gives the first range; GIVEN ones that lie so near to it that the
+ * attitude's error alone may have put them there, a camera below the ground or a height as good as unknown, or no base corners, THEN the
+ * typical size does. */
 static void flat_ground_gives_the_first_range(void) {
     any = check_random_start("flat ground");
     see_base(0.25);

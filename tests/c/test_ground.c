@@ -57,7 +57,11 @@ static void start(float range_m, float height_sd_m) {
     filter.state[GOE_INVERSE_RANGE] = 1.0f / range_m;
     *goe_srif_at(&filter.root, GOE_INVERSE_RANGE, GOE_INVERSE_RANGE) = RANGE_KNOWN * range_m;
     *goe_srif_at(&filter.root, GOE_GROUND, GOE_GROUND) = range_m / height_sd_m;
-    goe_ground_start(&filter, height_sd_m * height_sd_m);
+    static const goe_sides_t none;
+    goe_observation_t first = obs;
+    first.height_sd_m = height_sd_m;
+    first.sides = &none;
+    goe_ground_start(&filter, &first);
 }
 
 /* Gives the filter its height rows, without any other row. Returns how many rows that were. */
@@ -320,6 +324,19 @@ static void the_arm_moves_the_camera_up_and_down(void) {
     CHECK_CLOSE(1.0e-4, 0.5 * (ground + (double)HEIGHT_M + down), filter.datum.ground_m);
 }
 
+/* GIVEN a footprint that began by points WHEN the first upright box comes THEN the obstacle's own ground may lie off, once, and from then
+ * on the height counts by the changes of down. */
+static void the_first_box_frees_the_ground_once(void) {
+    start(RANGE_M, 0.5f);
+    settings.navigation.terrain_height_sd_m = 2.0f;
+    TEST_ASSERT_FALSE(goe_filter_by_boxes(&filter));
+    for (int n = 0; n < 2; n++) {
+        goe_ground_meet_box(&filter, &settings.navigation);
+        TEST_ASSERT_TRUE(goe_filter_by_boxes(&filter));
+        CHECK_CLOSE(1.0e-3, sqrt(0.25 + 4.0), ground_sd_m());
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(readings_give_the_mean_and_no_more);
@@ -334,5 +351,6 @@ int main(void) {
     RUN_TEST(the_first_heights_own_error_is_kept);
     RUN_TEST(a_height_that_is_not_set_is_no_reading);
     RUN_TEST(the_arm_moves_the_camera_up_and_down);
+    RUN_TEST(the_first_box_frees_the_ground_once);
     return UNITY_END();
 }

@@ -1,0 +1,184 @@
+/* The axes that face the obstacle, and the first guess of its footprint. SPDX-License-Identifier: MIT */
+#include "refined/goe_footprint_start.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "image/goe_camera.h"
+#include "maths/goe_angle.h"
+#include "maths/goe_scalar.h"
+#include "refined/goe_touch.h"
+
+#if GOE_WITH_FILTER
+
+#define RAY_AHEAD_MIN 0.02f  /* third component of a ray that is faced */
+#define GROUND_SIGMAS 3.0f   /* by which the foot must lie below the horizon to give the range */
+#define FOOT_SHARE 0.6f      /* of box_noise_rel of the width, in that sigma */
+#define NEAR_SIDE 0.5f       /* a box's foot is nearer than the middle by half the width */
+#define RANGE_MIN_M 1.0f     /* of a first guess */
+#define RANGE_MAX_M 1.0e6f   /* the same */
+#define NO_ALTIMETER_M 50.0f /* sigma of the height from which on the first box sets it */
+#define HALF_FREEDOM 2.5f    /* one sigma of the first guess of the half width, in widths */
+#define SHEAR_FREEDOM 0.6f   /* ... of the shear, in half widths */
+#define DEPTH_FREEDOM 1.0f   /* ... of the log of the depth: a population of masts, cars and houses, in any direction */
+#define ROUND_FREEDOM 1.0e-3f /* of the depth, where a disc is configured */
+#define ROUND_SHEAR 0.02f     /* ... of the shear, in half widths: enough to show that it is none */
+#define GROUND_MIN 1.0e-6f    /* one sigma of the ground's offset, units of Z0 */
+#define BOX_SIZE_MIN 1.0e-12f /* of a box, angular: a smaller one gives no range */
+
+/* Aligned ray, in the state's axes, of the raw point (x, y) focal lengths. False if it does not point ahead. */
+static bool ray_of(const goe_camera_t *camera, const float camera_to_axes[9], float x, float y, goe_point_t *ray) {
+    float undistorted[2] = {x, y};
+    if (goe_camera_distorts(camera) && !goe_camera_undistort(camera, &undistorted[0], &undistorted[1])) {
+        return false;
+    }
+    const float *r = camera_to_axes;
+    const float z = r[6] * undistorted[0] + r[7] * undistorted[1] + r[8];
+    ray->usable = z > RAY_AHEAD_MIN;
+    const float ahead = ray->usable ? z : 1.0f;
+    ray->x = (r[0] * undistorted[0] + r[1] * undistorted[1] + r[2]) / ahead;
+    ray->y = (r[3] * undistorted[0] + r[4] * undistorted[1] + r[5]) / ahead;
+    return ray->usable;
+}
+
+/* Of the visible part of the box. */
+static void middle_of(const goe_camera_t *camera, const goe_sides_t *sides, float *x, float *y) {
+    *x =
+        0.5f * (goe_touch_coordinate(camera, sides, GOE_BOX_LEFT) + goe_touch_coordinate(camera, sides, GOE_BOX_RIGHT));
+    *y = goe_sides_see(sides, GOE_SIDE_TOP | GOE_SIDE_BOTTOM)
+             ? 0.5f * (goe_touch_coordinate(camera, sides, GOE_BOX_TOP) +
+                       goe_touch_coordinate(camera, sides, GOE_BOX_BOTTOM))
+             : 0.0f;
+}
+
+/* x of the ray to the obstacle. */
+static bool find_middle(const goe_view_t *view, float *x) {
+    goe_feature_t left;
+    goe_feature_t right;
+    if (goe_sides_see(&view->sides, GOE_SIDE_LEFT | GOE_SIDE_RIGHT)) {
+        goe_point_t ray;
+        float at_x;
+        float at_y;
+        middle_of(view->camera, &view->sides, &at_x, &at_y);
+        const bool ahead = ray_of(view->camera, view->camera_to_trajectory, at_x, at_y, &ray);
+        *x = ray.x;
+        return ahead;
+    }
+    if (!goe_observation_ends(view->point, &left, &right)) {
+        return false;
+    }
+    const float left_x = view->point[left].x;
+    const float right_x = view->point[right].x;
+    const float to_left = 1.0f / sqrtf(1.0f + goe_square(left_x)); /* cosines from Z */
+    const float to_right = 1.0f / sqrtf(1.0f + goe_square(right_x));
+    *x = (left_x * to_left + right_x * to_right) / (to_left + to_right);
+    return true;
+}
+
+bool goe_footprint_face(goe_filter_t *filter, const goe_view_t *view) {
+    float x;
+    if (!find_middle(view, &x)) {
+        return false;
+    }
+    const float norm = sqrtf(1.0f + x * x);
+    goe_filter_turn_axes(filter, 1.0f / norm, x / norm);
+    return true;
+}
+
+/* What a first image shows: the angular width, and the rays to head and foot. */
+typedef struct {
+    float size;
+    goe_point_t head, foot;
+    bool box; /* by an upright box */
+} sight_t;
+
+static void see_box(const goe_observation_t *obs, sight_t *sight) {
+    const goe_camera_t *camera = obs->camera;
+    const goe_sides_t *sides = obs->sides;
+    float x;
+    float y;
+    middle_of(camera, sides, &x, &y);
+    if (goe_sides_see(sides, GOE_SIDE_TOP)) {
+        (void)ray_of(camera, obs->camera_to_axes, x, goe_touch_coordinate(camera, sides, GOE_BOX_TOP), &sight->head);
+    }
+    if (goe_sides_see(sides, GOE_SIDE_BOTTOM)) {
+        (void)ray_of(camera, obs->camera_to_axes, x, goe_touch_coordinate(camera, sides, GOE_BOX_BOTTOM), &sight->foot);
+    }
+    sight->size = goe_touch_size(obs, GOE_BOX_LEFT, 0.0f) / (1.0f + x * x);
+    sight->box = true;
+}
+
+static bool see_points(const goe_observation_t *obs, sight_t *sight) {
+    goe_feature_t left;
+    goe_feature_t right;
+    if (!goe_observation_ends(obs->point, &left, &right)) {
+        return false;
+    }
+    sight->size = obs->point[right].x - obs->point[left].x;
+    sight->head = obs->point[GOE_POINT_TOP];
+    sight->foot.usable = obs->base;
+    sight->foot.y = 0.5f * (obs->point[GOE_POINT_BASE_LEFT].y + obs->point[GOE_POINT_BASE_RIGHT].y);
+    return true;
+}
+
+static bool see(const goe_observation_t *obs, sight_t *sight) {
+    memset(sight, 0, sizeof *sight);
+    if (!goe_sides_see(obs->sides, GOE_SIDE_LEFT | GOE_SIDE_RIGHT)) {
+        return see_points(obs, sight);
+    }
+    see_box(obs, sight);
+    return true;
+}
+
+static float height_sd_m(const goe_observation_t *obs) {
+    return sqrtf(goe_observation_height_variance(obs, obs->sides->usable != 0));
+}
+
+/* (R16): from flat ground, if the foot lies clearly below the horizon; otherwise from the typical size. */
+static float first_range_m(const goe_observation_t *obs, const sight_t *sight) {
+    const goe_settings_t *s = obs->settings;
+    const float attitude =
+        goe_square(s->navigation.attitude_bias_sd_deg * GOE_RAD_PER_DEG) + goe_square(obs->white_rad);
+    const float pixel = sight->box ? obs->side_px / obs->camera->fy_px : goe_observation_pixel(obs);
+    const float share = sight->box ? FOOT_SHARE * s->detector.box_noise_rel : 0.0f;
+    const float foot_sd = sqrtf(attitude + goe_square(pixel) + goe_square(share * sight->size));
+    const bool grounded = sight->foot.usable && sight->foot.y > GROUND_SIGMAS * foot_sd &&
+                          obs->height_m > GROUND_SIGMAS * height_sd_m(obs);
+    const float nearer = sight->box ? NEAR_SIDE * sight->size : 0.0f;
+    return grounded ? obs->height_m / sight->foot.y * (1.0f + nearer)
+                    : s->filter.prior_width_m / goe_larger(sight->size, BOX_SIZE_MIN);
+}
+
+static void set_root(const goe_observation_t *obs, const float state[GOE_STATES], float width, goe_triangle_t *root) {
+    const bool disc = obs->settings->model == GOE_MODEL_DISC;
+    float sd[GOE_STATES];
+    goe_observation_prior(obs, state, width, sd);
+    sd[GOE_GROUND] = goe_larger(height_sd_m(obs) * state[GOE_INVERSE_RANGE], GROUND_MIN);
+    sd[GOE_SHEAR] = (disc ? ROUND_SHEAR : SHEAR_FREEDOM) * state[GOE_HALF];
+    sd[GOE_HALF] = HALF_FREEDOM * width;
+    sd[GOE_LOG_DEPTH] = disc ? ROUND_FREEDOM : DEPTH_FREEDOM;
+    goe_srif_from_sigmas(sd, root);
+}
+
+bool goe_footprint_start(const goe_observation_t *obs, float state[GOE_STATES], goe_triangle_t *root) {
+    sight_t sight;
+    if (!see(obs, &sight)) {
+        return false;
+    }
+    const float range_m = first_range_m(obs, &sight);
+    if (!(range_m >= RANGE_MIN_M) || !goe_within(range_m, RANGE_MAX_M)) {
+        return false;
+    }
+    const float q = 1.0f / range_m;
+    memset(state, 0, GOE_STATES * sizeof state[0]);
+    state[GOE_INVERSE_RANGE] = q;
+    state[GOE_HALF] = 0.5f * sight.size;
+    state[GOE_TOP] = obs->height_m * q - (sight.head.usable ? sight.head.y : 0.0f);
+    if (height_sd_m(obs) > NO_ALTIMETER_M && sight.foot.usable) {
+        state[GOE_GROUND] = sight.foot.y - obs->height_m * q;
+    }
+    set_root(obs, state, sight.size, root);
+    return true;
+}
+
+#endif
