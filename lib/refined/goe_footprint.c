@@ -30,7 +30,7 @@ enum { SHAPE_LEFT = GOE_BOX_SIDES, SHAPE_RIGHT, MEMORIES };
 GOE_STATIC_ASSERT(sizeof(((goe_filter_t *)0)->side) == MEMORIES * sizeof(goe_side_memory_t), every_side_has_a_memory);
 
 /* Sine of the turn of the line of sight between two places of the camera, since the filter's start. */
-static float turned(const goe_filter_t *filter, goe_xz_t from_m, goe_xz_t to_m) {
+static float turn_between(const goe_filter_t *filter, goe_xz_t from_m, goe_xz_t to_m) {
     const float q = filter->state[GOE_INVERSE_RANGE];
     const float a = filter->state[GOE_BEARING];
     const goe_xz_t was = {a - from_m.x * q, 1.0f - from_m.z * q};
@@ -206,7 +206,8 @@ void goe_footprint_rows(const goe_observation_t *obs, goe_rows_t *rows) {
 
 /* The errors of a box's sides fade with time, those of a shape that is no ellipse with the turn of the line of sight. */
 static void fade(goe_filter_t *filter, const goe_observation_t *obs, const goe_rows_t *rows) {
-    const float kept = goe_exp(-goe_absolute(turned(filter, goe_filter_measured(filter), obs->camera_m)) / SHAPE_TURN);
+    const float kept =
+        goe_exp(-goe_absolute(turn_between(filter, goe_filter_measured(filter), obs->camera_m)) / SHAPE_TURN);
     const float shape2 = is_round(obs) ? 0.0f : goe_square(SIDE_SHAPE * size_of(obs, GOE_BOX_LEFT));
     for (size_t side = 0; side < GOE_BOX_SIDES; side++) {
         const float share = obs->settings->detector.box_noise_rel;
@@ -313,7 +314,7 @@ void goe_footprint_shape(const goe_filter_t *filter, goe_shape_t *shape) {
 
 bool goe_footprint_knows_depth(const goe_filter_t *filter) {
     const goe_xz_t start_m = {0.0f, 0.0f};
-    return goe_absolute(turned(filter, start_m, goe_filter_measured(filter))) > DEPTH_TURNED;
+    return goe_absolute(turn_between(filter, start_m, goe_filter_measured(filter))) > DEPTH_TURNED;
 }
 
 /* The last state's sigma is that of its own row. */
