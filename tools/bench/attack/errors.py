@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import turns
-from .motion import Path
+from . import surroundings, turns
+from .motion import Path, Span
 from .view import BASE_LEFT, BASE_NEAR, BASE_RIGHT, LEFT, RIGHT, TOP
 
 FEET_PER_M = 1.0 / 0.3048
@@ -39,6 +39,14 @@ class Wrong:
     ground_off_m: float = 0.0  # exact size, up or down
     slope: float = 0.0  # rise or fall of the ground under the aircraft towards the obstacle
     reset_m: float = 0.0  # halfway the reported down and height jump by this size, up or down; the jump is reported
+    down_walk_m: float = 0.0  # per sqrt(s): reported down and height wander together ...
+    climb_off_m_s: float = 0.0  # ... and drift at this speed, up or down
+    velocity_wander_m_s: float = 0.0  # error of the velocity, north and east: a Gauss-Markov process ...
+    velocity_wander_s: float = 20.0  # ... with this correlation time
+    velocity_off_m_s: float = 0.0  # constant error of the velocity: exact size, any horizontal direction
+    step_m: float = 0.0  # the ground below the first half of the way is higher or lower by this size
+    canopy_m: Span = (0.0, 0.0)  # the height is measured above trees of this height, with gaps between them
+    height_lag_s: float = 0.0  # age of the height, on top of the pose's
     late_s: float = 0.0  # age of the pose
     mount_off_deg: float = 0.0  # error of the configured mounting about each axis, exact size, either sign
     focal_share: float = 0.0  # relative error of the configured focal length
@@ -57,7 +65,7 @@ class Pose:
     attitude: np.ndarray
     quaternion: np.ndarray
     height_m: np.ndarray
-    velocity_error_m_s: np.ndarray  # (3,) of the reported velocity
+    velocity_error_m_s: np.ndarray  # (3,) or (K, 3) of the reported velocity
 
 
 def _of_matrix(change: Callable[[np.ndarray], np.ndarray]) -> Callable[[Pose], None]:
@@ -152,14 +160,34 @@ def spoil_boxes(exact: np.ndarray, time_s: np.ndarray, wrong: Wrong, rng: np.ran
     return exact + wrong.box_noise_rel * size * correlated(time_s, wrong.box_correlation_time_s, 4, rng) + white
 
 
+def drifting(time_s: np.ndarray, wrong: Wrong, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    """Slow errors (K, 3) of the reported position, which is right in the first image, and of the reported velocity."""
+    step_s, count = np.diff(time_s, prepend=time_s[0]), len(time_s)
+    velocity = np.zeros((count, 3))
+    velocity[:, :2] = wrong.velocity_wander_m_s * correlated(time_s, wrong.velocity_wander_s, 2, rng)
+    angle = rng.uniform(0.0, 2 * math.pi)
+    velocity[:, :2] += wrong.velocity_off_m_s * np.array([math.cos(angle), math.sin(angle)])
+    velocity[:, 2] = wrong.climb_off_m_s * rng.choice([-1.0, 1.0])
+    place = np.cumsum(velocity * step_s[:, None], 0)
+    place[:, 2] += np.cumsum(wrong.down_walk_m * np.sqrt(step_s) * rng.standard_normal(count))
+    return place, velocity
+
+
+def ground_m(away_m: np.ndarray, wrong: Wrong, rng: np.random.Generator) -> np.ndarray:
+    """Height (K,) of the ground or of the trees below the aircraft, above the obstacle's ground."""
+    ground = surroundings.step_m(away_m, wrong.step_m, rng)
+    return ground + surroundings.canopy_m(away_m, wrong.canopy_m, rng) if any(wrong.canopy_m) else ground
+
+
 def reported_pose(
     path: Path, time_s: np.ndarray, to_ned: np.ndarray, origin_m: np.ndarray, obstacle_m: np.ndarray, wrong: Wrong,
-    rng: np.random.Generator,
+    rng: np.random.Generator, harder: np.random.Generator,
 ) -> tuple[Pose, np.ndarray]:  # fmt: skip
     """The pose at some of the path's times, and the sum of the filter's jumps up to each of them (K, 3).
-    ``to_ned``: the course's axes, with their origin at ``origin_m``; ``obstacle_m``: forward, right."""
+    ``to_ned``: the course's axes, with their origin at ``origin_m``; ``obstacle_m``: forward, right; ``harder``: draws
+    the slow errors and the ground."""
     place, body = path.at(time_s - wrong.late_s)
-    place, height = origin_m + place @ to_ned.T, -place[:, 2]
+    place, height = origin_m + place @ to_ned.T, -path.at(time_s - wrong.late_s - wrong.height_lag_s)[0][:, 2]
     count, flown_s = len(time_s), time_s - time_s[0]
     bias = math.radians(wrong.attitude_bias_sd_deg) * rng.standard_normal(3)
     white = math.radians(wrong.attitude_white_sd_deg) * rng.standard_normal((count, 3))
@@ -170,7 +198,10 @@ def reported_pose(
     up, slope, jump = rng.choice([-1.0, 1.0], 3) * [wrong.ground_off_m, wrong.slope, wrong.reset_m]
     reported = height + up + wrong.height_bias_sd_m * rng.standard_normal()
     reported = reported + wrong.height_white_sd_m * rng.standard_normal(count)
-    reported = reported + slope * np.linalg.norm(path.at(time_s)[0][:, :2] - obstacle_m, axis=1)
+    away = np.linalg.norm(path.at(time_s)[0][:, :2] - obstacle_m, axis=1)
+    slow, slow_velocity = drifting(time_s, wrong, harder)
+    place, drift = place + slow, drift + slow_velocity
+    reported = reported + slope * away - slow[:, 2] - ground_m(away, wrong, harder)
     jumped = np.zeros((count, 3))
     jumped[count // 2 :, 2] = jump
     attitude = to_ned @ body @ turns.of_vector(bias + white)

@@ -33,7 +33,10 @@ class Flown:
     climb_m_s: float = 0.7  # at most, up or down
     aside_m: Span = (3.0, 40.0)  # lateral distance of the obstacle's outline from the path, left or right
     weave_m: float = 6.0  # amplitude at most; half of the flights go straight
+    steady_climb_m_s: float = 0.0  # exact size on top, up or down
     sway_deg: tuple[float, float, float] = (2.0, 1.5, 5.0)  # amplitudes of yaw, pitch, roll
+    sway_periods_s: tuple[Span, Span, Span] = SWAY_PERIODS_S
+    crab_deg: Span = (0.0, 0.0)  # constant angle of the nose from the course, left or right
     rate_hz: float = 8.0
     stop_s: float = 1.0  # a pass ends this long before the outline is abeam
     gap_s: float = 0.0  # duration without images after the first third
@@ -59,7 +62,7 @@ class Path:
 def _sway(flown: Flown, rng: np.random.Generator) -> Callable[[np.ndarray], np.ndarray]:
     """Yaw, pitch and roll (3, K), rad, relative to the path."""
     amplitude = np.radians(flown.sway_deg)
-    period = np.array([rng.uniform(*p) for p in SWAY_PERIODS_S])
+    period = np.array([rng.uniform(*p) for p in flown.sway_periods_s])
     phase = rng.uniform(0.0, 2 * math.pi, 3)
     return lambda t: amplitude[:, None] * np.sin(2 * math.pi * t / period[:, None] + phase[:, None])
 
@@ -74,6 +77,13 @@ def _side(half_m: float, flown: Flown, rng: np.random.Generator) -> float:
     return float(rng.choice([-1.0, 1.0]) * (half_m + rng.uniform(*flown.aside_m)))
 
 
+def _crab(flown: Flown, rng: np.random.Generator) -> float:
+    """Without a crab angle it draws no number."""
+    if not any(flown.crab_deg):
+        return 0.0
+    return math.radians(rng.uniform(*flown.crab_deg)) * float(rng.choice([-1.0, 1.0]))
+
+
 def _steered(
     place: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]],
     heading: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]],
@@ -83,7 +93,9 @@ def _steered(
     """The nose along the path, the bank angle of the turn, plus sway. ``heading``: angle and lateral
     acceleration."""
     sway = _sway(flown, rng)
-    height, climb = rng.uniform(*flown.height_m), rng.uniform(-1.0, 1.0) * flown.climb_m_s
+    height, climb = rng.uniform(*flown.height_m), rng.uniform(-1.0, 1.0)
+    climb = climb * flown.climb_m_s + math.copysign(flown.steady_climb_m_s, climb)
+    crab = _crab(flown, rng)
 
     def at(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         forward, right = place(t)
@@ -91,7 +103,7 @@ def _steered(
         bank = np.clip(np.arctan2(lateral, GRAVITY_M_S2), -BANK_MOST_RAD, BANK_MOST_RAD)
         swayed = sway(t)
         level = np.stack([forward, right, -(height + climb * t)], 1)
-        return level, turns.of_angles(yaw + swayed[0], swayed[1], bank + swayed[2])
+        return level, turns.of_angles(yaw + crab + swayed[0], swayed[1], bank + swayed[2])
 
     return at
 

@@ -7,16 +7,16 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from . import errors, motion, solids, turns, view
+from . import errors, motion, solids, surroundings, turns, view
 from .errors import Wrong
-from .motion import Flown
+from .motion import Flown, Span
 from .solids import Solid
 from .view import Camera, Standpoint
 
 SEED = 20260511
 MIN_IMAGES = 12  # with features, for a track
 MIXED = "mixed"  # two boxes to one cylinder
-FEATURES = ("corners", "outline", "boxes")
+FEATURES = ("corners", "outline", "boxes", "boxes with corners")
 ATTEMPTS = 200  # to draw a flight with the obstacle in view
 BEHIND_COS = math.cos(math.radians(87.0))  # from T's Z axis: a larger angle cannot be used
 KEPT_M = 3.0  # least distance of the camera from the obstacle's outline
@@ -33,6 +33,12 @@ class Scenario:
     features: str = (
         "corners"  # left, right, top and base corners; outline: without the corners; boxes: upright boxes alone
     )
+    hidden_m: Span = (0.0, 0.0)  # height of the bushes before the base ...
+    hidden_share: Span = (0.0, 0.0)  # ... or of trees, as a share of the obstacle's height ...
+    hidden_until: float = 1.0  # ... in this first part of the flight
+    corners_lost: float = 0.5  # probability that hidden base corners are absent, not raised
+    foreign: float = 0.0  # share of the images whose features are those of another obstacle nearby
+    at_border: bool = False  # the border of the image cuts the obstacle halfway
     wrong: Wrong = field(default_factory=Wrong)
     mount_deg: tuple[float, float, float] = (0.0, 0.0, 0.0)  # yaw, pitch, roll of the camera
     moves_m_s: float = 0.0
@@ -132,7 +138,7 @@ class _World:
     stand: Standpoint
 
 
-def _world(scenario: Scenario, number: int, rng: np.random.Generator) -> _World:
+def _world(scenario: Scenario, number: int, rng: np.random.Generator, harder: np.random.Generator) -> _World:
     solid = solids.drawn(kind_of(scenario, number), scenario.size_m, rng)
     path = motion.PATHS[scenario.flown.path](scenario.flown, solid.half_m, rng)
     heading, velocity, time = rng.uniform(-math.pi, math.pi), _velocity(scenario, rng), path.time_s
@@ -141,21 +147,60 @@ def _world(scenario: Scenario, number: int, rng: np.random.Generator) -> _World:
     place, body = path.at(time)
     yaw, pitch, roll = scenario.mount_deg
     camera = Camera(k1=scenario.wrong.k1, mount_deg=(yaw + path.mount_yaw_deg, pitch, roll))
+    if scenario.at_border:
+        camera = surroundings.at_border(camera, place, middle, harder)
     turned = replace(solid, orientation_rad=solid.orientation_rad + path.axis_rad)
     eye = np.stack([place[:, 1], place[:, 0], -place[:, 2]], 1)
-    stand = Standpoint(camera, eye, body, middle[:, ::-1])
+    stand = Standpoint(camera, eye, body, middle[:, ::-1], _hidden(scenario, solid, len(time), harder))
     return _World(path, turns.about(2, heading), heading + path.axis_rad, turned, velocity, middle, place, stand)
 
 
-def _detected(scenario: Scenario, world: _World, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray | None]:
+def _hidden(scenario: Scenario, solid: Solid, count: int, rng: np.random.Generator) -> np.ndarray | None:
+    """Height (K,) below which the obstacle is hidden; None: nowhere."""
+    if not any(scenario.hidden_m + scenario.hidden_share):
+        return None
+    return surroundings.hidden_m(solid, count, scenario.hidden_m, scenario.hidden_share, scenario.hidden_until, rng)
+
+
+Features = tuple[np.ndarray, np.ndarray]  # points (K, 6, 2), boxes (K, 4)
+
+
+def _exact(scenario: Scenario, solid: Solid, stand: Standpoint, lost: bool) -> Features:
+    """``lost``: hidden base corners are absent."""
+    found = view.points(solid, stand, "corners" in scenario.features)
+    if stand.hidden_m is not None and lost:
+        found[stand.hidden_m > 0.0, view.BASE_LEFT :] = np.nan
+    return found, view.boxes(solid, stand) if "boxes" in scenario.features else np.full((len(found), 4), np.nan)
+
+
+def _shown(scenario: Scenario, world: _World, rng: np.random.Generator) -> Features:
+    """The exact features; in some images those of a neighbor, if it is in view."""
+    found = _exact(scenario, world.solid, world.stand, bool(rng.random() < scenario.corners_lost))
+    if not scenario.foreign:
+        return found
+    other = _exact(scenario, *surroundings.neighbor(world.solid, world.stand, scenario.size_m, rng), False)
+    hit = rng.random(len(found[0])) < scenario.foreign
+    for own, foreign in zip(found, other):
+        there = hit & np.isfinite(foreign).reshape(len(hit), -1).any(1)
+        own[there] = foreign[there]
+    return found
+
+
+def _detected(
+    scenario: Scenario, world: _World, rng: np.random.Generator, harder: np.random.Generator
+) -> tuple[np.ndarray, np.ndarray | None]:
     """Points (K, 6, 2) and boxes (K, 4), NaN without one."""
-    time, none = world.path.time_s, np.full((len(world.path.time_s), 6, 2), np.nan)
+    time, (exact, exact_box) = world.path.time_s, _shown(scenario, world, harder)
+    box = None
+    if "boxes" in scenario.features:
+        given = errors.spoil_boxes(exact_box, time, scenario.wrong, rng)
+        box = view.cut_at_border(given, exact_box, world.stand.camera)
     if scenario.features == "boxes":
-        exact = view.boxes(world.solid, world.stand)
-        given = errors.spoil_boxes(exact, time, scenario.wrong, rng)
-        return none, view.cut_at_border(given, exact, world.stand.camera)
-    exact = view.points(world.solid, world.stand, scenario.features == "corners")
+        return np.full_like(exact, np.nan), box
     pixel = errors.spoil_points(exact, time, scenario.wrong, rng)
+    if box is not None:
+        pixel[:, : view.BASE_LEFT] = np.nan
+        return np.where(np.isfinite(box[:, :1, None]), pixel, np.nan), box
     whole = np.isfinite(exact[:, [view.LEFT, view.RIGHT]]).all((1, 2))
     return np.where(whole[:, None, None], pixel, np.nan), None
 
@@ -183,20 +228,20 @@ def _truth(world: _World, part: slice, origin: int, axis: float) -> Truth:
 
 def _one(scenario: Scenario, number: int, attempt: int) -> Inputs | None:
     """None if too few images show the obstacle, or the camera comes too near."""
-    rng, noise = (np.random.default_rng([SEED, number, attempt, part]) for part in (0, 1))
-    world = _world(scenario, number, rng)
+    rng, noise, harder = (np.random.default_rng([SEED, number, attempt, part]) for part in range(3))
+    world = _world(scenario, number, rng, harder)
     away = np.linalg.norm(world.place_m[:, :2] - world.middle_m, axis=1)
     if (away < world.solid.half_m + KEPT_M).any() and not scenario.collides:
         return None
-    pixel, box = _detected(scenario, world, noise)
-    shown = np.isfinite(pixel).any((1, 2)) if box is None else np.isfinite(box).any(1)
+    pixel, box = _detected(scenario, world, noise, harder)
+    shown = np.isfinite(pixel).any((1, 2)) if box is None else np.isfinite(box).any(1)  # points come with a box
     if shown.sum() < MIN_IMAGES:
         return None
     part = slice(int(np.argmax(shown)) if world.path.trimmed else 0, len(shown) - int(np.argmax(shown[::-1])))
     time = world.path.time_s[part]
     origin = np.append(rng.uniform(-ORIGIN_M, ORIGIN_M, 2), 0.0)
     pose, jumped = errors.reported_pose(
-        world.path, time, world.to_ned, origin, world.path.obstacle_m, scenario.wrong, noise
+        world.path, time, world.to_ned, origin, world.path.obstacle_m, scenario.wrong, noise, harder
     )
     steps = np.diff(jumped, axis=0, prepend=jumped[:1])
     seen = np.isfinite(pixel[part]).all(-1)

@@ -51,6 +51,7 @@ class Standpoint:
     eye_m: np.ndarray  # (K, 3) X, Z, height above ground
     to_body: np.ndarray  # (K, 3, 3) matrices body -> course (forward, right, down)
     middle_m: np.ndarray  # (K, 2) X, Z of the solid's middle
+    hidden_m: np.ndarray | None = None  # (K,) height below which the solid is hidden
 
     def look(self, points: np.ndarray) -> np.ndarray:
         """Pixels (K, N, 2) of points (N, 3) or (K, N, 3) about the solid's middle."""
@@ -58,6 +59,14 @@ class Standpoint:
         x, z, up = np.moveaxis(points + offset[:, None], -1, 0)
         to_course = self.to_body @ self.camera.to_body()
         return self.camera.project(np.stack([z, x, -up], -1) @ to_course)
+
+    def shown(self, points: np.ndarray) -> np.ndarray:
+        """Points (N, 3) of the solid; the hidden ones raised (K, N, 3) to the lowest height that is not."""
+        if self.hidden_m is None:
+            return points
+        raised = np.tile(points, (len(self.hidden_m), 1, 1))
+        raised[..., 2] = np.maximum(raised[..., 2], self.hidden_m[:, None])
+        return raised
 
     @property
     def eye_about_middle(self) -> np.ndarray:
@@ -72,7 +81,7 @@ def _pick(points: np.ndarray, chosen: np.ndarray) -> np.ndarray:
 
 def _box_points(solid: Solid, stand: Standpoint) -> np.ndarray:
     """(K, 6, 2): extreme points of the outline, the top, no base corner."""
-    pixel = stand.look(solid.points())
+    pixel = stand.look(stand.shown(solid.points()))
     whole = np.isfinite(pixel).all((1, 2))
     u = np.where(whole[:, None], pixel[..., 0], 0.0)
     tops = solid.tops()
@@ -94,17 +103,20 @@ def _cylinder_points(solid: Solid, stand: Standpoint) -> np.ndarray:
     distance = np.maximum(np.linalg.norm(eye, axis=1), 1e-9)
     toward = np.arctan2(eye[:, 0], eye[:, 1])  # clockwise from Z
     half = np.arccos(np.clip(radius / distance, -1.0, 1.0))
-    levels = np.linspace(0.0, solid.height_m, EDGE_STEPS)
+    levels = np.broadcast_to(np.linspace(0.0, solid.height_m, EDGE_STEPS), (len(eye), EDGE_STEPS))
+    if stand.hidden_m is not None:
+        levels = stand.hidden_m[:, None] + (1.0 - stand.hidden_m[:, None] / solid.height_m) * levels
 
     def wall(angle: np.ndarray, height: np.ndarray) -> np.ndarray:
         at = radius * np.stack([np.sin(angle), np.cos(angle)], -1)[:, None]
         return stand.look(np.concatenate([np.broadcast_to(at, (*height.shape, 2)), height[..., None]], -1))
 
-    result = np.full((len(eye), 6, 2), np.nan)
+    result, images = np.full((len(eye), 6, 2), np.nan), np.arange(len(eye))
     for feature, angle in ((LEFT, toward + half), (RIGHT, toward - half)):
-        inside = stand.camera.contains(wall(angle, np.broadcast_to(levels, (len(eye), EDGE_STEPS))))
+        inside = stand.camera.contains(wall(angle, levels))
         lowest, highest = np.argmax(inside, 1), EDGE_STEPS - 1 - np.argmax(inside[:, ::-1], 1)
-        middle = wall(angle, 0.5 * (levels[lowest] + levels[highest])[:, None])[:, 0]
+        between = 0.5 * (levels[images, lowest] + levels[images, highest])
+        middle = wall(angle, between[:, None])[:, 0]
         result[:, feature] = np.where(inside.any(1)[:, None], middle, np.nan)
     result[:, TOP] = wall(toward, np.full((len(eye), 1), solid.height_m))[:, 0]
     result[distance <= radius] = np.nan
@@ -115,7 +127,7 @@ def base_corners(solid: Solid, stand: Standpoint) -> np.ndarray:
     """(K, 3, 2): left, near, right of the visible base corners; near is NaN if only one face is visible. Two buildings
     have the corners of both together."""
     corners = np.concatenate(solid.bases())
-    pixel = stand.look(np.pad(corners, ((0, 0), (0, 1))))
+    pixel = stand.look(stand.shown(np.pad(corners, ((0, 0), (0, 1)))))
     ray = stand.eye_about_middle[:, None] - corners  # (K, N, 2)
     if solid.kind == "two":
         u = np.where(np.isfinite(pixel[..., 0]), pixel[..., 0], 0.0)
@@ -150,7 +162,7 @@ def points(solid: Solid, stand: Standpoint, corners: bool) -> np.ndarray:
 def boxes(solid: Solid, stand: Standpoint) -> np.ndarray:
     """Sides (K, 4) left, top, right, bottom of the smallest upright box around it, also beyond the border; NaN if a
     part of it has no image."""
-    pixel = stand.look(solid.points())
+    pixel = stand.look(stand.shown(solid.points()))
     return np.concatenate([pixel.min(1), pixel.max(1)], 1)
 
 
