@@ -37,6 +37,10 @@ class Answers:
         None  # (K, 2) of the obstacle, north and east, NaN if not reported; None: never reported
     )
     velocity_sigma_m_s: np.ndarray | None = None
+    place_m: np.ndarray | None = None  # (K, 2) X, Z relative to the camera now; None: never reported
+    place_sigma_m: np.ndarray | None = None
+    latency_s: np.ndarray | None = None  # (K,) of the poses, NaN if not reported; None: never reported
+    latency_sigma_s: np.ndarray | None = None
     time_to_go_s: np.ndarray | None = None  # (K,) until the closest approach, NaN if not reported; None: not requested
 
 
@@ -47,6 +51,7 @@ class Outcome:
     answers: Answers
     error: np.ndarray
     sigma: np.ndarray
+    followed: np.ndarray | None = None  # (K, 2) errors in sigmas of X and Z now, NaN if no velocity is reported
 
     @property
     def suspect(self) -> np.ndarray:
@@ -93,6 +98,32 @@ def width_across(truth: Truth) -> float:
     return float(np.ptp(np.concatenate(solid.bases()) @ np.array([sight[1], -sight[0]])))
 
 
+def _correct(answers: Answers, truth: Truth) -> np.ndarray:
+    """(K, 6) correct answers for a box, in the naming nearer to each answer."""
+    as_box = (answers.model == BOX) | (answers.model == LINE)
+    angle = _known(np.where(as_box, answers.values[:, ORIENTATION], np.nan))
+    one, other = namings(truth)
+    with np.errstate(invalid="ignore"):
+        turned = np.abs(folded(angle - one[ORIENTATION])) > math.pi / 4
+    return np.where(turned[:, None], other, one)
+
+
+def followed(answers: Answers, truth: Truth) -> np.ndarray | None:
+    """Errors in sigmas (K, 2) of X and Z relative to the camera now, NaN where no velocity is reported; None: never
+    reported."""
+    if answers.place_m is None or answers.place_sigma_m is None or answers.velocity_m_s is None:
+        return None
+    way = truth.velocity_ned_m_s * answers.time_s[:, None] - truth.eye_ned_m[:, :2]
+    a = truth.axis_rad
+    place = way @ np.array([[-math.sin(a), math.cos(a)], [math.cos(a), math.sin(a)]])
+    if truth.solid.kind != "cylinder":
+        by_face = np.isin(answers.model, (BOX, LINE))[:, None]
+        place = place + by_face * (_correct(answers, truth)[:, :2] - truth.middle_m)
+    there = np.isfinite(answers.velocity_m_s).all(1)[:, None] & (answers.place_sigma_m > 0.0)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.where(there, np.abs(answers.place_m - place) / answers.place_sigma_m, np.nan)
+
+
 def judge(answers: Answers, truth: Truth) -> Outcome:
     """For a box, either naming of front and side is right; the one nearer in angle counts. A prism gives the place of
     its middle, the height, and the width across the first line of sight; a disc that represents another shape only the
@@ -104,18 +135,15 @@ def judge(answers: Answers, truth: Truth) -> Outcome:
         error[:, names] = values[:, names] - [*truth.middle_m, solid.width_m, solid.height_m]
     else:
         as_box = (answers.model == BOX) | (answers.model == LINE)
-        angle = _known(np.where(as_box, values[:, ORIENTATION], np.nan))
-        one, other = namings(truth)
-        with np.errstate(invalid="ignore"):
-            turned = np.abs(folded(angle - one[ORIENTATION])) > math.pi / 4
-        error[as_box] = (values - np.where(turned[:, None], other, one))[as_box]
+        error[as_box] = (values - _correct(answers, truth))[as_box]
         error[~as_box, :2] = values[~as_box, :2] - truth.middle_m
         prism = answers.model == PRISM
         error[prism, WIDTH] = values[prism, WIDTH] - width_across(truth)
         error[prism, HEIGHT] = values[prism, HEIGHT] - solid.height_m
     error[:, ORIENTATION] = folded(error[:, ORIENTATION])
     there = np.isfinite(error) & np.isfinite(answers.sigma)
-    return Outcome(answers, np.where(there, error, np.nan), np.where(there, answers.sigma, np.nan))
+    sigma = np.where(there, answers.sigma, np.nan)
+    return Outcome(answers, np.where(there, error, np.nan), sigma, followed(answers, truth))
 
 
 def longest_run(flags: np.ndarray) -> int:
@@ -221,6 +249,41 @@ def time_error(outcomes: Sequence[Outcome], true_s: Sequence[np.ndarray], word: 
         if chosen.any():
             medians.append(100.0 * np.median(np.abs(o.answers.time_to_go_s - true)[chosen] / true[chosen]))
     return float(np.median(medians)) if medians else math.nan
+
+
+def followed_covered(outcomes: Sequence[Outcome]) -> float:
+    """Percent of the places, X and Z, of an obstacle with a reported velocity that are within two sigma; NaN if none
+    is reported."""
+    ratios = [o.followed[np.isfinite(o.followed)] for o in outcomes if o.followed is not None]
+    return share([bool(ratio < COVERED_SIGMA) for of_track in ratios for ratio in of_track])
+
+
+def latency_covered(outcomes: Sequence[Outcome], late_s: float) -> float:
+    """Percent of a track's latencies within two sigma, mean over the tracks with one; NaN without any."""
+    shares = []
+    for o in outcomes:
+        if o.answers.latency_s is None or o.answers.latency_sigma_s is None:
+            continue
+        ratio = np.abs(o.answers.latency_s - late_s) / o.answers.latency_sigma_s
+        if np.isfinite(ratio).any():
+            shares.append(100.0 * float((ratio[np.isfinite(ratio)] < COVERED_SIGMA).mean()))
+    return float(np.mean(shares)) if shares else math.nan
+
+
+def typical_error(outcomes: Sequence[Outcome], quantity: int = Z0) -> float:
+    """Error in sigmas: the median over the tracks of a track's median. 0.67 if errors are Gaussian."""
+    medians = []
+    for o in outcomes:
+        ratio = np.abs(o.error[:, quantity]) / o.sigma[:, quantity]
+        if np.isfinite(ratio).any():
+            medians.append(float(np.nanmedian(ratio)))
+    return float(np.median(medians)) if medians else math.nan
+
+
+def shortfall(covered: Sequence[float], flagged: float, wanted: tuple[float, float]) -> float:
+    """Percent lacking until the worst coverage or the share of flagged tracks is as wanted; 0: one of them is."""
+    there = [value for value in covered if math.isfinite(value)]
+    return max(0.0, min(wanted[0] - min(there, default=0.0), wanted[1] - flagged))
 
 
 def odd_within(outcomes: Sequence[Outcome], limit_s: float) -> float:

@@ -7,11 +7,10 @@ Tracks with odd numbers judge and fill the table. Thresholds of the library are 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 from goe_tools.report.attack_lines import (
     ANSWERS,
-    ANY,
     COVER,
     EVER,
     FLAGGED,
@@ -28,56 +27,15 @@ from goe_tools.report.attack_lines import (
     TIME,
     TRACKS,
     VELOCITY,
-    WRONG,
 )
 
+from .harder import HARDER
+from .row import Ask, Row, cover, suspect, wrong
 from .scenario import Scenario
 
-Range = tuple[float, float]
 TRACKS_EACH = 120  # of a row
 HALVES = {"judge": 1, "settle": 0}  # remainder of a track's number by 2
-FEATURE_NAMES = {"corners": "", "outline": ", outline", "boxes": ", by boxes"}
 MOVES, LATE = "moves", "late"  # words in the reasons of suspicion
-
-
-@dataclass(frozen=True)
-class Ask:
-    """A range for figures of a line; without names for all reported quantities, but at least the position."""
-
-    line: str
-    wanted: Range
-    names: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True)
-class Row:
-    """``settings``: the configuration beyond the camera. ``if_known``: further settings, left out with a message if the
-    library does not have them."""
-
-    section: str
-    name: str
-    scenario: Scenario
-    settings: dict[str, float] = field(default_factory=dict)
-    if_known: dict[str, float] = field(default_factory=dict)
-    asked: tuple[Ask, ...] = ()
-    tracks_share: float = 1.0  # of the usual number of tracks
-
-    @property
-    def title(self) -> str:
-        return self.name + FEATURE_NAMES[self.scenario.features]
-
-
-def cover(percent: float, *names: str) -> Ask:
-    return Ask(COVER, (percent, 100.0), names)
-
-
-def wrong(percent: float, name: str = ANY) -> Ask:
-    return Ask(WRONG, (0.0, percent), (name,))
-
-
-def suspect(percent: float) -> Ask:
-    return Ask(SUSPECT, (0.0, percent), (TRACKS,))
-
 
 BASE = Scenario()
 BASELINE = Ask(COVER, (90.0, 98.0))
@@ -218,7 +176,15 @@ CONVENTIONS = [
     *(Row("conventions", name, BASE.by(features="boxes", convention=name), OWN_HEADING) for name in CLEAR_CONVENTIONS),
 ]  # fmt: skip
 
-ROWS: tuple[Row, ...] = (*AS_CONFIGURED, *CONFIGURED_ERRORS, *UNCONFIGURED_ERRORS, *SHAPES, *MOVERS, *CONVENTIONS)
+ROWS: tuple[Row, ...] = (
+    *AS_CONFIGURED,
+    *CONFIGURED_ERRORS,
+    *UNCONFIGURED_ERRORS,
+    *SHAPES,
+    *MOVERS,
+    *CONVENTIONS,
+    *HARDER,
+)
 
 
 def row_named(title: str) -> Row:

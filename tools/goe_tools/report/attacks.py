@@ -16,6 +16,8 @@ OTHER_LINES = (
     attack_lines.LATENESS,
     attack_lines.ODD,
     attack_lines.VELOCITY,
+    attack_lines.FOLLOWED,
+    attack_lines.LATENCY,
     attack_lines.TIME,
     attack_lines.ANSWERS,
 )

@@ -28,7 +28,7 @@ from goe_tools.models.coverage import coverage
 from goe_tools.report import attack_lines
 from goe_tools.spread import each
 
-from ...attack import approach, judging, rows, scenario
+from ...attack import approach, harder, judging, rows, scenario
 from ...attack.judging import Answers, Outcome
 from ...attack.rows import MOVES, Ask, Row
 from ...attack.scenario import Inputs
@@ -36,6 +36,7 @@ from .goal import OPEN, Figures, Goal, Range, named
 from .work import Amount
 
 VELOCITY = ("velocity_north_m_s", "velocity_east_m_s", "velocity_north_sd_m_s", "velocity_east_sd_m_s")
+PLACE, LATENCY = ("x_m", "z_m", "x_sd_m", "z_sd_m"), ("latency_s", "latency_sd_s")
 PLANS = (
     Plan(approach.MARGIN_M, approach.CLEARANCE_M),
     Plan(approach.MARGIN_M, approach.CLEARANCE_M, grows=True),
@@ -65,6 +66,15 @@ def reasons_of(track: Track) -> np.ndarray | None:
     return np.array([names[number] if 0 <= number < len(names) else "" for number in track.more["reason"]])
 
 
+def _columns(track: Track, names: tuple[str, ...], refined: np.ndarray) -> tuple[np.ndarray, ...] | tuple[None, None]:
+    """The first and the second half of these columns, NaN where a sigma is 0; None if the library lacks them."""
+    if not all(name in track.more for name in names):
+        return None, None
+    values, sigma = np.split(np.stack([track.more[name] for name in names], 1), 2, axis=1)
+    there = refined[:, None] & (sigma > 0.0)
+    return np.where(there, values, np.nan), np.where(there, sigma, np.nan)
+
+
 def answers_of(track: Track, time_s: np.ndarray) -> Answers:
     """The filter method's answers: the window's sigmas do not describe the true error."""
     refined = track.method == METHODS["filter"]
@@ -77,6 +87,10 @@ def answers_of(track: Track, time_s: np.ndarray) -> Answers:
         there = (velocity[:, 2:] > 0.0).all(1)[:, None]
         parts = [np.where(there, velocity[:, i : i + 2], np.nan) for i in (0, 2)]
         answers.velocity_m_s, answers.velocity_sigma_m_s = parts
+    answers.place_m, answers.place_sigma_m = _columns(track, PLACE, refined)
+    latency, sigma_s = _columns(track, LATENCY, refined)
+    if latency is not None and sigma_s is not None:
+        answers.latency_s, answers.latency_sigma_s = latency[:, 0], sigma_s[:, 0]
     if track.hazard:
         answers.time_to_go_s = np.where(track.hazard["status"][:, 0] == 0, track.hazard["tcpa_s"][:, 0], np.nan)
     return answers
@@ -101,8 +115,37 @@ def _motion(inputs: Inputs, timed: bool) -> Figures:
     return result
 
 
+def _harder_lines(row: Row, results: Sequence[tuple[Outcome, Figures]]) -> dict[str, tuple[str, Figures]]:
+    """Line -> unit and figures, for the section "harder world"."""
+    outcomes = [outcome for outcome, _ in results]
+    suspected, covered = judging.suspected(outcomes), named(coverage(outcomes))
+    velocity = [np.array([motion["north"], motion["east"]]) for _, motion in results]
+    lines: dict[str, tuple[str, Figures]] = {
+        attack_lines.VELOCITY: ("%", {attack_lines.IMAGES: judging.velocity_covered(outcomes, velocity)}),
+        attack_lines.SUSPECT: ("%", {**suspected, attack_lines.OR_COVERED: judging.suspect_or_covered(outcomes)}),
+        attack_lines.ANSWERS: ("%", {attack_lines.TRACKS: judging.answered(outcomes)}),
+    }
+    if row.scenario.moves:
+        within = {attack_lines.IN_4_S: 4.0, attack_lines.IN_8_S: 8.0, attack_lines.EVER: math.inf}
+        reasons = {name: judging.flagged_within(outcomes, MOVES, limit) for name, limit in within.items()}
+        followed = {attack_lines.IMAGES: judging.followed_covered(outcomes)}
+        return lines | {attack_lines.REASON: ("%", reasons), attack_lines.FOLLOWED: ("%", followed)}
+    lines[attack_lines.COVER] = "%", covered
+    lines[attack_lines.WRONG] = "%", judging.confident(outcomes)
+    lines[attack_lines.TYPICAL] = "1", {"Z0": judging.typical_error(outcomes)}
+    latency = judging.latency_covered(outcomes, row.scenario.wrong.late_s)
+    lines[attack_lines.LATENCY] = "%", {attack_lines.IMAGES: latency}
+    if row.either is not None:
+        worst = [covered[name] for name in ("X0", "Z0", "W", "H")]
+        short = judging.shortfall(worst, suspected[attack_lines.TRACKS], row.either)
+        lines[attack_lines.SHORT] = "%", {attack_lines.TRACKS: short}
+    return lines
+
+
 def _lines(row: Row, results: Sequence[tuple[Outcome, Figures]]) -> dict[str, tuple[str, Figures]]:
     """Line -> unit and figures."""
+    if row.section == harder.SECTION:
+        return _harder_lines(row, results)
     outcomes = [outcome for outcome, _ in results]
     suspected = judging.suspected(outcomes)
     lines: dict[str, tuple[str, Figures]] = {}
@@ -142,13 +185,16 @@ def _lines(row: Row, results: Sequence[tuple[Outcome, Figures]]) -> dict[str, tu
 
 def _judged_names(ask: Ask, figures: Figures) -> tuple[str, ...]:
     """Without names: all reported quantities, and always the position."""
-    return ask.names or tuple(n for n, v in figures.items() if math.isfinite(v) or n in ("X0", "Z0"))
+    if ask.names or "X0" not in figures:
+        return ask.names or tuple(figures)
+    return tuple(n for n, v in figures.items() if math.isfinite(v) or n in ("X0", "Z0"))
 
 
 def goals_of(group: str, row: Row, results: Sequence[tuple[Outcome, Figures]]) -> list[Goal]:
     goals = []
     for line, (unit, figures) in _lines(row, results).items():
-        asks = [ask for ask in row.asked if ask.line == line]
+        reported = any(math.isfinite(value) for value in figures.values())
+        asks = [ask for ask in row.asked if ask.line == line and (reported or not ask.if_reported)]
         name = f"{row.title}: {line}"
         for i, ask in enumerate(asks):
             names = _judged_names(ask, figures)
