@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from goe_tools.report.attack_lines import AHEAD_S
 
+from . import harder
 from .scenario import Scenario, Truth
 
 MARGIN_M, CLEARANCE_M = 15.0, 10.0  # README.md, "The decision"
@@ -32,13 +33,17 @@ HAZARD_BASE = Scenario(collides=True, size_m=(3.0, 25.0)).by(
 @dataclass(frozen=True)
 class HazardRow:
     """Runs with the same errors. ``error_max``: largest difference of predicted and true probabilities;
-    ``unwarned_most``: percent of the violators."""
+    ``unwarned_most``: percent of the violators; ``false_most``: percent of the passes at twice the margin;
+    ``sigmas``: whether probabilities and sigmas are judged."""
 
     name: str
     scenario: Scenario
     if_known: dict[str, float] = field(default_factory=dict)
     error_max: float = 0.1
     unwarned_most: float = 0.0
+    false_most: float = 15.0
+    sigmas: bool = True
+    runs_share: float = 1.0  # of the usual number of runs
 
 
 def _rows() -> list[HazardRow]:
@@ -56,7 +61,26 @@ def _rows() -> list[HazardRow]:
     ]
 
 
-ROWS = tuple(_rows())
+HARDER_BASE = HAZARD_BASE.by(size_m=(0.3, 30.0), speed_m_s=(5.0, 30.0), **harder.BOX_ERRORS)
+HARDER_ERRORS: tuple[tuple[str, dict[str, float], float], ...] = (
+    ("nominal", {}, 3.0), ("20 ms late", {"late_s": 0.02}, 8.0), ("50 ms late", {"late_s": 0.05}, 8.0),
+    ("100 ms late", {"late_s": 0.1}, 20.0), ("velocity 0.3 m/s wrong", {"velocity_off_m_s": 0.3}, 10.0),
+    ("10 % of another obstacle", {"foreign": 0.1}, 10.0),
+    ("vertical drift 0.1 m", {"down_walk_m": 0.1, "climb_off_m_s": 0.1}, 10.0),
+    ("altimeter 1 m, not configured", {"height_white_sd_m": 1.0}, 10.0),
+)  # fmt: skip
+
+
+def _harder_rows() -> list[HazardRow]:
+    return [
+        HazardRow(f"harder, {kind}, {name}", HARDER_BASE.by(features=kind, **changes), false_most=most,
+                  sigmas=name == "nominal", runs_share=0.3)
+        for kind in ("corners", "outline", "boxes")
+        for name, changes, most in HARDER_ERRORS
+    ]  # fmt: skip
+
+
+ROWS = (*_rows(), *_harder_rows())
 
 
 # ---------------------------------------------------------------------------------------------------------- one run

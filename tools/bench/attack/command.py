@@ -12,12 +12,24 @@ from goe_tools.report import attack_lines
 from goe_tools.report.attacks import Attack, attacks, warnings
 from goe_tools.report.goals_file import QUANTITIES, Goals, read_goals
 
+from . import harder
+
 PAGE = ROOT / "tools" / "bench" / "attack" / "README.md"
 TABLES = MarkedBlock("attack")
 VERDICT = {True: "met", False: "missed", None: ""}
 HEADS = {
     "moving obstacles": ("motion", "moves within 4 s/8 s/ever", "velocity in 2 sigma"),
     "conventions": ("error", "detected within 3 s"),
+    harder.SECTION: (
+        "attack",
+        "in 2 sigma",
+        "5 sigma off",
+        "suspect",
+        "median error of Z0, sigmas",
+        "moves within 4 s/8 s/ever",
+        "velocity/place now/latency in 2 sigma",
+        "estimates",
+    ),
 }
 ANSWERS = ("attack", "in 2 sigma", "5 sigma off", "suspect", "flagged late or inconsistent", "estimates")
 WARNINGS = (
@@ -48,6 +60,22 @@ def _table(heads: tuple[str, ...], lines: list[list[str]]) -> list[str]:
     return text + [_line([*(line[i] for i in kept), line[-1]]) for line in lines] + [""]
 
 
+def _harder(attack: Attack) -> list[str]:
+    lines = ((attack_lines.VELOCITY, attack_lines.IMAGES), (attack_lines.FOLLOWED, attack_lines.IMAGES),
+             (attack_lines.LATENCY, attack_lines.IMAGES))  # fmt: skip
+    others = [attack.figure(*line) for line in lines]
+    typical = attack.figure(attack_lines.TYPICAL, "Z0")
+    return [
+        attack.title, _percents(attack, attack_lines.COVER, QUANTITIES),
+        _percents(attack, attack_lines.WRONG, (attack_lines.ANY, attack_lines.POSITION)),
+        _percents(attack, attack_lines.SUSPECT, (attack_lines.TRACKS, attack_lines.IMAGES)),
+        f"{typical:.2f}" if math.isfinite(typical) else "",
+        _percents(attack, attack_lines.REASON, (attack_lines.IN_4_S, attack_lines.IN_8_S, attack_lines.EVER)),
+        "/".join(f"{value:.0f}" if math.isfinite(value) else "-" for value in others),
+        _percents(attack, attack_lines.ANSWERS, (attack_lines.TRACKS,)),
+    ]  # fmt: skip
+
+
 def _cells(attack: Attack) -> list[str]:
     verdict = VERDICT[attack.met]
     if attack.section == "moving obstacles":
@@ -55,6 +83,8 @@ def _cells(attack: Attack) -> list[str]:
         return [attack.title, moves, _percents(attack, attack_lines.VELOCITY, (attack_lines.IMAGES,)), verdict]
     if attack.section == "conventions":
         return [attack.title, _percents(attack, attack_lines.ODD, (attack_lines.FLAGGED,)), verdict]
+    if attack.section == harder.SECTION:
+        return [*_harder(attack), verdict]
     flagged = [_percents(attack, line, (attack_lines.FLAGGED,)) for line in (attack_lines.LATENESS, attack_lines.ODD)]
     return [
         attack.title, _percents(attack, attack_lines.COVER, QUANTITIES),

@@ -17,9 +17,8 @@ SECTION = "harder world"
 SHARE = 0.5  # of the usual tracks
 KINDS = ("corners", "outline", "boxes", "boxes with corners")
 BASED = ("corners", "boxes", "boxes with corners")  # kinds that show the base
-HARD = Scenario(size_m=(0.3, 30.0)).by(
-    speed_m_s=(5.0, 30.0), box_noise_px=1.0, box_noise_rel=0.07, box_correlation_time_s=1.2
-)
+BOX_ERRORS = {"box_noise_px": 1.0, "box_noise_rel": 0.07, "box_correlation_time_s": 1.2}
+HARD = Scenario(size_m=(0.3, 30.0)).by(speed_m_s=(5.0, 30.0), **BOX_ERRORS)
 GROUND_SD_M = math.hypot(0.5, 2.0)  # with boxes: height_bias_sd_m and terrain_height_sd_m
 
 CALIBRATED = (Ask(COVER, (90.0, 97.0)), Ask(TYPICAL, (0.4, 0.9)), wrong(4), suspect(2))

@@ -18,7 +18,6 @@ from .goal import Goal
 from .work import Amount
 
 COVERED = (90.0, 100.0)
-FALSE_MOST = (0.0, 15.0)
 LEVELS = tuple(f"{low:g} to {high:g}" for low, high in zip(approach.BINS, approach.BINS[1:]))  # bins that are judged
 
 
@@ -43,13 +42,15 @@ def goals_of(group: str, row: HazardRow, runs: Sequence[Run]) -> list[Goal]:
     judged = tuple(level for level in LEVELS if level in found and found[level][2] >= approach.BIN_LEAST)
     coverage = approach.coverage(runs)
     unwarned, false = {"violators": approach.unwarned(runs)}, {"passes": approach.false_warnings(runs)}
+    judged = (judged or LEVELS) if row.sigmas else ()
     return [
         Goal(group, f"{row.name}: {attack_lines.TRUE_SHARE}", "1", {level: t[1] for level, t in found.items()}),
-        Goal(group, f"{row.name}: {attack_lines.OFF}", "1", off, (0.0, row.error_max), judged or LEVELS),
-        Goal(group, f"{row.name}: {attack_lines.COVERED}", "%", coverage, COVERED, tuple(coverage)),
+        Goal(group, f"{row.name}: {attack_lines.OFF}", "1", off, (0.0, row.error_max), judged),
+        Goal(group, f"{row.name}: {attack_lines.COVERED}", "%", coverage, COVERED,
+             tuple(coverage) if row.sigmas else ()),
         Goal(group, f"{row.name}: {attack_lines.UNWARNED}", "%", unwarned, (0.0, row.unwarned_most),
              ("violators",)),
-        Goal(group, f"{row.name}: {attack_lines.FALSE}", "%", false, FALSE_MOST, ("passes",)),
+        Goal(group, f"{row.name}: {attack_lines.FALSE}", "%", false, (0.0, row.false_most), ("passes",)),
         Goal(group, f"{row.name}: {attack_lines.FLOWN}", "runs", approach.counts(runs)),
     ]  # fmt: skip
 
@@ -57,6 +58,6 @@ def goals_of(group: str, row: HazardRow, runs: Sequence[Run]) -> list[Goal]:
 def hazard_group(group: str, amount: Amount) -> list[Goal]:
     goals = []
     for row in approach.ROWS:
-        numbers = rows.numbers(amount.half, amount.hazard)
+        numbers = rows.numbers(amount.half, max(1, round(amount.hazard * row.runs_share)))
         goals += goals_of(group, row, each(partial(perform, row), numbers, amount.workers, row.name))
     return goals
