@@ -51,7 +51,7 @@ class Outcome:
     answers: Answers
     error: np.ndarray
     sigma: np.ndarray
-    followed: np.ndarray | None = None  # (K, 2) errors in sigmas of X and Z now, NaN if no velocity is reported
+    followed: np.ndarray | None = None  # (K, 2) errors in sigmas of X and Z relative to the camera now
 
     @property
     def suspect(self) -> np.ndarray:
@@ -109,9 +109,9 @@ def _correct(answers: Answers, truth: Truth) -> np.ndarray:
 
 
 def followed(answers: Answers, truth: Truth) -> np.ndarray | None:
-    """Errors in sigmas (K, 2) of X and Z relative to the camera now, NaN where no velocity is reported; None: never
-    reported."""
-    if answers.place_m is None or answers.place_sigma_m is None or answers.velocity_m_s is None:
+    """Errors in sigmas (K, 2) of X and Z relative to the camera now, NaN without an answer, and for a mover without a
+    velocity; None: never reported."""
+    if answers.place_m is None or answers.place_sigma_m is None:
         return None
     way = truth.velocity_ned_m_s * answers.time_s[:, None] - truth.eye_ned_m[:, :2]
     a = truth.axis_rad
@@ -119,7 +119,9 @@ def followed(answers: Answers, truth: Truth) -> np.ndarray | None:
     if truth.solid.kind != "cylinder":
         by_face = np.isin(answers.model, (BOX, LINE))[:, None]
         place = place + by_face * (_correct(answers, truth)[:, :2] - truth.middle_m)
-    there = np.isfinite(answers.velocity_m_s).all(1)[:, None] & (answers.place_sigma_m > 0.0)
+    there = answers.place_sigma_m > 0.0
+    if truth.velocity_ned_m_s.any() and answers.velocity_m_s is not None:
+        there &= np.isfinite(answers.velocity_m_s).all(1)[:, None]
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.where(there, np.abs(answers.place_m - place) / answers.place_sigma_m, np.nan)
 
@@ -252,8 +254,7 @@ def time_error(outcomes: Sequence[Outcome], true_s: Sequence[np.ndarray], word: 
 
 
 def followed_covered(outcomes: Sequence[Outcome]) -> float:
-    """Percent of the places, X and Z, of an obstacle with a reported velocity that are within two sigma; NaN if none
-    is reported."""
+    """Percent of the places now, X and Z, within two sigma; NaN if none is reported."""
     ratios = [o.followed[np.isfinite(o.followed)] for o in outcomes if o.followed is not None]
     return share([bool(ratio < COVERED_SIGMA) for of_track in ratios for ratio in of_track])
 

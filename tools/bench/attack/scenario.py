@@ -35,7 +35,7 @@ class Scenario:
     )
     hidden_m: Span = (0.0, 0.0)  # height of the bushes before the base ...
     hidden_share: Span = (0.0, 0.0)  # ... or of trees, as a share of the obstacle's height ...
-    hidden_until: float = 1.0  # ... in this first part of the flight
+    hidden_until: float = 1.0  # ... in this first part of the images
     corners_lost: float = 0.5  # probability that hidden base corners are absent, not raised
     foreign: float = 0.0  # share of the images whose features are those of another obstacle nearby
     at_border: bool = False  # the border of the image cuts the obstacle halfway
@@ -151,15 +151,17 @@ def _world(scenario: Scenario, number: int, rng: np.random.Generator, harder: np
         camera = surroundings.at_border(camera, place, middle, harder)
     turned = replace(solid, orientation_rad=solid.orientation_rad + path.axis_rad)
     eye = np.stack([place[:, 1], place[:, 0], -place[:, 2]], 1)
-    stand = Standpoint(camera, eye, body, middle[:, ::-1], _hidden(scenario, solid, len(time), harder))
+    stand = Standpoint(camera, eye, body, middle[:, ::-1])
+    stand = replace(stand, hidden_m=_hidden(scenario, solid, stand, harder))
     return _World(path, turns.about(2, heading), heading + path.axis_rad, turned, velocity, middle, place, stand)
 
 
-def _hidden(scenario: Scenario, solid: Solid, count: int, rng: np.random.Generator) -> np.ndarray | None:
+def _hidden(scenario: Scenario, solid: Solid, stand: Standpoint, rng: np.random.Generator) -> np.ndarray | None:
     """Height (K,) below which the obstacle is hidden; None: nowhere."""
     if not any(scenario.hidden_m + scenario.hidden_share):
         return None
-    return surroundings.hidden_m(solid, count, scenario.hidden_m, scenario.hidden_share, scenario.hidden_until, rng)
+    low, share = scenario.hidden_m, scenario.hidden_share
+    return surroundings.hidden_m(solid, stand, low, share, scenario.hidden_until, rng)
 
 
 Features = tuple[np.ndarray, np.ndarray]  # points (K, 6, 2), boxes (K, 4)

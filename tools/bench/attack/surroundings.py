@@ -38,11 +38,16 @@ def canopy_m(away_m: np.ndarray, height_m: Span, rng: np.random.Generator) -> np
     return cells[(away_m / CELL_M).astype(int)]
 
 
-def hidden_m(solid: Solid, count: int, low_m: Span, share: Span, until: float, rng: np.random.Generator) -> np.ndarray:
+def hidden_m(
+    solid: Solid, stand: Standpoint, low_m: Span, share: Span, until: float, rng: np.random.Generator
+) -> np.ndarray:
     """Height (K,) below which bushes (``low_m``) or trees (``share`` of the obstacle's height) hide the obstacle, in
-    the part ``until`` of the flight."""
+    the first part ``until`` of the images that show its middle."""
     height = min(rng.uniform(*low_m) + rng.uniform(*share) * solid.height_m, BUSHES_MOST * solid.height_m)
-    return height * (np.arange(count) < until * count)
+    in_view = np.flatnonzero(stand.camera.contains(stand.look(np.array([[0.0, 0.0, 0.5 * solid.height_m]])))[:, 0])
+    first, last = (in_view[0], in_view[-1]) if len(in_view) else (0, len(stand.eye_m) - 1)
+    ends = first + until * (last + 1 - first) if until < 1.0 else math.inf
+    return height * (np.arange(len(stand.eye_m)) < ends)
 
 
 def neighbor(solid: Solid, stand: Standpoint, size_m: Span, rng: np.random.Generator) -> tuple[Solid, Standpoint]:

@@ -8,7 +8,7 @@ COVER, WRONG, SUSPECT = "within 2 sigma", "wrong by 5 sigma", "suspect"
 ODD, REASON, LATENESS = "flagged as wrong", "flagged as moving", "flagged as late"
 ANSWERS, VELOCITY, TIME = "answers", "velocity within 2 sigma", "time to go, error once flagged"
 TYPICAL, SHORT = "median error in sigmas", "short of covered or flagged"
-LATENCY, FOLLOWED = "latency within 2 sigma", "followed within 2 sigma"
+LATENCY, FOLLOWED = "latency within 2 sigma", "place now within 2 sigma"
 ANY, POSITION, TRACKS, IMAGES, OR_COVERED, EVER = "any", "position", "tracks", "images", "or covered", "ever"
 FLAGGED, IN_4_S, IN_8_S, MEDIAN = f"{FLAG_S:g} s", "4 s", "8 s", "median"
 

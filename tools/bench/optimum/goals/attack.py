@@ -122,14 +122,14 @@ def _harder_lines(row: Row, results: Sequence[tuple[Outcome, Figures]]) -> dict[
     velocity = [np.array([motion["north"], motion["east"]]) for _, motion in results]
     lines: dict[str, tuple[str, Figures]] = {
         attack_lines.VELOCITY: ("%", {attack_lines.IMAGES: judging.velocity_covered(outcomes, velocity)}),
+        attack_lines.FOLLOWED: ("%", {attack_lines.IMAGES: judging.followed_covered(outcomes)}),
         attack_lines.SUSPECT: ("%", {**suspected, attack_lines.OR_COVERED: judging.suspect_or_covered(outcomes)}),
         attack_lines.ANSWERS: ("%", {attack_lines.TRACKS: judging.answered(outcomes)}),
     }
     if row.scenario.moves:
         within = {attack_lines.IN_4_S: 4.0, attack_lines.IN_8_S: 8.0, attack_lines.EVER: math.inf}
         reasons = {name: judging.flagged_within(outcomes, MOVES, limit) for name, limit in within.items()}
-        followed = {attack_lines.IMAGES: judging.followed_covered(outcomes)}
-        return lines | {attack_lines.REASON: ("%", reasons), attack_lines.FOLLOWED: ("%", followed)}
+        return lines | {attack_lines.REASON: ("%", reasons)}
     lines[attack_lines.COVER] = "%", covered
     lines[attack_lines.WRONG] = "%", judging.confident(outcomes)
     lines[attack_lines.TYPICAL] = "1", {"Z0": judging.typical_error(outcomes)}
