@@ -9,14 +9,17 @@ Axes: NED earth, FRD body, camera (right, down, ahead), T (X right, Y down, Z fo
 camera of the first image that shows the obstacle. Flights are generated in level "course" axes (forward, right, down),
 turned from north by a random heading.
 
-turns      rotation matrices and quaternions
-motion     motion of the aircraft
-solids     obstacles
-view       the obstacle in the camera's image
-errors     errors of the reported quantities
-scenario   the four together: one track
-rows       the table: one entry for each attack, with its goals
-judging    answers against the truth: confident errors, flags
-approach   the same for warnings: closest approach, violations, warned runs
-command    the command attack_tables: a file of goals as the tables of README.md
+turns         rotation matrices and quaternions
+motion        motion of the aircraft
+solids        obstacles
+view          the obstacle in the camera's image
+surroundings  what a flat world without neighbors lacks
+errors        errors of the reported quantities
+scenario      the four together: one track
+row           an entry of the table, with its goals
+harder        entries of a world harder than the real one
+rows          the table: one entry for each attack
+judging       answers against the truth: confident errors, flags
+approach      the same for warnings: closest approach, violations, warned runs
+command       the command attack_tables: a file of goals as the tables of README.md
 """
