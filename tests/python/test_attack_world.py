@@ -64,7 +64,7 @@ def pinhole(inputs: Inputs, image: int, level_m: float) -> np.ndarray:
 
 
 def sides(inputs: Inputs, image: int, low_m: float = 0.0) -> np.ndarray:
-    """(4,) sides of the box around what is higher than ``low_m``, clipped at the border."""
+    """(4,) sides of the box around the part above ``low_m``, clipped at the border."""
     both = np.concatenate([pinhole(inputs, image, low_m), pinhole(inputs, image, inputs.truth.solid.height_m)])
     return np.clip([*both.min(0), *both.max(0)], 0.0, 1279.0)
 
