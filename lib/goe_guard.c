@@ -61,8 +61,8 @@ static goe_seal_t seal_of(const goe_estimator_t *estimator) {
         add(&seal, word_at(from, i + 6u));
         add(&seal, word_at(from, i + 7u));
     }
-    for (; i < SEALED_WORDS; i++) {
-        add(&seal, word_at(from, i));
+    for (size_t left = SEALED_WORDS % 8u; left > 0; left--) {
+        add(&seal, word_at(from, i++));
     }
     return seal;
 }

@@ -98,7 +98,7 @@ typedef struct { /* window/goe_window.c */
 /* --------------------------------------------------------------------------------------------------------- filter -- */
 
 #define GOE_STATES 10
-#define GOE_FEATURES 6
+#define GOE_FEATURES ((int)((offsetof(goe_image_t, box) - offsetof(goe_image_t, left)) / sizeof(goe_pixel_t)))
 
 /* The state and the augmented states. */
 #define GOE_UNKNOWNS (GOE_STATES + GOE_AUGMENTED)

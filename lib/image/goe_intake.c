@@ -2,6 +2,7 @@
 #include "image/goe_intake.h"
 
 #include "image/goe_ego_motion.h"
+#include "image/goe_view.h"
 #include "maths/goe_scalar.h"
 
 #define POSITION_MAX_M 1.0e6f
@@ -19,17 +20,14 @@ static uint32_t with_pixel(uint32_t so_far, const goe_pixel_t *pixel) {
     return goe_is_set(&pixel->visible) ? goe_larger_bits(so_far, largest) : so_far;
 }
 
-/* Written out: this is done for every image, by every method. */
 static uint32_t largest_pixel(const goe_image_t *image) {
-    uint32_t largest = with_pixel(0u, &image->left);
-    largest = with_pixel(largest, &image->right);
-    largest = with_pixel(largest, &image->top);
-    largest = with_pixel(largest, &image->base_left);
-    largest = with_pixel(largest, &image->base_near);
-    return with_pixel(largest, &image->base_right);
+    const goe_pixel_t *pixels = goe_image_pixels(image);
+    uint32_t largest = 0u;
+    for (size_t i = 0; i < GOE_FEATURES; i++) {
+        largest = with_pixel(largest, &pixels[i]);
+    }
+    return largest;
 }
-
-GOE_STATIC_ASSERT(GOE_FEATURES == 6, every_feature_is_checked);
 
 static uint32_t with_side(uint32_t so_far, const goe_box_t *box, unsigned side, float px) {
     return (box->sides & side) != 0 ? goe_larger_bits(so_far, goe_magnitude(px)) : so_far;

@@ -156,15 +156,16 @@ static void scale_row(float row[GOE_COLUMNS], float weight) {
 #endif
 }
 
-GOE_STATIC_ASSERT(GOE_FEATURES == 6, every_feature_begins_with_full_weight);
-
 float goe_gate_repeated(const goe_filter_t *filter, float point_correlation) {
     const float correlation = goe_filter_by_boxes(filter) ? 0.0f : point_correlation;
     return (1.0f + correlation) / (1.0f - correlation);
 }
 
 goe_verdict_t goe_gate_apply(const goe_settings_t *settings, const goe_filter_t *filter, goe_rows_t *rows) {
-    belief_t belief = {{1.0f, 1.0f, 1.0f, 1.0f, 1.0f, 1.0f}, {0u, 0u, 0}};
+    belief_t belief = {{0.0f}, {0u, 0u, 0}};
+    for (size_t i = 0; i < GOE_FEATURES; i++) {
+        belief.factor[i] = 1.0f;
+    }
     const float repeated = goe_gate_repeated(filter, settings->detector.point_correlation);
     known_t known;
     known.filter = filter;
