@@ -64,8 +64,7 @@ static bool covariance_of_filter(const goe_estimator_t *estimator, bool for_haza
 }
 
 float goe_latest_camera_height(const goe_estimator_t *estimator) {
-    const bool steady = is_refined_answer(estimator) && estimator->filter.answer.steady;
-    return steady ? estimator->filter.datum.height_m : estimator->motion.height_m;
+    return is_refined_answer(estimator) ? estimator->filter.datum.height_m : estimator->motion.height_m;
 }
 
 float goe_latest_height_bias(const goe_estimator_t *estimator) {

@@ -145,17 +145,19 @@ typedef struct {          /* refined/goe_box.c: what the report calls the edges 
     goe_flag_t decided;
 } goe_naming_t;
 
-/* refined/goe_ground.c: the camera's height by the first image's and the changes of down since, which no altimeter's noise is
- * in. */
+/* refined/goe_ground.c: the camera's height by the changes of down since the track's first image, and what the readings of the altimeter
+ * say of it. */
 typedef struct {
     float ground_m; /* down of the ground, by the heights before the filter's start */
     float height_m; /* of the camera above it, latest image */
     float sd_m;     /* one sigma of the first height, as its image gave it; 0: as in the settings */
-    float mean_m;   /* by how much all heights so far, freed of the changes of down, lie above that ground on average */
-    float first;    /* information of the height that the filter began with, 1/m^2 */
+    float mean_m;   /* by how much the heights, freed of the changes of down, lie above that ground */
+    float noise_m2; /* variance of that mean by the noise of the readings and the drift of down */
+    float scatter_m2;          /* mean square of the readings about it */
+    float first;               /* information of the height that the filter began with, 1/m^2 */
     float information, moment; /* of the offset, already in the filter: 1/m^2, and times its mean */
-    uint16_t readings;         /* heights so far, saturating */
-    goe_flag_t boxes;          /* the filter began with an upright box: the obstacle's ground may lie off */
+    uint8_t readings;          /* heights so far, saturating */
+    goe_flag_t boxes;          /* the filter has used an upright box */
 } goe_datum_t;
 
 /* refined/goe_side_memory.c: the slowly varying (correlated) error of a box's side, as estimated from the residuals
@@ -213,7 +215,6 @@ typedef struct {         /* refined/goe_refined.c: what of the latest answer out
     float height_bias_m; /* constant error of the camera's height that the answer is freed of, m */
     goe_flag_t outdated; /* the state has changed since, other than by time */
     goe_flag_t previous; /* the answer is of the filter before it started again */
-    goe_flag_t steady;   /* the answer's height counts from the datum's */
 } goe_answer_t;
 
 /* Small members come first: instructions reach the beginning of an object by shorter forms. */
@@ -230,7 +231,6 @@ typedef struct {
     goe_flag_t has_datum; /* the datum is that of the track's first image */
     float ground_scale;   /* 1/Z0 for which the sigma of GOE_GROUND was set, over the present one */
     float flown_m;        /* along the path since the filter's start, over ground */
-    float sloped_m;       /* ... up to which the ground's slope was added */
     goe_place_t last;     /* camera in the image before, T axes */
     goe_place_t measured; /* ... in the latest image that gave rows, the state's axes */
     float walk_s[2];      /* time since the walk of the own position was last added along X, and along Z */

@@ -7,6 +7,7 @@
 #include "image/goe_camera.h"
 #include "maths/goe_angle.h"
 #include "maths/goe_scalar.h"
+#include "refined/goe_ground.h"
 #include "refined/goe_touch.h"
 
 #if GOE_WITH_FILTER
@@ -130,10 +131,6 @@ static bool see(const goe_observation_t *obs, sight_t *sight) {
     return true;
 }
 
-static float height_sd_m(const goe_observation_t *obs) {
-    return sqrtf(goe_observation_height_variance(obs, obs->sides->usable != 0));
-}
-
 /* (R16): from flat ground, if the foot lies clearly below the horizon; otherwise from the typical size. */
 static float first_range_m(const goe_observation_t *obs, const sight_t *sight) {
     const goe_settings_t *s = obs->settings;
@@ -143,7 +140,7 @@ static float first_range_m(const goe_observation_t *obs, const sight_t *sight) {
     const float share = sight->box ? FOOT_SHARE * s->detector.box_noise_rel : 0.0f;
     const float foot_sd = sqrtf(attitude + goe_square(pixel) + goe_square(share * sight->size));
     const bool grounded = sight->foot.usable && sight->foot.y > GROUND_SIGMAS * foot_sd &&
-                          obs->height_m > GROUND_SIGMAS * height_sd_m(obs);
+                          obs->height_m > GROUND_SIGMAS * obs->height_sd_m;
     const float nearer = sight->box ? NEAR_SIDE * sight->size : 0.0f;
     return grounded ? obs->height_m / sight->foot.y * (1.0f + nearer)
                     : s->filter.prior_width_m / goe_larger(sight->size, BOX_SIZE_MIN);
@@ -153,7 +150,7 @@ static void set_root(const goe_observation_t *obs, const float state[GOE_STATES]
     const bool disc = obs->settings->model == GOE_MODEL_DISC;
     float sd[GOE_STATES];
     goe_observation_prior(obs, state, width, sd);
-    sd[GOE_GROUND] = goe_larger(height_sd_m(obs) * state[GOE_INVERSE_RANGE], GROUND_MIN);
+    sd[GOE_GROUND] = goe_larger(sqrtf(goe_ground_variance(obs)) * state[GOE_INVERSE_RANGE], GROUND_MIN);
     sd[GOE_SHEAR] = (disc ? ROUND_SHEAR : SHEAR_FREEDOM) * state[GOE_HALF];
     sd[GOE_HALF] = HALF_FREEDOM * width;
     sd[GOE_LOG_DEPTH] = disc ? ROUND_FREEDOM : DEPTH_FREEDOM;
@@ -174,7 +171,7 @@ bool goe_footprint_start(const goe_observation_t *obs, float state[GOE_STATES], 
     state[GOE_INVERSE_RANGE] = q;
     state[GOE_HALF] = 0.5f * sight.size;
     state[GOE_TOP] = obs->height_m * q - (sight.head.usable ? sight.head.y : 0.0f);
-    if (height_sd_m(obs) > NO_ALTIMETER_M && sight.foot.usable) {
+    if (obs->height_sd_m > NO_ALTIMETER_M && sight.foot.usable) {
         state[GOE_GROUND] = sight.foot.y - obs->height_m * q;
     }
     set_root(obs, state, sight.size, root);

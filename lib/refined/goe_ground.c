@@ -12,6 +12,9 @@
 #define NARROW 0.95f        /* of ground_scale: information too strong */
 #define WIDE 1.05f          /* ... not well enough */
 #define SCALE_MIN 0.05f     /* a smaller one counts as this */
+#define SCATTER_SEEDS 8     /* readings as configured, that their scatter is begun with */
+#define SCATTER_MEMORY 64.0f /* readings that it remembers */
+#define VARIANCE_MIN_M2 1.0e-12f
 
 /* ----------------------------------------------------------------------------------------------------------- readings -- */
 
@@ -27,79 +30,79 @@ static float camera_down_m(const goe_view_t *view) {
     return view->image->pose.position_ned_m[2] + arm_m;
 }
 
-/* Before the filter starts the ground is where the mean of the heights puts it. */
-static void average(goe_datum_t *datum, bool started, float down_m, float height_m) {
-    const float off_m = height_m + down_m - datum->ground_m;
-    datum->readings = (uint16_t)(datum->readings < UINT16_MAX ? datum->readings + 1 : UINT16_MAX);
-    datum->mean_m += (off_m - datum->mean_m) / (float)datum->readings;
+/* A first-order Kalman filter of the altimeter's zero: down drifts, and readings scatter by what is configured or by more. Before the
+ * filter starts the ground is where the mean puts it. */
+static void average(goe_datum_t *datum, const goe_navigation_t *navigation, bool started, float off_m, float since_s) {
+    const float innovation2 = goe_square(off_m - datum->mean_m);
+    const float counted = (float)(datum->readings + SCATTER_SEEDS);
+    datum->scatter_m2 += (innovation2 - datum->scatter_m2) / (counted < SCATTER_MEMORY ? counted : SCATTER_MEMORY);
+    const float white2 = goe_larger(goe_square(navigation->height_white_sd_m), datum->scatter_m2);
+    const float predicted = datum->noise_m2 + goe_square(navigation->position_walk_sd_m) * since_s;
+    const float gain = datum->readings > 0 ? predicted / goe_larger(predicted + white2, VARIANCE_MIN_M2) : 1.0f;
+    datum->readings = (uint8_t)(datum->readings < UINT8_MAX ? datum->readings + 1 : UINT8_MAX);
+    datum->noise_m2 = gain * white2;
+    datum->mean_m += gain * (off_m - datum->mean_m);
     if (!started) {
         datum->ground_m += datum->mean_m;
         datum->mean_m = 0.0f;
     }
 }
 
-void goe_ground_read(goe_filter_t *filter, const goe_navigation_t *navigation, const goe_view_t *view) {
+void goe_ground_read(goe_filter_t *filter, const goe_navigation_t *navigation, const goe_view_t *view, float since_s) {
     goe_datum_t *datum = &filter->datum;
-    const bool white = navigation->height_white_sd_m > 0.0f;
-    if (!white && view->image->box.sides == 0 && !filter->has_datum) {
-        return; /* points alone take each image's height as it is */
-    }
     const float down_m = camera_down_m(view);
+    const float ground_m = view->motion->height_m + down_m;
     const bool lacks_height = goe_ground_lacks_height(view->image);
     if (!filter->has_datum) {
-        datum->ground_m = view->motion->height_m + down_m;
+        datum->ground_m = ground_m;
         datum->sd_m = lacks_height ? UNKNOWN_SD_M : view->image->noise.height_sd_m;
+        datum->scatter_m2 = goe_square(navigation->height_white_sd_m);
         filter->has_datum = true;
     }
-    if (white && !lacks_height) {
-        average(datum, goe_filter_has_started(filter), down_m, view->motion->height_m);
+    if (!lacks_height) {
+        average(datum, navigation, goe_filter_has_started(filter), ground_m - datum->ground_m, since_s);
     }
     datum->height_m = datum->ground_m - down_m;
 }
 
 /* --------------------------------------------------------------------------------------------------------------- known -- */
 
+float goe_ground_variance(const goe_observation_t *obs) {
+    return goe_square(obs->height_sd_m) +
+           goe_square(obs->settings->navigation.terrain_slope_sd / obs->state[GOE_INVERSE_RANGE]);
+}
+
 void goe_ground_start(goe_filter_t *filter, const goe_observation_t *obs) {
     filter->datum.boxes = obs->sides->usable != 0;
-    filter->datum.first = 1.0f / goe_observation_height_variance(obs, filter->datum.boxes);
+    filter->datum.first = 1.0f / goe_ground_variance(obs);
     filter->datum.information = filter->datum.first;
     filter->datum.moment = 0.0f;
     filter->ground_scale = 1.0f;
     filter->flown_m = 0.0f;
-    filter->sloped_m = 0.0f;
 }
 
-void goe_ground_meet_box(goe_filter_t *filter, const goe_navigation_t *navigation) {
-    const float sigma = navigation->terrain_height_sd_m * filter->state[GOE_INVERSE_RANGE];
-    if (filter->datum.boxes) {
-        return;
-    }
-    filter->datum.boxes = true;
-    if (sigma > 0.0f) {
-        goe_filter_inflate(filter, GOE_GROUND, sigma);
-    }
-}
-
-/* The ground below the altimeter rises or falls, one does not know which: after a way d the height is off by slope d more,
- * and its variance has grown by the difference of the squares. The top counts from the altimeter's zero, which moves
- * along. */
-void goe_ground_climb(goe_filter_t *filter, const goe_navigation_t *navigation) {
+/* The height moves by the changes of down, which drift, and readings that scatter more than before say less of it. The top counts from the
+ * altimeter's zero, which moves along. */
+void goe_ground_drift(goe_filter_t *filter, const goe_observation_t *obs) {
     float direction[GOE_STATES] = {0.0f};
-    const float grown2 = goe_square(filter->flown_m) - goe_square(filter->sloped_m);
-    const float sigma =
-        navigation->terrain_slope_sd * filter->state[GOE_INVERSE_RANGE] * sqrtf(goe_larger(grown2, 0.0f));
-    if (!(sigma > 0.0f) || goe_ground_is_steady(filter, navigation)) {
+    goe_datum_t *datum = &filter->datum;
+    const float before = 1.0f / datum->information;
+    const float walked = before + goe_square(obs->settings->navigation.position_walk_sd_m) * filter->due_s;
+    const float now = goe_larger(goe_ground_variance(obs), walked);
+    if (!(now > before)) {
         return;
     }
     direction[GOE_GROUND] = 1.0f;
     direction[GOE_TOP] = -1.0f;
-    goe_srif_spread(&filter->root, direction, GOE_GROUND, GOE_TOP, sigma);
-    filter->sloped_m = filter->flown_m;
+    goe_srif_spread(&filter->root, direction, GOE_GROUND, GOE_TOP,
+                    filter->state[GOE_INVERSE_RANGE] * sqrtf(now - before));
+    datum->moment *= before / now;
+    datum->information = 1.0f / now;
 }
 
 void goe_ground_widen(goe_filter_t *filter) {
     const float scale2 = goe_square(goe_larger(filter->ground_scale, SCALE_MIN));
-    if (goe_filter_by_boxes(filter) || filter->ground_scale > NARROW) {
+    if (filter->ground_scale > NARROW) {
         return;
     }
     const float information = filter->datum.first / goe_square(filter->state[GOE_INVERSE_RANGE]);
@@ -114,7 +117,7 @@ void goe_ground_widen(goe_filter_t *filter) {
 /* Of the first height. */
 static int add_first(goe_filter_t *filter, goe_rows_t *rows) {
     const float scale = filter->ground_scale;
-    if (goe_filter_by_boxes(filter) || !(scale >= WIDE) || rows->count >= GOE_ROWS_MAX) {
+    if (!(scale >= WIDE) || rows->count >= GOE_ROWS_MAX) {
         return 0;
     }
     const float weight =
@@ -126,12 +129,12 @@ static int add_first(goe_filter_t *filter, goe_rows_t *rows) {
     return 1;
 }
 
-/* All heights so far give the offset of the first with the information 1/(constant error^2 + white^2/n). A row adds
- * only its growth; the constant error is in all of them, and is not counted twice. */
+/* The heights so far give the offset of the first with the information 1/(constant error^2 + that of their mean). A row adds only its
+ * growth; the constant error is in all of them, and is not counted twice. */
 static int add_grown(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
     goe_datum_t *datum = &filter->datum;
     const float q = filter->state[GOE_INVERSE_RANGE];
-    const float information = 1.0f / goe_observation_height_variance(obs, filter->datum.boxes);
+    const float information = 1.0f / goe_ground_variance(obs);
     const float grown = information - datum->information;
     const float moment = information * datum->mean_m;
     if (rows->count >= GOE_ROWS_MAX || !(grown > GROWN * information)) {
@@ -149,12 +152,11 @@ static int add_grown(goe_filter_t *filter, const goe_observation_t *obs, goe_row
 }
 
 int goe_ground_row(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
-    const bool white = obs->settings->navigation.height_white_sd_m > 0.0f;
     if ((filter->known & GOE_HAS_POSITION) == 0u) {
         return 0;
     }
     const int first = add_first(filter, rows);
-    return first + (white ? add_grown(filter, obs, rows) : 0);
+    return first + add_grown(filter, obs, rows);
 }
 
 #endif

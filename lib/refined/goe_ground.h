@@ -6,31 +6,28 @@
 #include "refined/goe_filter.h"
 #include "refined/goe_observation.h"
 
-/* Takes an image's height, and what down has changed by. Upright boxes count by it, and heights with a white error do. */
-void goe_ground_read(goe_filter_t *filter, const goe_navigation_t *navigation, const goe_view_t *view);
+/* Takes an image's height, and what down has changed by. since_s: the image before. */
+void goe_ground_read(goe_filter_t *filter, const goe_navigation_t *navigation, const goe_view_t *view, float since_s);
 
 /* Whether an image with a box comes without a height: nobody flies at exactly 0, and a field that was not set is 0. */
 static inline bool goe_ground_lacks_height(const goe_image_t *image) {
     return image->box.sides != 0 && goe_magnitude(image->pose.height_m) == 0u;
 }
 
-/* Whether the height moves by the changes of down. */
-static inline bool goe_ground_is_steady(const goe_filter_t *filter, const goe_navigation_t *navigation) {
-    return goe_filter_by_boxes(filter) || navigation->height_white_sd_m > 0.0f;
-}
-
 /* The autopilot's down jumped by this. */
 static inline void goe_ground_move(goe_filter_t *filter, float down_m) { filter->datum.ground_m += down_m; }
+
+/* m2, of the height above the obstacle's own ground, which may slope up or down to it from the filter's start. */
+float goe_ground_variance(const goe_observation_t *obs);
 
 /* The filter starts by this image: its model already has the height so far. */
 void goe_ground_start(goe_filter_t *filter, const goe_observation_t *obs);
 
-/* The first upright box of a footprint that began by points: from here on the height counts by the changes of down, and the obstacle's
- * own ground may lie off. */
-void goe_ground_meet_box(goe_filter_t *filter, const goe_navigation_t *navigation);
+/* The first upright box. */
+static inline void goe_ground_meet_box(goe_filter_t *filter) { filter->datum.boxes = true; }
 
-/* The camera flew on: the slope of the ground below it. */
-void goe_ground_climb(goe_filter_t *filter, const goe_navigation_t *navigation);
+/* Time has passed since the latest rows: what the height is less certain by. */
+void goe_ground_drift(goe_filter_t *filter, const goe_observation_t *obs);
 
 /* Prior information on the height is in meters, its state in units of Z0: as the range becomes known, their ratio
  * moves. This keeps that ratio, after 1/Z0 moved from its earlier value. */
@@ -39,7 +36,7 @@ static inline void goe_ground_follow(goe_filter_t *filter, float inverse_range_b
 }
 
 /* Removes information that this ratio made too strong, before the rows of an image are taken; missing information is
- * a row of goe_ground_row(). A prism's foot gives its first range, which is near enough: nothing is removed there. */
+ * a row of goe_ground_row(). */
 void goe_ground_widen(goe_filter_t *filter);
 
 /* Appends the information of the heights beyond that already taken, if space remains. Returns how many rows. */

@@ -43,7 +43,7 @@ static void note_near(goe_filter_t *filter, const goe_observation_t *obs) {
 bool goe_model_change(goe_filter_t *filter, const goe_observation_t *obs) {
     note_near(filter, obs);
     if (goe_filter_traits(filter)->is_ellipse && obs->sides->usable != 0) {
-        goe_ground_meet_box(filter, &obs->settings->navigation);
+        goe_ground_meet_box(filter);
     }
     filter->candidate.stand_in = filter->candidate.stand_in || (obs->base && obs->settings->model != GOE_MODEL_DISC);
     if (goe_filter_is_box(filter)) {

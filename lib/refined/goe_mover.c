@@ -10,7 +10,8 @@
 #if GOE_AUGMENTED
 
 #define LATENCY_PRIOR_S 0.05f   /* one sigma of what poses are late by before anything is known */
-#define SPREAD_GROWN 4.0f       /* of a velocity's variance, when the obstacle begins to be followed */
+#define LATENCY_SHARE 0.25f     /* of a latency, one sigma: a rate of turn over a span stands for that at the exposure */
+#define SPREAD_GROWN 25.0f       /* of a velocity's variance, when the obstacle begins to be followed */
 #define LATE_MIN_S 0.02f        /* poses are reported as late from here on ... */
 #define LATE_SIGMAS 2.7f        /* ... and if it is that much more than nothing */
 #define RATE_PREDICTED 0.8f     /* of a rate of turn, by the one before it: the mean over usual swaying */
@@ -95,13 +96,16 @@ float goe_mover_own_variance(const goe_navigation_t *navigation, float elapsed_s
            goe_square(navigation->position_walk_sd_m) / goe_larger(elapsed_s, TIME_MIN_S);
 }
 
+/* What is not taken off because it is not significant is an error, too. */
 float goe_mover_latency_sd(const goe_filter_t *filter) {
     const float wider = goe_larger(filter->health.mean_nis, 1.0f);
+    const float root = filter->root.element[goe_srif_augmented_row()];
     float part[GOE_UNKNOWNS];
-    const float variance = goe_srif_augmented_count(&filter->root) > 0
-                               ? goe_srif_part(&filter->root, GOE_STATES + GOE_AUGMENTED_LATENCY, part)
-                               : 1.0f / goe_square(filter->root.element[goe_srif_augmented_row()]);
-    return sqrtf(wider * variance);
+    if (goe_srif_augmented_count(&filter->root) > 0) {
+        return sqrtf(wider * goe_srif_part(&filter->root, GOE_STATES + GOE_AUGMENTED_LATENCY, part) +
+                     goe_square(LATENCY_SHARE * filter->mover.augmented[GOE_AUGMENTED_LATENCY]));
+    }
+    return sqrtf(wider + goe_square(filter->root.right[GOE_AUGMENTED_LATENCY])) / goe_absolute(root);
 }
 
 /* ----------------------------------------------------------------------------------------------------------- judgement -- */

@@ -14,10 +14,11 @@
 #define WHITE_MIN_DEG 1.0e-4f /* errors of an image: as of the settings */
 #define PIXEL_MIN_PX 0.05f
 #define HEIGHT_SD_MIN_M 1.0e-3f
+#define EXCESS_WEIGHT 4.0f    /* of the altimeter's scatter beyond the configured one: terrain, which is no noise, and one-sided */
 #define WIDTH_AHEAD_MIN 0.01f /* of the reference point, in units of Z0 */
 #define HEADING_ARM 0.08f     /* s/m: a yaw bias this large per m/s looks like a velocity bias */
 #define BEARING_FREEDOM 1.0f  /* one sigma of the first guess of X0/Z0 */
-#define RANGE_FREEDOM 2.0f    /* ... of 1/Z0, relative */
+#define RANGE_FREEDOM 4.0f    /* ... of 1/Z0, relative */
 #define TOP_FREEDOM 10.0f     /* ... of the top, in the larger of top and width */
 #define WIDTH_MIN 1.0e-5f     /* between two ends, focal lengths */
 #define FORWARD_MIN 1.0e-4f   /* a predicted point is taken to lie at least this far ahead, in units of Z0 */
@@ -89,17 +90,15 @@ static float given_or(float given, float least, float setting) {
 static void take_noise(goe_observation_t *obs, const goe_filter_t *filter, const goe_image_noise_t *noise) {
     const goe_settings_t *settings = obs->settings;
     const goe_navigation_t *navigation = &settings->navigation;
+    const goe_datum_t *datum = &filter->datum;
     obs->white_rad =
         given_or(noise->attitude_sd_deg, WHITE_MIN_DEG, navigation->attitude_white_sd_deg) * GOE_RAD_PER_DEG;
     obs->point_px = given_or(noise->pixel_sd_px, PIXEL_MIN_PX, settings->detector.point_noise_px);
     obs->side_px = given_or(noise->pixel_sd_px, PIXEL_MIN_PX, settings->detector.box_noise_px);
-    obs->height_sd_m = given_or(obs->height_sd_m, HEIGHT_SD_MIN_M, navigation->height_bias_sd_m);
-    if (navigation->height_white_sd_m > 0.0f) {
-        const float readings =
-            filter->datum.readings > 0 ? (float)filter->datum.readings : 1.0f; /* none without a height */
-        obs->height_m = filter->datum.height_m;
-        obs->height_sd_m = sqrtf(goe_square(obs->height_sd_m) + goe_square(navigation->height_white_sd_m) / readings);
-    }
+    const float excess = datum->scatter_m2 - goe_square(navigation->height_white_sd_m);
+    const float bias_m = given_or(datum->sd_m, HEIGHT_SD_MIN_M, navigation->height_bias_sd_m);
+    obs->height_sd_m = sqrtf(goe_square(bias_m) + goe_square(navigation->terrain_height_sd_m) + datum->noise_m2 +
+                             EXCESS_WEIGHT * goe_larger(excess, 0.0f));
 }
 
 #if GOE_AUGMENTED
@@ -140,12 +139,9 @@ unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *sett
     find_body(obs, view->camera_to_body);
     obs->camera_m = goe_filter_camera(filter, view->motion);
     obs->sides = &view->sides;
-    const bool starts = !goe_filter_has_started(filter) && obs->sides->usable != 0;
-    const bool steady = starts || goe_filter_by_boxes(filter);
-    obs->height_m = steady ? filter->datum.height_m : view->motion->height_m;
+    obs->height_m = filter->datum.height_m;
     obs->fade = 0.0f;
     obs->position_sd = 0.0f;
-    obs->height_sd_m = filter->datum.sd_m;
     take_noise(obs, filter, &view->image->noise);
     obs->outline_share = settings->detector.point_noise_rel;
     obs->depth_variance = 0.0f;

@@ -14,9 +14,9 @@ typedef struct {
     float camera_to_axes[9], body_to_axes[9];
     float ex, ey, ez;  /* attitude bias about the state's axes, rad */
     goe_xz_t camera_m; /* camera since the filter's start, the state's axes */
-    float height_m;    /* camera above ground: as given, or by the changes of down, see goe_datum_t */
+    float height_m;    /* camera above ground: by the changes of down, see goe_datum_t */
     const goe_sides_t *sides;
-    float height_sd_m;       /* one sigma of its error: of the constant one, and of the mean of all readings */
+    float height_sd_m;       /* one sigma of its error above the obstacle's ground, without its slope */
     float since_s;           /* the image before */
     float fade;              /* what the error of a box's side keeps since the image used before */
     float white_rad;         /* one sigma of the image's own attitude error */
@@ -89,12 +89,6 @@ void goe_observation_linearise(goe_observation_t *obs);
 /* (R3): the image of the point (X, Y, Z), in units of Z0 or any other, along x, and along y. */
 void goe_observation_project_x(const goe_observation_t *obs, float x, float y, float z, goe_gradient_t *of_x);
 void goe_observation_project_y(const goe_observation_t *obs, float x, float y, float z, goe_gradient_t *of_y);
-
-/* Variance of the height above the obstacle's ground, m2; of upright boxes that ground may lie off. */
-static inline float goe_observation_height_variance(const goe_observation_t *obs, bool boxes) {
-    const float ground_m = boxes ? obs->settings->navigation.terrain_height_sd_m : 0.0f;
-    return obs->height_sd_m * obs->height_sd_m + ground_m * ground_m;
-}
 
 /* One sigma of the states that a first image leaves open, whatever the model: attitude bias, bearing, range, and the top of an
  * obstacle of that size. */

@@ -239,6 +239,14 @@ static bool has(const goe_quantities_t *q, int quantity) {
 
 GOE_STATIC_ASSERT(GOE_X0 == 0 && GOE_Z0 == 1, the_place_comes_first);
 
+/* Of the top above the altimeter's zero, which a clearance counts from: the obstacle's own ground may lie off, and has no part in it. */
+static float top_variance_above_zero(const goe_filter_t *filter, const widening_t *wider, float scale_m) {
+    float by[GOE_STATES] = {0.0f};
+    by[GOE_INVERSE_RANGE] = -scale_m * scale_m * filter->state[GOE_TOP];
+    by[GOE_TOP] = scale_m;
+    return goe_srif_project(&filter->root, wider->reciprocal, GOE_UNWEIGHTED, by);
+}
+
 /* The scatter widens the sigmas; validity is decided without it, as doubt must
  * not silence an answer. The errors are those of the derivatives in shape, which are used up; place: of X0 and Z0. */
 static void set_quantities(const goe_filter_t *filter, const goe_motion_t *motion, goe_shape_t *shape, drift_t drift,
@@ -251,10 +259,13 @@ static void set_quantities(const goe_filter_t *filter, const goe_motion_t *motio
         error->by = shape->quantity[i].by;
         float found = has(q, i) ? project(filter, wider, counted_of(i, elapsed_s), error) : 0.0f;
         found *= depends_on_corner(i) ? shape->corner_growth : 1.0f;
-        const float excluded = goe_filter_traits(filter)->is_ellipse ? goe_srif_last_variance(error->by) : 0.0f;
+        float excluded = goe_filter_traits(filter)->is_ellipse ? goe_srif_last_variance(error->by) : 0.0f;
         const float given = drift_variance(motion, drift, shape, q->box, i);
         q->value[i] = shape->quantity[i].value;
         q->sigma[i] = sqrtf(wider->scatter * found + given);
+        if (i == GOE_HEIGHT) {
+            excluded = goe_larger(excluded, found - top_variance_above_zero(filter, wider, shape->scale_m));
+        }
         q->worked_out[i] = sqrtf(goe_larger(found + given - excluded, 0.0f));
     }
 }

@@ -65,8 +65,8 @@ static void allow_for_curvature(const goe_observation_t *obs, goe_rows_t *rows) 
 /* What the rows find less certain than the image before left it; not sooner, as without them the state stays as it is. */
 static void doubt(goe_filter_t *filter, const goe_observation_t *obs) {
     goe_ground_widen(filter);
+    goe_ground_drift(filter, obs);
     goe_observation_age(filter, obs);
-    goe_ground_climb(filter, &obs->settings->navigation);
 }
 
 /* The rows of the image, before the gate. */
@@ -200,7 +200,8 @@ bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, co
     if (filter->phase >= GOE_PHASES) {
         goe_filter_enter(filter, GOE_PHASE_NONE); /* an unknown one: it starts again */
     }
-    goe_ground_read(filter, &settings->navigation, view);
+    const float since_s = goe_time_between_s(filter->time_us, view->motion->time_us, GAP_MAX_US);
+    goe_ground_read(filter, &settings->navigation, view, goe_filter_has_started(filter) ? since_s : 0.0f);
     if (comes_too_soon(filter, &settings->detector, view->motion) ||
         !open_image(filter, settings, view, &obs, swapped)) {
         return false;
@@ -264,7 +265,7 @@ static bool keeps_previous(const goe_filter_t *filter, const goe_motion_t *motio
 }
 
 /* Keeps what goe_hazard() needs of an answer when no new one follows. */
-static void keep_answer(goe_filter_t *filter, const goe_navigation_t *navigation, unsigned valid) {
+static void keep_answer(goe_filter_t *filter, unsigned valid) {
     goe_answer_t *answer = &filter->answer;
     goe_xz_t nearer_m;
     const float reach_m = reach_of(filter, &nearer_m);
@@ -275,7 +276,6 @@ static void keep_answer(goe_filter_t *filter, const goe_navigation_t *navigation
         answer->reach_m = goe_larger(reach_m, answer->least_m);
     }
     answer->height_bias_m = filter->state[GOE_GROUND] / filter->state[GOE_INVERSE_RANGE];
-    answer->steady = goe_ground_is_steady(filter, navigation);
     answer->outdated = false;
     answer->previous = false;
 }
@@ -304,7 +304,7 @@ bool goe_refined_report(goe_filter_t *filter, const goe_settings_t *settings, co
     }
     const bool fresh = goe_report_quantities(&quantities, motion, estimate);
     if (fresh) {
-        keep_answer(filter, &settings->navigation, estimate->valid);
+        keep_answer(filter, estimate->valid);
     }
     return fresh;
 }

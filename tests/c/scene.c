@@ -106,6 +106,12 @@ void scene_make_cylinder(scene_t *scene) {
     scene->height_m = 30.0;
 }
 
+void scene_level_ground(goe_settings_t *settings) {
+    settings->navigation.height_white_sd_m = 0.0f;
+    settings->navigation.terrain_height_sd_m = 0.0f;
+    settings->navigation.terrain_slope_sd = 0.0f;
+}
+
 void scene_clear_noise(goe_settings_t *settings) {
     settings->detector.point_noise_px = 0.05f;
     settings->navigation.attitude_bias_sd_deg = 1.0e-3f;
@@ -113,6 +119,7 @@ void scene_clear_noise(goe_settings_t *settings) {
     settings->navigation.height_bias_sd_m = 1.0e-2f;
     settings->navigation.velocity_bias_sd_m_s = 0.0f;
     settings->navigation.position_walk_sd_m = 0.0f;
+    scene_level_ground(settings);
 }
 
 void scene_hide_points(goe_image_t *image) {

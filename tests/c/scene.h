@@ -67,6 +67,9 @@ goe_settings_t scene_window_settings(const scene_t *scene);
 /* The obstacle becomes a chimney of 6 m by 30 m. */
 void scene_make_cylinder(scene_t *scene);
 
+/* The ground and the altimeter that the scenes have: level, and exact but for a constant error. */
+void scene_level_ground(goe_settings_t *settings);
+
 /* The noise that the scenes have: nothing but the rounding of their numbers is wrong. */
 void scene_clear_noise(goe_settings_t *settings);
 

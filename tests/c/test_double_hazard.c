@@ -544,6 +544,7 @@ static void give_round(float shared) {
     memset(f, 0, sizeof *f);
     f->phase = GOE_PHASE_FOOTPRINT;
     f->axes.turn_cos = 1.0f;
+    f->datum.height_m = estimator.motion.height_m;
     f->state[GOE_INVERSE_RANGE] = 1.0f / 150.0f;
     f->state[GOE_BEARING] = 30.0f / 150.0f;
     f->state[GOE_HALF] = 5.0f / 150.0f;

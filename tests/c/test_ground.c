@@ -13,9 +13,12 @@
 #define FLIGHTS 20
 #define CONSTANT_M 2.0f /* one sigma of the error that all heights have */
 #define WHITE_M 3.0f    /* ... of that which is new in each */
+#define WALK_M 0.5f     /* ... of the drift of down in a second */
+#define STEP_S 0.125f
 #define RANGE_M 100.0f
 #define HEIGHT_M 20.0f
 #define RANGE_KNOWN 1.0e4f /* to a share of 1e-4: heights alone do not move it */
+#define TOP_KNOWN 1.0e4f
 
 static goe_filter_t filter;
 static goe_settings_t settings;
@@ -28,40 +31,45 @@ static goe_matrix_t matrix;
 static check_random_t any;
 static const float level[9] = {1.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 1.0f}; /* the camera's y axis is down */
 
+/* Heights have a constant error, and are exact but for that; the ground is level. */
 void setUp(void) {
     any = check_random_start("ground");
     goe_settings_default(&settings);
     settings.navigation.height_bias_sd_m = CONSTANT_M;
+    settings.navigation.height_white_sd_m = 0.0f;
+    settings.navigation.terrain_height_sd_m = 0.0f;
+    settings.navigation.terrain_slope_sd = 0.0f;
+    settings.navigation.position_walk_sd_m = 0.0f;
     memset(&image, 0, sizeof image);
     memset(&motion, 0, sizeof motion);
     memset(&view, 0, sizeof view);
-    memset(&obs, 0, sizeof obs);
     goe_filter_clear(&filter);
     view.image = &image;
     view.motion = &motion;
     view.camera = &settings.camera;
     view.camera_to_body = level;
     memcpy(view.camera_to_trajectory, level, sizeof level);
-    obs.settings = &settings;
 }
 void tearDown(void) {}
 
-/* A filter at this range with this information on the ground, and little else. */
-static void start(float range_m, float height_sd_m) {
+static void look(void) { (void)goe_observation_open(&obs, &settings, &filter, &view); }
+
+/* The filter starts by this image at this range. It knows the top's place and the range much better than the height. */
+static void start(float range_m) {
     memset(&filter.root, 0, sizeof filter.root);
     for (size_t i = 0; i < GOE_STATES; i++) {
         *goe_srif_at(&filter.root, i, i) = 1.0f;
     }
     filter.phase = GOE_PHASE_FOOTPRINT;
     filter.known = GOE_HAS_POSITION;
+    filter.due_s = 0.0f;
     filter.state[GOE_INVERSE_RANGE] = 1.0f / range_m;
+    filter.state[GOE_GROUND] = 0.0f;
+    look();
     *goe_srif_at(&filter.root, GOE_INVERSE_RANGE, GOE_INVERSE_RANGE) = RANGE_KNOWN * range_m;
-    *goe_srif_at(&filter.root, GOE_GROUND, GOE_GROUND) = range_m / height_sd_m;
-    static const goe_sides_t none;
-    goe_observation_t first = obs;
-    first.height_sd_m = height_sd_m;
-    first.sides = &none;
-    goe_ground_start(&filter, &first);
+    *goe_srif_at(&filter.root, GOE_GROUND, GOE_GROUND) = range_m / sqrtf(goe_ground_variance(&obs));
+    *goe_srif_at(&filter.root, GOE_TOP, GOE_TOP) = TOP_KNOWN;
+    goe_ground_start(&filter, &obs);
 }
 
 /* Gives the filter its height rows, without any other row. Returns how many rows that were. */
@@ -76,137 +84,19 @@ static int give(void) {
     return reported;
 }
 
+/* What an image does before its rows and with those of the height. Returns how many these were. */
+static int measure(void) {
+    goe_ground_widen(&filter);
+    goe_ground_drift(&filter, &obs);
+    filter.due_s = 0.0f;
+    return give();
+}
+
 static double ground_sd_m(void) {
     return sqrt((double)goe_filter_variance(&filter, GOE_GROUND)) / (double)filter.state[GOE_INVERSE_RANGE];
 }
 
-/* One reading, after the flight has sunk by this much. */
-static void read_height(float height_m, float sunk_m) {
-    image.pose.position_ned_m[2] = sunk_m;
-    motion.height_m = height_m;
-    goe_ground_read(&filter, &settings.navigation, &view);
-    obs.height_sd_m = sqrtf(CONSTANT_M * CONSTANT_M + WHITE_M * WHITE_M / (float)filter.datum.readings);
-}
-
-/* [goe_pose_t.height_m]
- * GIVEN heights with a constant and a white error, of a flight that sinks THEN the filter gets their offset as the mean of all, with the
- * constant error counted once, and follows a mean that moves. */
-static void readings_give_the_mean_and_no_more(void) {
-    settings.navigation.height_white_sd_m = WHITE_M;
-    for (int flight = 0; flight < FLIGHTS; flight++) {
-        double sum = 0.0;
-        double first_m = 0.0;
-        goe_filter_clear(&filter);
-        for (int k = 0; k < READINGS; k++) {
-            const double noise = (double)WHITE_M * check_random_normal(&any);
-            const double sunk = 0.3 * k;
-            read_height((float)((double)HEIGHT_M - sunk + noise), (float)sunk);
-            first_m = k == 0 ? noise : first_m;
-            sum += noise - first_m;
-            if (k == 0) {
-                start(RANGE_M, obs.height_sd_m);
-            } else {
-                (void)give();
-            }
-        }
-        const double reported_sd = sqrt((double)(CONSTANT_M * CONSTANT_M) + (double)(WHITE_M * WHITE_M) / READINGS);
-        const double offset_m = (double)filter.state[GOE_GROUND] / (double)filter.state[GOE_INVERSE_RANGE];
-        CHECK_CLOSE(0.01 * reported_sd, reported_sd, ground_sd_m());
-        CHECK_CLOSE(0.05 * reported_sd, sum / READINGS, offset_m);
-    }
-}
-
-/* GIVEN a filter that was given the mean of its heights WHEN it starts again, like a track that begins again at a place THEN it is
- * given the same mean once more, and nothing of the earlier information counts. */
-static void a_filter_that_starts_again_receives_the_same_mean(void) {
-    settings.navigation.height_white_sd_m = WHITE_M;
-    for (int flight = 0; flight < FLIGHTS; flight++) {
-        goe_filter_clear(&filter);
-        read_height(HEIGHT_M, 0.0f);
-        const float first_sd_m = obs.height_sd_m;
-        start(RANGE_M, first_sd_m);
-        for (int k = 1; k < READINGS; k++) {
-            read_height(HEIGHT_M + 5.0f + WHITE_M * (float)check_random_normal(&any), 0.0f);
-            (void)give();
-        }
-        const double reported_m = (double)filter.state[GOE_GROUND] / (double)filter.state[GOE_INVERSE_RANGE];
-        const double reported_sd_m = ground_sd_m();
-        filter.state[GOE_GROUND] = 0.0f;
-        start(RANGE_M, first_sd_m);
-        TEST_ASSERT_EQUAL_INT(1, give());
-        CHECK_CLOSE(0.02 * reported_sd_m, reported_m, filter.state[GOE_GROUND] / filter.state[GOE_INVERSE_RANGE]);
-        CHECK_CLOSE(0.01 * reported_sd_m, reported_sd_m, ground_sd_m());
-    }
-}
-
-/* GIVEN more readings than are counted THEN the mean continues as that of so many, and the count does not begin again. */
-static void the_count_of_readings_saturates(void) {
-    settings.navigation.height_white_sd_m = WHITE_M;
-    read_height(HEIGHT_M, 0.0f);
-    start(RANGE_M, obs.height_sd_m);
-    filter.datum.readings = UINT16_MAX - 1u;
-    for (int k = 0; k < 3; k++) {
-        const double before_m = (double)filter.datum.mean_m;
-        read_height(HEIGHT_M + 10.0f, 0.0f);
-        TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, filter.datum.readings);
-        CHECK_CLOSE(1.0e-6, (10.0 - before_m) / UINT16_MAX, (double)filter.datum.mean_m - before_m);
-    }
-}
-
-/* GIVEN an image whose rows are all taken THEN the information of the heights waits, and none of it is lost. */
-static void an_overflow_is_reported_later(void) {
-    settings.navigation.height_white_sd_m = WHITE_M;
-    read_height(HEIGHT_M, 0.0f);
-    start(RANGE_M, obs.height_sd_m);
-    for (int k = 1; k < READINGS; k++) {
-        read_height(HEIGHT_M + 1.0f, 0.0f);
-    }
-    goe_rows_clear(&rows, &matrix);
-    rows.count = GOE_ROWS_MAX;
-    TEST_ASSERT_EQUAL_INT(0, goe_ground_row(&filter, &obs, &rows));
-    TEST_ASSERT_EQUAL_INT(1, give());
-    TEST_ASSERT_EQUAL_INT(0, give());
-    CHECK_CLOSE(0.001, obs.height_sd_m, ground_sd_m());
-    CHECK_CLOSE(0.05, 1.0 - 1.0 / READINGS, filter.state[GOE_GROUND] * RANGE_M);
-}
-
-/* GIVEN a filter that knows no position yet THEN what the heights say waits, as its range may be off by a factor; none of it is lost. */
-static void without_a_position_the_heights_wait(void) {
-    settings.navigation.height_white_sd_m = WHITE_M;
-    read_height(HEIGHT_M, 0.0f);
-    start(RANGE_M, obs.height_sd_m);
-    for (int k = 1; k < READINGS; k++) {
-        read_height(HEIGHT_M + 1.0f, 0.0f);
-    }
-    filter.known = 0;
-    TEST_ASSERT_EQUAL_INT(0, give());
-    filter.known = GOE_HAS_POSITION;
-    TEST_ASSERT_EQUAL_INT(1, give());
-    CHECK_CLOSE(0.001, obs.height_sd_m, ground_sd_m());
-}
-
-/* [navigation.height_bias_sd_m]
- * GIVEN a first guess of the range that proves wrong THEN the uncertainty of the height is the configured one, in meters: no better when
- * the obstacle is nearer, and no worse when it is farther. */
-static void a_wrong_first_range_leaves_the_height_as_given(void) {
-    static const float factor[] = {0.2f, 0.5f, 0.9f, 1.0f, 1.2f, 2.0f, 5.0f};
-    for (size_t i = 0; i < sizeof factor / sizeof factor[0]; i++) {
-        start(RANGE_M, CONSTANT_M);
-        const float before = filter.state[GOE_INVERSE_RANGE];
-        filter.state[GOE_INVERSE_RANGE] = before / factor[i];
-        goe_ground_follow(&filter, before);
-        goe_ground_widen(&filter);
-        const int reported = give();
-        check_report("sigma of the height over the configured one", ground_sd_m() / (double)CONSTANT_M);
-        TEST_ASSERT_EQUAL_INT(factor[i] > 1.0f ? 1 : 0, reported);
-        CHECK_CLOSE(0.02, 1.0, ground_sd_m() / (double)CONSTANT_M);
-    }
-}
-
-/* -------------------------------------------------------------------------------------------------------------- slope -- */
-
-#define SLOPE 0.1f
-#define FLOWN_M 50.0f
+static double offset_m(void) { return (double)filter.state[GOE_GROUND] / (double)filter.state[GOE_INVERSE_RANGE]; }
 
 /* Of the obstacle's own height, units of Z0: of its top above the altimeter's zero, and of the ground below that. */
 static double sum_sd(void) {
@@ -218,87 +108,419 @@ static double sum_sd(void) {
     return sqrt((double)goe_srif_project(&filter.root, reciprocal, 0, sum));
 }
 
-/* GIVEN ground that rises or falls below the altimeter WHEN the aircraft has flown a distance THEN the height above the obstacle's ground
- * is off by slope times distance more, once for each meter however many images it took; the obstacle's own height is not affected. */
-static void the_slope_of_the_ground_adds_up_over_the_way(void) {
-    settings.navigation.terrain_slope_sd = SLOPE;
-    for (int steps = 1; steps <= 4; steps += 3) {
-        start(RANGE_M, CONSTANT_M);
-        const double height_sd = sum_sd();
-        for (int k = 1; k <= steps; k++) {
-            filter.flown_m = FLOWN_M * (float)k / (float)steps;
-            goe_ground_climb(&filter, &settings.navigation);
-            goe_ground_climb(&filter, &settings.navigation); /* nothing was flown since */
+/* One reading, after the flight has sunk by this much since its first image, a step after the reading before. */
+static void read_height(float height_m, float sunk_m) {
+    const float since_s = goe_filter_has_started(&filter) ? STEP_S : 0.0f;
+    image.pose.position_ned_m[2] = sunk_m;
+    motion.height_m = height_m;
+    filter.due_s += since_s;
+    goe_ground_read(&filter, &settings.navigation, &view, since_s);
+    look();
+}
+
+/* Noise that no reading of the altimeter takes for more than the configured one. */
+static float noise_m(void) { return WHITE_M * (float)check_random_between(&any, -0.5, 0.5); }
+
+/* ------------------------------------------------------------------------------------------------------ the readings -- */
+
+/* What the readings say of the altimeter's zero, all at once: least squares for its way, one value for each reading. */
+typedef struct {
+    double mean_m, variance_m2; /* of the latest */
+} batch_t;
+
+static batch_t solve_batch(const double off_m[], size_t count, double white_m, double walked_m) {
+    static double a[READINGS][READINGS + 2]; /* the information, its right side, and that of the unit vector */
+    memset(a, 0, sizeof a);
+    for (size_t i = 0; i < count; i++) {
+        a[i][i] += 1.0 / (white_m * white_m);
+        a[i][READINGS] = off_m[i] / (white_m * white_m);
+    }
+    for (size_t i = 1; i < count; i++) { /* the step from the reading before */
+        const double step = 1.0 / (walked_m * walked_m);
+        a[i][i] += step;
+        a[i - 1][i - 1] += step;
+        a[i][i - 1] -= step;
+        a[i - 1][i] -= step;
+    }
+    a[count - 1][READINGS + 1] = 1.0;
+    for (size_t k = 0; k < count; k++) {
+        for (size_t i = k + 1; i < count; i++) {
+            const double share = a[i][k] / a[k][k];
+            for (size_t j = k; j < READINGS + 2; j++) {
+                a[i][j] -= share * a[k][j];
+            }
         }
-        CHECK_CLOSE(1.0e-3, hypot((double)CONSTANT_M, (double)(SLOPE * FLOWN_M)), ground_sd_m());
-        CHECK_CLOSE(1.0e-4 * height_sd, height_sd, sum_sd());
     }
+    const double *last = a[count - 1];
+    const batch_t batch = {last[READINGS] / last[count - 1], last[READINGS + 1] / last[count - 1]};
+    return batch;
 }
 
-/* GIVEN heights that are not taken as they come, but by those of all images or as of the first one THEN the way that was flown
- * is in none of them. */
-static void a_height_that_is_kept_has_no_slope(void) {
-    settings.navigation.terrain_slope_sd = SLOPE;
-    for (int kept = 0; kept < 2; kept++) {
-        start(RANGE_M, CONSTANT_M);
-        filter.datum.boxes = kept == 0;
-        settings.navigation.height_white_sd_m = kept == 0 ? 0.0f : WHITE_M;
-        TEST_ASSERT_TRUE(goe_ground_is_steady(&filter, &settings.navigation));
-        filter.flown_m = FLOWN_M;
-        goe_ground_climb(&filter, &settings.navigation);
-        CHECK_CLOSE(1.0e-4, (double)CONSTANT_M, ground_sd_m());
-    }
-}
-
-/* GIVEN ground that slopes below the altimeter WHEN the aircraft flies on THEN the height has become uncertain by the slope times the
- * way, whatever the steps, and the top, counted from the altimeter's zero, by as much the other way: the obstacle's height has not;
- * and nothing of that where the height is kept from the first image on. */
-static void sloping_ground_makes_the_height_uncertain(void) {
-    static const size_t steps[] = {1, 5};
-    settings.navigation.terrain_slope_sd = 0.05f;
-    for (size_t n = 0; n < 2; n++) {
+/* [goe_pose_t.height_m]
+ * GIVEN exact heights of a flight that sinks THEN the camera's height is the reading, its error the constant one, and the filter has
+ * nothing to learn from later readings, whether or not down may drift. */
+static void exact_heights_are_taken_at_once(void) {
+    for (int drifts = 0; drifts < 2; drifts++) {
         goe_filter_clear(&filter);
-        start(RANGE_M, CONSTANT_M);
-        for (size_t i = 0; i < steps[n]; i++) {
-            filter.flown_m += 60.0f / (float)steps[n];
-            goe_ground_climb(&filter, &settings.navigation);
+        settings.navigation.position_walk_sd_m = drifts ? 0.05f : 0.0f;
+        for (int k = 0; k < READINGS; k++) {
+            const float sunk = 0.25f * (float)k;
+            read_height(HEIGHT_M - sunk, sunk);
+            CHECK_CLOSE(1.0e-5, (double)(HEIGHT_M - sunk), obs.height_m);
+            CHECK_CLOSE(1.0e-6, (double)CONSTANT_M, obs.height_sd_m);
+            if (k == 0) {
+                start(RANGE_M);
+            } else {
+                TEST_ASSERT_TRUE(measure() == 0 || drifts);
+            }
+            CHECK_CLOSE(2.0e-3, (double)CONSTANT_M, ground_sd_m());
+            CHECK_CLOSE(1.0e-6, 0.0, offset_m());
         }
-        CHECK_CLOSE(0.01, sqrt(4.0 + 9.0), ground_sd_m());
-        const double before = 1.0 + 4.0 / (double)(RANGE_M * RANGE_M); /* of the top, and of the ground */
-        CHECK_CLOSE(1.0e-4, before, sum_sd() * sum_sd());
     }
-    settings.navigation.height_white_sd_m = 1.0f;
-    start(RANGE_M, CONSTANT_M);
-    filter.flown_m = 60.0f;
-    goe_ground_climb(&filter, &settings.navigation);
-    CHECK_CLOSE(0.01, 2.0, ground_sd_m());
 }
+
+/* GIVEN exact heights whose down drifts THEN the height follows the readings at once. */
+static void exact_heights_correct_a_drift_of_down(void) {
+    settings.navigation.position_walk_sd_m = WALK_M;
+    read_height(HEIGHT_M, 0.0f);
+    start(RANGE_M);
+    for (int k = 1; k < READINGS; k++) {
+        read_height(HEIGHT_M, 0.01f * (float)k); /* the flight is level */
+        (void)measure();
+    }
+    CHECK_CLOSE(1.0e-4, 0.01 * (READINGS - 1), filter.datum.mean_m);
+    CHECK_CLOSE(0.02 * 0.01 * (READINGS - 1), 0.01 * (READINGS - 1), offset_m());
+}
+
+/* [goe_pose_t.height_m, navigation.height_white_sd_m]
+ * GIVEN heights with a constant and a white error, of a flight that sinks THEN the filter gets their offset as the mean of all, with
+ * the constant error counted once: 1/(b^2 + w^2/n). */
+static void readings_give_the_mean_and_no_more(void) {
+    settings.navigation.height_white_sd_m = WHITE_M;
+    for (int flight = 0; flight < FLIGHTS; flight++) {
+        double sum = 0.0;
+        double first_m = 0.0;
+        goe_filter_clear(&filter);
+        for (int k = 0; k < READINGS; k++) {
+            const double noise = (double)noise_m();
+            const double sunk = 0.3 * k;
+            read_height((float)((double)HEIGHT_M - sunk + noise), (float)sunk);
+            first_m = k == 0 ? noise : first_m;
+            sum += noise - first_m;
+            const double expected2 = (double)(CONSTANT_M * CONSTANT_M) + (double)(WHITE_M * WHITE_M) / (k + 1);
+            CHECK_CLOSE(1.0e-5, sqrt(expected2), obs.height_sd_m);
+            if (k == 0) {
+                start(RANGE_M);
+            } else {
+                (void)measure();
+            }
+        }
+        const double reported_sd = sqrt((double)(CONSTANT_M * CONSTANT_M) + (double)(WHITE_M * WHITE_M) / READINGS);
+        CHECK_CLOSE(0.01 * reported_sd, reported_sd, ground_sd_m());
+        CHECK_CLOSE(0.05 * reported_sd, sum / READINGS, offset_m());
+    }
+}
+
+/* [navigation.position_walk_sd_m]
+ * GIVEN noisy heights, and down that drifts THEN the filter's mean and its variance are those of all readings solved at once. */
+static void the_mean_of_a_drifting_down_is_the_best(void) {
+    settings.navigation.height_white_sd_m = WHITE_M;
+    settings.navigation.position_walk_sd_m = WALK_M;
+    const double walked_m = (double)WALK_M * sqrt((double)STEP_S);
+    for (int flight = 0; flight < FLIGHTS; flight++) {
+        double off_m[READINGS] = {0.0};
+        double first_m = 0.0;
+        goe_filter_clear(&filter);
+        for (size_t k = 0; k < READINGS; k++) {
+            const float height_m = HEIGHT_M + noise_m();
+            first_m = k == 0 ? (double)height_m : first_m;
+            off_m[k] = (double)height_m - first_m;
+            read_height(height_m, 0.0f);
+            if (k == 0) {
+                start(RANGE_M);
+            } else {
+                (void)measure();
+            }
+            const batch_t batch = solve_batch(off_m, k + 1, (double)WHITE_M, walked_m);
+            const double sd_m = sqrt((double)(CONSTANT_M * CONSTANT_M) + batch.variance_m2);
+            CHECK_CLOSE(1.0e-4, batch.mean_m, filter.datum.mean_m);
+            CHECK_CLOSE(1.0e-4 * batch.variance_m2, batch.variance_m2, filter.datum.noise_m2);
+            CHECK_CLOSE(1.0e-4, sd_m, obs.height_sd_m);
+            CHECK_CLOSE(0.01 * sd_m, sd_m, ground_sd_m());
+            CHECK_CLOSE(0.02 * sd_m, batch.mean_m, offset_m());
+        }
+    }
+}
+
+/* GIVEN a flight whose readings are averaged WHEN the filter starts only then THEN the ground is where their mean puts it, and the filter
+ * has no offset. */
+static void before_the_start_the_mean_is_the_ground(void) {
+    double sum = 0.0;
+    settings.navigation.height_white_sd_m = WHITE_M;
+    for (int k = 0; k < READINGS; k++) {
+        const float noise = noise_m();
+        read_height(HEIGHT_M + noise, 0.0f);
+        sum += (double)noise;
+    }
+    CHECK_CLOSE(1.0e-4, (double)HEIGHT_M + sum / READINGS, obs.height_m);
+    CHECK_SAME(0.0f, filter.datum.mean_m);
+    start(RANGE_M);
+    TEST_ASSERT_EQUAL_INT(0, give());
+    CHECK_CLOSE(1.0e-4, hypot((double)CONSTANT_M, (double)WHITE_M / sqrt(READINGS)), ground_sd_m());
+}
+
+/* GIVEN a filter that was given the mean of its heights WHEN it starts again, like a track that begins again at a place THEN it is
+ * given the same mean once more, and nothing of the earlier information counts. */
+static void a_filter_that_starts_again_receives_the_same_mean(void) {
+    settings.navigation.height_white_sd_m = WHITE_M;
+    settings.navigation.position_walk_sd_m = WALK_M;
+    for (int flight = 0; flight < FLIGHTS; flight++) {
+        goe_filter_clear(&filter);
+        read_height(HEIGHT_M, 0.0f);
+        start(RANGE_M);
+        for (int k = 1; k < READINGS; k++) {
+            read_height(HEIGHT_M + 0.5f * WHITE_M + 0.5f * noise_m(), 0.0f);
+            (void)measure();
+        }
+        start(RANGE_M);
+        read_height(HEIGHT_M + 0.5f * WHITE_M, 0.0f);
+        TEST_ASSERT_EQUAL_INT(1, measure());
+        const double sd_m = sqrt((double)(CONSTANT_M * CONSTANT_M + filter.datum.noise_m2));
+        CHECK_CLOSE(0.02 * sd_m, filter.datum.mean_m, offset_m());
+        CHECK_CLOSE(0.01 * sd_m, sd_m, ground_sd_m());
+    }
+}
+
+/* GIVEN more readings than are counted THEN the count stays, and readings are averaged and remembered as before. */
+static void the_count_of_readings_saturates(void) {
+    settings.navigation.height_white_sd_m = WHITE_M;
+    for (int k = 0; k < 300; k++) {
+        read_height(HEIGHT_M, 0.0f);
+        TEST_ASSERT_EQUAL_UINT8(k < 255 ? k + 1 : 255, filter.datum.readings);
+        CHECK_CLOSE(1.0e-4 / (k + 1), (double)(WHITE_M * WHITE_M) / (k + 1), filter.datum.noise_m2);
+    }
+    CHECK_CLOSE(0.1, 0.0, filter.datum.scatter_m2);
+    const double before = (double)filter.datum.scatter_m2;
+    read_height(HEIGHT_M + 8.0f, 0.0f);
+    CHECK_CLOSE(1.0e-3, before + (64.0 - before) / 64.0, filter.datum.scatter_m2);
+}
+
+/* --------------------------------------------------------------------------------------------------- drift and scatter -- */
+
+/* [navigation.position_walk_sd_m]
+ * GIVEN images without a height WHEN time passes THEN the height's variance grows by that of the drift of down, and the top, counted from
+ * the altimeter's zero, by as much the other way: the obstacle's own height does not. Without time nothing changes. */
+static void down_that_drifts_makes_the_height_uncertain(void) {
+    settings.navigation.position_walk_sd_m = WALK_M;
+    read_height(HEIGHT_M, 0.0f);
+    start(RANGE_M);
+    const double own_sd = sum_sd();
+    for (int k = 1; k <= READINGS; k++) {
+        filter.due_s = STEP_S;
+        goe_ground_drift(&filter, &obs);
+        filter.due_s = 0.0f;
+        goe_ground_drift(&filter, &obs);
+        const double expected = (double)(CONSTANT_M * CONSTANT_M) + (double)(WALK_M * WALK_M) * (double)STEP_S * k;
+        CHECK_CLOSE(1.0e-3, sqrt(expected), ground_sd_m());
+        CHECK_CLOSE(1.0e-3 * own_sd, own_sd, sum_sd());
+    }
+}
+
+/* [navigation.height_white_sd_m]
+ * GIVEN readings that scatter more than configured THEN four times the variance beyond it counts, however many readings there are; what is
+ * configured is averaged. A filter that already started loses that information, the obstacle's own height none. */
+static void a_scatter_beyond_the_configured_one_stays(void) {
+    const double excess_m2 = (double)(WHITE_M * WHITE_M) - 0.25;
+    const double limit_m = sqrt((double)(CONSTANT_M * CONSTANT_M) + 4.0 * excess_m2);
+    settings.navigation.height_white_sd_m = 0.5f;
+    read_height(HEIGHT_M, 0.0f);
+    start(RANGE_M);
+    const double own_sd = sum_sd();
+    for (int k = 1; k <= 1000; k++) {
+        read_height(HEIGHT_M + (k % 2 ? WHITE_M : -WHITE_M), 0.0f);
+        (void)measure();
+    }
+    CHECK_CLOSE(0.02 * limit_m, limit_m, obs.height_sd_m);
+    CHECK_CLOSE(0.02 * limit_m, limit_m, ground_sd_m());
+    CHECK_CLOSE(0.02 * own_sd, own_sd, sum_sd());
+    /* AND the same readings are averaged if that is what is configured */
+    goe_filter_clear(&filter);
+    settings.navigation.height_white_sd_m = WHITE_M;
+    for (int k = 0; k <= 1000; k++) {
+        read_height(HEIGHT_M + (k % 2 ? WHITE_M : -WHITE_M), 0.0f);
+    }
+    CHECK_CLOSE(0.02, (double)CONSTANT_M, obs.height_sd_m);
+}
+
+/* GIVEN readings that scattered more than configured for a while WHEN they are quiet again THEN the height is as certain as before. */
+static void a_scatter_that_ends_is_forgotten(void) {
+    settings.navigation.height_white_sd_m = 0.5f;
+    read_height(HEIGHT_M, 0.0f);
+    start(RANGE_M);
+    for (int k = 1; k < READINGS; k++) {
+        read_height(HEIGHT_M + (k % 2 ? WHITE_M : -WHITE_M), 0.0f);
+        (void)measure();
+    }
+    TEST_ASSERT_TRUE(obs.height_sd_m > 2.0f * CONSTANT_M);
+    for (int k = 0; k < 600; k++) {
+        read_height(HEIGHT_M, 0.0f);
+        (void)measure();
+    }
+    CHECK_CLOSE(0.02 * (double)CONSTANT_M, (double)CONSTANT_M, obs.height_sd_m);
+    CHECK_CLOSE(0.02 * (double)CONSTANT_M, (double)CONSTANT_M, ground_sd_m());
+}
+
+/* ---------------------------------------------------------------------------------------------------------- rows that wait -- */
+
+static void read_without_rows(void) {
+    settings.navigation.height_white_sd_m = WHITE_M;
+    read_height(HEIGHT_M, 0.0f);
+    start(RANGE_M);
+    for (int k = 1; k < READINGS; k++) {
+        read_height(HEIGHT_M + 1.0f, 0.0f);
+    }
+}
+
+/* GIVEN an image whose rows are all taken THEN the information of the heights waits, and none of it is lost. */
+static void an_overflow_is_reported_later(void) {
+    read_without_rows();
+    goe_rows_clear(&rows, &matrix);
+    rows.count = GOE_ROWS_MAX;
+    TEST_ASSERT_EQUAL_INT(0, goe_ground_row(&filter, &obs, &rows));
+    TEST_ASSERT_EQUAL_INT(1, give());
+    TEST_ASSERT_EQUAL_INT(0, give());
+    CHECK_CLOSE(0.001, obs.height_sd_m, ground_sd_m());
+    CHECK_CLOSE(0.05, 1.0 - 1.0 / READINGS, offset_m());
+}
+
+/* GIVEN a filter that knows no position yet THEN what the heights say waits, as its range may be off by a factor; none of it is lost. */
+static void without_a_position_the_heights_wait(void) {
+    read_without_rows();
+    filter.known = 0;
+    TEST_ASSERT_EQUAL_INT(0, give());
+    filter.known = GOE_HAS_POSITION;
+    TEST_ASSERT_EQUAL_INT(1, give());
+    CHECK_CLOSE(0.001, obs.height_sd_m, ground_sd_m());
+}
+
+/* ------------------------------------------------------------------------------------------------------- range and slope -- */
+
+/* The range proves to be this many times the first guess. */
+static void correct_range(float factor) {
+    const float before = filter.state[GOE_INVERSE_RANGE];
+    filter.state[GOE_INVERSE_RANGE] = before / factor;
+    filter.state[GOE_GROUND] /= factor;
+    goe_ground_follow(&filter, before);
+}
+
+/* [navigation.height_bias_sd_m]
+ * GIVEN a first guess of the range that proves wrong, of points or of boxes THEN the uncertainty of the height is the configured one, in
+ * meters: no better when the obstacle is nearer, and no worse when it is farther. */
+static void a_wrong_first_range_leaves_the_height_as_given(void) {
+    static const float factor[] = {0.2f, 0.5f, 0.9f, 1.0f, 1.2f, 2.0f, 5.0f};
+    for (size_t i = 0; i < 2 * sizeof factor / sizeof factor[0]; i++) {
+        start(RANGE_M);
+        filter.datum.boxes = i % 2 != 0;
+        correct_range(factor[i / 2]);
+        const int reported = measure();
+        check_report("sigma of the height over the configured one", ground_sd_m() / (double)CONSTANT_M);
+        TEST_ASSERT_EQUAL_INT(factor[i / 2] > 1.0f ? 1 : 0, reported);
+        CHECK_CLOSE(0.02, 1.0, ground_sd_m() / (double)CONSTANT_M);
+    }
+}
+
+#define SLOPE 0.02f
+
+/* [navigation.terrain_height_sd_m, navigation.terrain_slope_sd]
+ * GIVEN ground that slopes, and an obstacle whose own ground lies off THEN the first height is off by slope times range, and by that
+ * ground, whether points or boxes show the obstacle. */
+static void the_slope_counts_over_the_range(void) {
+    static const float range_m[] = {20.0f, 100.0f, 400.0f};
+    settings.navigation.terrain_slope_sd = SLOPE;
+    settings.navigation.terrain_height_sd_m = 1.5f;
+    for (size_t i = 0; i < 2 * sizeof range_m / sizeof range_m[0]; i++) {
+        view.sides.usable = i % 2 ? GOE_SIDES_ALL : 0;
+        start(range_m[i / 2]);
+        TEST_ASSERT_EQUAL_INT(i % 2, goe_filter_by_boxes(&filter));
+        const double slope_m = (double)(SLOPE * range_m[i / 2]);
+        const double expected = sqrt((double)(CONSTANT_M * CONSTANT_M) + 1.5 * 1.5 + slope_m * slope_m);
+        CHECK_CLOSE(1.0e-4 * expected, expected, ground_sd_m());
+        CHECK_CLOSE(1.0e-4 * expected, expected, sqrt((double)goe_ground_variance(&obs)));
+        filter.flown_m = 50.0f; /* the way that was flown has no part in it */
+        TEST_ASSERT_EQUAL_INT(0, measure());
+        CHECK_CLOSE(1.0e-4 * expected, expected, ground_sd_m());
+    }
+}
+
+/* [navigation.terrain_slope_sd]
+ * GIVEN ground that slopes WHEN the first guess of the range proves wrong THEN the height is off by slope times the corrected range. */
+static void the_slope_counts_over_a_corrected_range(void) {
+    static const float factor[] = {0.2f, 0.5f, 0.8f, 1.0f, 1.5f, 2.0f, 5.0f};
+    settings.navigation.terrain_slope_sd = SLOPE;
+    for (size_t i = 0; i < sizeof factor / sizeof factor[0]; i++) {
+        start(RANGE_M);
+        correct_range(factor[i]);
+        look();
+        (void)measure();
+        const double expected = hypot((double)CONSTANT_M, (double)(SLOPE * factor[i] * RANGE_M));
+        check_report("range over the first guess", (double)factor[i]);
+        check_report("sigma of the height over that of the slope", ground_sd_m() / expected);
+        CHECK_CLOSE(0.02, 1.0, ground_sd_m() / expected);
+    }
+}
+
+/* GIVEN readings that scattered more than configured WHEN the range then proves to be farther THEN what they lost stays lost. */
+static void a_corrected_range_brings_no_lost_information_back(void) {
+    settings.navigation.height_white_sd_m = 0.5f;
+    read_height(HEIGHT_M, 0.0f);
+    start(RANGE_M);
+    for (int k = 1; k < READINGS; k++) {
+        read_height(HEIGHT_M + (k % 2 ? WHITE_M : -WHITE_M), 0.0f);
+        (void)measure();
+    }
+    correct_range(2.0f);
+    look();
+    (void)measure();
+    CHECK_CLOSE(0.05 * (double)obs.height_sd_m, obs.height_sd_m, ground_sd_m());
+}
+
+/* ------------------------------------------------------------------------------------------------------- the first height -- */
 
 /* GIVEN a first image that knows its own height's error THEN that is kept for the filter's start, of that image and no later one. */
 static void the_first_heights_own_error_is_kept(void) {
-    settings.navigation.height_white_sd_m = WHITE_M;
     image.noise.height_sd_m = 0.7f;
     read_height(HEIGHT_M, 0.0f);
     CHECK_SAME(0.7f, filter.datum.sd_m);
     image.noise.height_sd_m = 0.2f;
     read_height(HEIGHT_M, 0.0f);
     CHECK_SAME(0.7f, filter.datum.sd_m);
+    CHECK_CLOSE(1.0e-6, 0.7, obs.height_sd_m);
 }
 
 /* GIVEN heights with a white error and a box in each image WHEN the height is not set THEN no reading counts and the ground's height is
- * unknown; the first height that is set is the first reading. */
+ * unknown; the first height that is set is the first reading, and scatters about none. */
 static void a_height_that_is_not_set_is_no_reading(void) {
     settings.navigation.height_white_sd_m = WHITE_M;
     image.box.sides = GOE_SIDES_ALL;
     image.noise.height_sd_m = 0.7f; /* of a height that is not there */
     read_height(0.0f, 0.0f);
     read_height(0.0f, 0.0f);
-    TEST_ASSERT_EQUAL_UINT16(0u, filter.datum.readings);
-    TEST_ASSERT_TRUE(filter.datum.sd_m >= 1.0e3f);
+    TEST_ASSERT_EQUAL_UINT8(0u, filter.datum.readings);
+    TEST_ASSERT_TRUE(obs.height_sd_m >= 1.0e3f);
     image.pose.height_m = HEIGHT_M;
     read_height(HEIGHT_M, 0.0f);
-    TEST_ASSERT_EQUAL_UINT16(1u, filter.datum.readings);
+    TEST_ASSERT_EQUAL_UINT8(1u, filter.datum.readings);
     CHECK_CLOSE(1.0e-5, (double)HEIGHT_M, filter.datum.height_m);
+    TEST_ASSERT_TRUE(filter.datum.scatter_m2 <= WHITE_M * WHITE_M);
+}
+
+/* [goe_pose_t.height_m] GIVEN an image without a height among others THEN the height moves on by the change of down. */
+static void a_missing_height_is_moved_on(void) {
+    read_height(HEIGHT_M, 0.0f);
+    image.box.sides = GOE_SIDES_ALL;
+    read_height(0.0f, 3.0f);
+    CHECK_CLOSE(1.0e-5, (double)HEIGHT_M - 3.0, obs.height_m);
+    CHECK_CLOSE(1.0e-6, (double)CONSTANT_M, obs.height_sd_m);
 }
 
 /* GIVEN a camera on an arm WHEN the aircraft pitches and rolls THEN the camera's height has moved by the arm's end, not by the
@@ -324,33 +546,52 @@ static void the_arm_moves_the_camera_up_and_down(void) {
     CHECK_CLOSE(1.0e-4, 0.5 * (ground + (double)HEIGHT_M + down), filter.datum.ground_m);
 }
 
-/* GIVEN a footprint that began by points WHEN the first upright box comes THEN the obstacle's own ground may lie off, once, and from then
- * on the height counts by the changes of down. */
-static void the_first_box_frees_the_ground_once(void) {
-    start(RANGE_M, 0.5f);
+/* GIVEN a footprint that began by points WHEN the first upright box comes THEN the track is one by boxes, and its height is as certain as
+ * before: the obstacle's own ground counts from the start. */
+static void the_first_box_changes_no_height(void) {
     settings.navigation.terrain_height_sd_m = 2.0f;
+    start(RANGE_M);
     TEST_ASSERT_FALSE(goe_filter_by_boxes(&filter));
-    for (int n = 0; n < 2; n++) {
-        goe_ground_meet_box(&filter, &settings.navigation);
-        TEST_ASSERT_TRUE(goe_filter_by_boxes(&filter));
-        CHECK_CLOSE(1.0e-3, sqrt(0.25 + 4.0), ground_sd_m());
-    }
+    goe_ground_meet_box(&filter);
+    TEST_ASSERT_TRUE(goe_filter_by_boxes(&filter));
+    CHECK_CLOSE(1.0e-3, sqrt(4.0 + 4.0), ground_sd_m());
+}
+
+/* GIVEN an autopilot whose down jumps WHEN the ground moves along THEN the readings say the same as before. */
+static void a_jump_of_down_is_no_scatter(void) {
+    settings.navigation.height_white_sd_m = 0.5f;
+    read_height(HEIGHT_M, 0.0f);
+    start(RANGE_M);
+    goe_ground_move(&filter, 30.0f);
+    read_height(HEIGHT_M, 30.0f);
+    CHECK_CLOSE(1.0e-5, (double)HEIGHT_M, obs.height_m);
+    CHECK_CLOSE(1.0e-5, 0.0, filter.datum.mean_m);
+    TEST_ASSERT_TRUE(filter.datum.scatter_m2 <= 0.25f);
 }
 
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(exact_heights_are_taken_at_once);
+    RUN_TEST(exact_heights_correct_a_drift_of_down);
     RUN_TEST(readings_give_the_mean_and_no_more);
+    RUN_TEST(the_mean_of_a_drifting_down_is_the_best);
+    RUN_TEST(before_the_start_the_mean_is_the_ground);
     RUN_TEST(a_filter_that_starts_again_receives_the_same_mean);
     RUN_TEST(the_count_of_readings_saturates);
+    RUN_TEST(down_that_drifts_makes_the_height_uncertain);
+    RUN_TEST(a_scatter_beyond_the_configured_one_stays);
+    RUN_TEST(a_scatter_that_ends_is_forgotten);
     RUN_TEST(an_overflow_is_reported_later);
     RUN_TEST(without_a_position_the_heights_wait);
     RUN_TEST(a_wrong_first_range_leaves_the_height_as_given);
-    RUN_TEST(the_slope_of_the_ground_adds_up_over_the_way);
-    RUN_TEST(a_height_that_is_kept_has_no_slope);
-    RUN_TEST(sloping_ground_makes_the_height_uncertain);
+    RUN_TEST(the_slope_counts_over_the_range);
+    RUN_TEST(the_slope_counts_over_a_corrected_range);
+    RUN_TEST(a_corrected_range_brings_no_lost_information_back);
     RUN_TEST(the_first_heights_own_error_is_kept);
     RUN_TEST(a_height_that_is_not_set_is_no_reading);
+    RUN_TEST(a_missing_height_is_moved_on);
     RUN_TEST(the_arm_moves_the_camera_up_and_down);
-    RUN_TEST(the_first_box_frees_the_ground_once);
+    RUN_TEST(the_first_box_changes_no_height);
+    RUN_TEST(a_jump_of_down_is_no_scatter);
     return UNITY_END();
 }

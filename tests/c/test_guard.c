@@ -29,7 +29,8 @@ static void fly(int from, int to) {
 }
 
 static void start(void) {
-    const goe_settings_t settings = scene_settings(&scene);
+    goe_settings_t settings = scene_settings(&scene);
+    scene_level_ground(&settings); /* then it is a box by now */
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
     fly(0, IMAGES);
     TEST_ASSERT_TRUE((estimate.valid & GOE_HAS_POSITION) != 0u);
@@ -221,7 +222,8 @@ static void no_call_returns_a_value_that_is_not_finite(void) {
 static void any_truth_but_none_is_one(void) {
     goe_estimate_t first;
     goe_image_t odd;
-    const goe_settings_t settings = scene_settings(&scene);
+    goe_settings_t settings = scene_settings(&scene);
+    scene_level_ground(&settings);
     start();
     first = estimate;
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));

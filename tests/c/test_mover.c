@@ -347,7 +347,7 @@ static void by_velocity(double x, double z, double to[3]) {
 }
 
 /* GIVEN images with evidence of a velocity, one after the other THEN in the third the obstacle begins to be followed with just that
- * velocity, twice as uncertain as the residuals say and the own motion allows; the latency, which it may have been taken for, is open
+ * velocity, five times as uncertain as the residuals say and the own motion allows; the latency, which it may have been taken for, is open
  * again. */
 static void a_newly_followed_target_starts_from_the_images(void) {
     double z[3];
@@ -372,7 +372,7 @@ static void a_newly_followed_target_starts_from_the_images(void) {
         reported[0][2] * reported[0][2] + reported[1][2] * reported[1][2] + reported[2][2] * reported[2][2];
     const double d = xx * zz - xz * xz;
     const double own = 0.09 + 0.04 / 4.0;
-    const double c[3] = {4.0 * (2.0 * zz / d + own), -4.0 * 2.0 * xz / d, 4.0 * (2.0 * xx / d + own)};
+    const double c[3] = {25.0 * (2.0 * zz / d + own), -25.0 * 2.0 * xz / d, 25.0 * (2.0 * xx / d + own)};
     const double r11 = (double)*goe_srif_at(&judged.root, GOE_STATES + 1, GOE_STATES + 1);
     const double r12 = (double)*goe_srif_at(&judged.root, GOE_STATES + 1, GOE_STATES + 2);
     const double r22 = (double)*goe_srif_at(&judged.root, GOE_STATES + 2, GOE_STATES + 2);
@@ -547,6 +547,7 @@ typedef struct {
 static flight_t fly(int late, double north_m_s, double east_m_s) {
     flight_t flight;
     goe_settings_t settings = scene_settings(&scene);
+    scene_level_ground(&settings);
     memset(&flight, 0, sizeof flight);
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
     for (int k = 0; k < IMAGES; k++) {

@@ -304,6 +304,7 @@ static void less_than_the_least_counts_as_that(void) {
     image.noise.attitude_sd_deg = 1.0e-6f;
     image.noise.pixel_sd_px = 1.0e-6f;
     estimator.filter.datum.sd_m = 1.0e-6f;
+    estimator.settings.navigation.terrain_height_sd_m = 0.0f;
     TEST_ASSERT_EQUAL_UINT(0u, goe_observation_open(&sight, &estimator.settings, &estimator.filter, &view));
     CHECK_CLOSE(1.0e-10, 1.0e-4 * (double)GOE_RAD_PER_DEG, sight.white_rad);
     TEST_ASSERT_EQUAL_FLOAT(0.05f, sight.point_px);
@@ -311,34 +312,28 @@ static void less_than_the_least_counts_as_that(void) {
     TEST_ASSERT_EQUAL_FLOAT(1.0e-3f, sight.height_sd_m);
 }
 
-/* GIVEN an altimeter whose noise is new in each image THEN the height is that of the mean of its readings so far, whose noise
- * falls with their number, and whose constant error stays. */
-static void a_noisy_height_is_that_of_all_readings(void) {
+/* GIVEN what the readings of the altimeter say THEN the height is that of the first image moved by the changes of down, and its variance that
+ * of the constant error, of the obstacle's own ground, of the readings' mean, and four times what they scatter beyond the configured
+ * noise. */
+static void the_height_is_as_uncertain_as_its_parts(void) {
     goe_observation_t sight;
     start();
     estimator.settings.navigation.height_bias_sd_m = 3.0f;
+    estimator.settings.navigation.terrain_height_sd_m = 4.0f;
+    estimator.settings.navigation.height_white_sd_m = 5.0f;
     estimator.motion.height_m = 20.0f;
     estimator.filter.datum.height_m = 24.0f;
-    estimator.filter.datum.readings = 4;
-    TEST_ASSERT_EQUAL_UINT(0u, goe_observation_open(&sight, &estimator.settings, &estimator.filter, &view));
-    TEST_ASSERT_EQUAL_FLOAT(20.0f, sight.height_m);
-    TEST_ASSERT_EQUAL_FLOAT(3.0f, sight.height_sd_m);
-    estimator.settings.navigation.height_white_sd_m = 8.0f;
+    estimator.filter.datum.noise_m2 = 7.0f;
+    estimator.filter.datum.scatter_m2 = 24.0f; /* less than configured */
     TEST_ASSERT_EQUAL_UINT(0u, goe_observation_open(&sight, &estimator.settings, &estimator.filter, &view));
     TEST_ASSERT_EQUAL_FLOAT(24.0f, sight.height_m);
-    CHECK_CLOSE(1.0e-5, sqrt(9.0 + 64.0 / 4.0), sight.height_sd_m);
-}
-
-/* GIVEN the same altimeter WHEN no height was set so far THEN the unknown height has the noise of one reading, not of infinitely
- * many or of none. */
-static void a_height_without_a_reading_has_the_noise_of_one(void) {
-    goe_observation_t sight;
-    start();
-    estimator.settings.navigation.height_white_sd_m = 8.0f;
-    estimator.filter.datum.sd_m = 6.0f;
-    estimator.filter.datum.readings = 0;
+    CHECK_CLOSE(1.0e-5, sqrt(9.0 + 16.0 + 7.0), sight.height_sd_m);
+    estimator.filter.datum.scatter_m2 = 35.0f;
     TEST_ASSERT_EQUAL_UINT(0u, goe_observation_open(&sight, &estimator.settings, &estimator.filter, &view));
-    CHECK_CLOSE(1.0e-5, 10.0, sight.height_sd_m);
+    CHECK_CLOSE(1.0e-5, sqrt(9.0 + 16.0 + 7.0 + 4.0 * 10.0), sight.height_sd_m);
+    estimator.filter.datum.sd_m = 6.0f; /* the first image knew its own height's error */
+    TEST_ASSERT_EQUAL_UINT(0u, goe_observation_open(&sight, &estimator.settings, &estimator.filter, &view));
+    CHECK_CLOSE(1.0e-5, sqrt(36.0 + 16.0 + 7.0 + 4.0 * 10.0), sight.height_sd_m);
 }
 
 int main(void) {
@@ -357,7 +352,6 @@ int main(void) {
     RUN_TEST(an_edge_takes_two_base_corners);
     RUN_TEST(an_image_may_know_its_own_errors);
     RUN_TEST(less_than_the_least_counts_as_that);
-    RUN_TEST(a_noisy_height_is_that_of_all_readings);
-    RUN_TEST(a_height_without_a_reading_has_the_noise_of_one);
+    RUN_TEST(the_height_is_as_uncertain_as_its_parts);
     return UNITY_END();
 }

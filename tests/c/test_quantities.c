@@ -272,8 +272,20 @@ static void sigmas_are_those_of_the_state(void) {
     }
 }
 
+/* Of the top above the altimeter's zero. */
+static double top_sd_m(void) {
+    double c[GOE_STATES][GOE_STATES];
+    const double range_m = 1.0 / (double)filter.state[GOE_INVERSE_RANGE];
+    const double by_range = -range_m * range_m * (double)filter.state[GOE_TOP];
+    covariance_of(c);
+    return sqrt(range_m * range_m * c[GOE_TOP][GOE_TOP] +
+                by_range * by_range * c[GOE_INVERSE_RANGE][GOE_INVERSE_RANGE] +
+                2.0 * range_m * by_range * c[GOE_INVERSE_RANGE][GOE_TOP]);
+}
+
 /* GIVEN a footprint, of unobservable depth THEN that widens its sigmas, and silences nothing: validity is decided without
- * it. For all others the contribution of the last state is as good as the rest. */
+ * it. For all others the contribution of the last state is as good as the rest. Nor does the obstacle's own ground silence its height: the
+ * top above the altimeter's zero decides, if that is known better. */
 static void unobserved_depth_silences_nothing(void) {
     any = check_random_start("unseen");
     for (int n = 0; n < CASES; n++) {
@@ -282,13 +294,15 @@ static void unobserved_depth_silences_nothing(void) {
         be_uncertain(1.0);
         goe_quantities_find(&filter, &settings, &motion, &quantities);
         const goe_quantities_t with = quantities;
+        const double top_m = top_sd_m();
         for (size_t i = 0; i < GOE_STATES; i++) { /* as if it were known */
             inverse_set(&filter.root, i, GOE_STATES - 1, i < GOE_STATES - 1 ? 0.0 : 1.0e-9);
         }
         goe_quantities_find(&filter, &settings, &motion, &quantities);
         for (int i = 0; i < GOE_QUANTITIES; i++) {
             const bool ellipse = phase == GOE_PHASE_FOOTPRINT;
-            const double sigma = (double)(ellipse ? quantities.sigma[i] : with.sigma[i]);
+            const double seen = (double)(ellipse ? quantities.sigma[i] : with.sigma[i]);
+            const double sigma = i == GOE_HEIGHT ? fmin(seen, sqrt(top_m * top_m + beyond_of(i))) : seen;
             CHECK_CLOSE(2.0e-3 * sigma + 1.0e-6, sigma, with.worked_out[i]);
         }
     }
