@@ -155,6 +155,7 @@ WHITE = replace(USUAL, box_noise_rel=0.0, image_rate_hz=30.0)
     ("solid", "options", "configured"),
     [
         (MAST, replace(USUAL, height_white_sd_m=3.0), ErrorModel()),
+        (MAST, replace(USUAL, height_white_sd_m=1.0), ErrorModel(height_white_sd_m=1.0)),
         (MAST, replace(USUAL, altimeter=False), ErrorModel(height_bias_sd_m=1000.0)),
         (MAST, replace(USUAL, altimeter=False), ErrorModel(height_bias_sd_m=1000.0, disc=True)),
         (BUILDING, USUAL, ErrorModel(position_white_sd_m=0.5)),
@@ -165,7 +166,7 @@ WHITE = replace(USUAL, box_noise_rel=0.0, image_rate_hz=30.0)
         (MAST, replace(USUAL, roll_deg=25.0, altitude_m=60.0), ErrorModel(border_rel=0.03, truncation_noise_rel=0.3)),
     ],
     ids=[
-        "altimeter noise", "no altimeter", "disc without altimeter", "position noise", "drift", "no correlation",
+        "altimeter noise", "configured altimeter noise", "no altimeter", "disc without altimeter", "position noise", "drift", "no correlation",
         "30 images/s", "clipped soon", "from above, few sides at the border",
     ],
 )  # fmt: skip
@@ -194,8 +195,8 @@ def test_other_cameras(built: None, change: dict[str, float], double: bool) -> N
 def test_residuals_that_are_doubted(built: None, double: bool) -> None:
     """With too small noise settings, rows get a low weight or none, but not so often that the library restarts the
     track."""
-    flight = box_flight(BUILDING, BoxOptions(roll_deg=25.0), 3)
-    reference, track = both(flight, ErrorModel(box_noise_px=0.3, box_noise_rel=0.015), double)
+    flight = box_flight(BUILDING, BoxOptions(roll_deg=25.0), 1)
+    reference, track = both(flight, ErrorModel(box_noise_px=0.3, box_noise_rel=0.012), double)
     assert reference.doubted.sum() >= 10 and reference.refused.sum() >= 3
     assert_same(reference, track, double)
 
@@ -362,7 +363,9 @@ def test_sides_that_are_measured() -> None:
 
 def noise(times: float, **change: float) -> ErrorModel:
     """Settings with only the noise that counts for the bound."""
-    usual = ErrorModel(box_noise_rel=0.0, terrain_height_sd_m=0.0, disc=True)
+    usual = ErrorModel(
+        box_noise_rel=0.0, height_white_sd_m=0.0, terrain_height_sd_m=0.0, terrain_slope_sd=0.0, disc=True
+    )  # fmt: skip
     names = (
         "box_noise_px", "attitude_bias_sd_deg", "attitude_white_sd_deg", "height_bias_sd_m", "velocity_bias_sd_m_s",
     )  # fmt: skip

@@ -32,7 +32,9 @@ from goe_tools.models.prism_offline import Track, fit
 
 X0, Z0, WIDTH, HEIGHT = 0, 1, 3, 5
 ESTIMATED = [X0, Z0, WIDTH, HEIGHT]
-GAUSS = ErrorModel(box_noise_px=0.5, box_noise_rel=0.0, terrain_height_sd_m=0.0, disc=True)
+GAUSS = ErrorModel(
+    box_noise_px=0.5, box_noise_rel=0.0, height_white_sd_m=0.0, terrain_height_sd_m=0.0, terrain_slope_sd=0.0, disc=True
+)
 WHITE = BoxOptions(box_noise_px=0.5, box_noise_rel=0.0)
 LENS = {"k1": -0.1, "k2": 0.02, "p1": 0.001, "p2": 0.0005, "k3": -0.003}
 OTHER_CAMERA = {"offset_x_m": 1.0, "offset_z_m": 0.2, "mount_pitch_deg": 2.0, "mount_roll_deg": 3.0, "fy": 900.0}

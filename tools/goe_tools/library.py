@@ -42,6 +42,9 @@ SETTING_OF = {  # noise figure: setting of the library
     "position_walk_sd_m": "navigation.position_walk_sd_m",
     "prior_width_m": "filter.prior_width_m",
 }
+LEVEL = {  # the simulated ground, and an altimeter with a constant error only
+    "navigation.height_white_sd_m": 0.0, "navigation.terrain_slope_sd": 0.0, "navigation.terrain_height_sd_m": 0.0,
+}  # fmt: skip
 SMALLEST = {  # values that the library accepts
     "detector.point_noise_px": 0.05, "navigation.attitude_bias_sd_deg": 1e-3, "navigation.attitude_white_sd_deg": 1e-4,
     "navigation.height_bias_sd_m": 1e-3,
@@ -160,7 +163,7 @@ def camera_settings(flight: Flight) -> dict[str, float]:
 def settings_of(flight: Flight, noise: Noise | None = None, method: str = "filter") -> dict[str, float]:
     """Settings by name for a flight's camera and noise, as a user would configure them."""
     noise = flight.noise if noise is None else noise
-    result = camera_settings(flight) | {
+    result = camera_settings(flight) | LEVEL | {
         "filter.top_is_highest": float(flight.top_is_highest),
         "method": float(METHODS[method]),
     }

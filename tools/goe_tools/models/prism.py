@@ -82,7 +82,9 @@ class ErrorModel:
     attitude_white_sd_deg: float = 0.1
     attitude_walk_sd_deg: float = 0.0  # per sqrt(s)
     height_bias_sd_m: float = 0.5
+    height_white_sd_m: float = 0.5  # of a reading of the altimeter
     terrain_height_sd_m: float = 2.0  # of the obstacle's terrain height
+    terrain_slope_sd: float = 0.02  # of the ground between aircraft and obstacle at first sight
     velocity_bias_sd_m_s: float = 0.05
     position_walk_sd_m: float = 0.05  # per sqrt(s)
     position_white_sd_m: float = 0.0
@@ -91,9 +93,10 @@ class ErrorModel:
     huber_sigma: float = 2.5
     disc: bool = False  # depth equals width
 
-    @property
-    def height_sd_m(self) -> float:
-        return float(np.hypot(self.height_bias_sd_m, self.terrain_height_sd_m))
+    def ground_sd(self, q: float) -> float:
+        """One sigma of the first height above the obstacle's ground, units of Z0 = 1/q."""
+        parts = [self.height_bias_sd_m, self.height_white_sd_m, self.terrain_height_sd_m, self.terrain_slope_sd / q]
+        return float(np.linalg.norm(parts) * q)
 
     def settings(self) -> dict[str, float]:
         """The library's settings, by name."""
@@ -116,7 +119,7 @@ class Sight:
     axes_from_camera: np.ndarray  # (3, 3) estimated
     axes_from_body: np.ndarray
     moved_m: np.ndarray  # (3,) camera since the axes' origin
-    height_m: float  # of the camera above ground, from the changes of down
+    height_m: float  # of the camera above ground, from the first height and the changes of down
     given_height_m: float
 
     def turned(self, turn: np.ndarray, origin_m: np.ndarray) -> Sight:

@@ -103,7 +103,7 @@ def prior_sigmas(state: np.ndarray, errors: ErrorModel) -> np.ndarray:
     shear."""
     sigma = np.full(COUNT, WEAK_SIGMA)
     sigma[:3] = max(np.radians(errors.attitude_bias_sd_deg), KNOWN_SIGMA)
-    sigma[G] = max(errors.height_sd_m * state[Q], KNOWN_SIGMA)
+    sigma[G] = max(errors.ground_sd(state[Q]), KNOWN_SIGMA)
     sigma[[S, D]] = KNOWN_SIGMA
     sigma[[VX, VZ]] = max(errors.velocity_bias_sd_m_s, KNOWN_SIGMA)
     return sigma

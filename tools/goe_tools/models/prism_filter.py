@@ -34,7 +34,7 @@ Not modeled: the library's reaction to sides that repeatedly do not fit, which i
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -76,6 +76,13 @@ RANGE_MIN_M, RANGE_MAX_M = 1.0, 1e6
 NO_ALTIMETER_M = 50.0  # from this sigma of the height on the first box determines it
 HEADING_ARM = 0.08  # rad/(m/s): a yaw bias looks like a velocity bias
 GROUND_MIN = 1e-6  # units of Z0
+UNKNOWN_SD_M = 1e3  # of a first height that is not set
+SCATTER_SEEDS, SCATTER_MEMORY = 8, 64  # readings as configured, and how many their mean square remembers
+VARIANCE_MIN_M2 = 1e-12
+EXCESS_WEIGHT = 4.0  # of the readings' scatter beyond the configured one
+NARROW, WIDE, SCALE_MIN = 0.95, 1.05, 0.05  # of 1/Z0 when the sigma of G was set, over the present one
+GROWN = 1e-3  # of the height's information: less waits for more
+RANGE_SHARE = 10.0  # largest relative sigma of a range at which the readings count: as large as the setting can be
 PATH_MIN_M = 0.1
 SHEAR_SHARE = 0.6  # sigma of s, of the first half width
 DEPTH_SD = 1.0  # of d
@@ -153,6 +160,47 @@ class Scatter:
         return max(scale * (1 + correlation) / (1 - correlation), 1.0)
 
 
+class Altimeter:
+    """A first-order Kalman filter of the height's offset: down drifts, and the readings scatter."""
+
+    def __init__(self, errors: ErrorModel) -> None:
+        self.errors = errors
+        self.lifted_m = 0.0  # by the mean before the start
+        self.mean_m = self.noise_m2 = 0.0
+        self.bias_m: float | None = None
+        self.scatter_m2 = errors.height_white_sd_m**2
+        self.readings = 0
+
+    def read(self, sight: Sight, started: bool, span_s: float) -> Sight:
+        """Returns the image with the height as known."""
+        lacks = sight.given_height_m == 0
+        if self.bias_m is None:
+            self.bias_m = UNKNOWN_SD_M if lacks else self.errors.height_bias_sd_m
+        if not lacks:
+            self._average(sight.given_height_m - sight.height_m - self.lifted_m, span_s)
+            if not started:
+                self.lifted_m += self.mean_m
+                self.mean_m = 0.0
+        return replace(sight, height_m=sight.height_m + self.lifted_m)
+
+    def _average(self, off_m: float, span_s: float) -> None:
+        innovation2 = (off_m - self.mean_m) ** 2
+        self.scatter_m2 += (innovation2 - self.scatter_m2) / min(self.readings + SCATTER_SEEDS, SCATTER_MEMORY)
+        white2 = max(self.errors.height_white_sd_m**2, self.scatter_m2)
+        predicted = self.noise_m2 + self.errors.position_walk_sd_m**2 * span_s
+        gain = predicted / max(predicted + white2, VARIANCE_MIN_M2) if self.readings else 1.0
+        self.readings = min(self.readings + 1, 255)
+        self.noise_m2 = gain * white2
+        self.mean_m += gain * (off_m - self.mean_m)
+
+    @property
+    def sd_m(self) -> float:
+        """Above the obstacle's ground, without its slope."""
+        excess = max(self.scatter_m2 - self.errors.height_white_sd_m**2, 0.0)
+        constant = self.bias_m**2 + self.errors.terrain_height_sd_m**2
+        return float(np.sqrt(constant + self.noise_m2 + EXCESS_WEIGHT * excess))
+
+
 @dataclass
 class Rows:
     """The n rows of an image. Variances per row; ``about`` and ``shift`` give the common errors of attitude and
@@ -186,6 +234,7 @@ class PrismFilter:
         self.doubted = self.refused = 0  # in the latest image
         self.scatter = Scatter(np.zeros(4))
         self.first_s: float | None = None  # the track's first image
+        self.altimeter = Altimeter(errors)
 
     # --------------------------------------------------------------------------------------------------------- start
 
@@ -202,7 +251,7 @@ class PrismFilter:
         attitude = np.radians([errors.attitude_bias_sd_deg, errors.attitude_white_sd_deg])
         own = [errors.box_noise_px / sight.camera.fy, FOOT_SHARE * errors.box_noise_rel * size]
         clear = GROUND_SIGMAS * float(np.linalg.norm([*attitude, *own]))
-        high = sight.height_m > GROUND_SIGMAS * errors.height_sd_m
+        high = sight.height_m > GROUND_SIGMAS * self.altimeter.sd_m
         if foot is not None and foot[1] > clear and high:
             return sight.height_m / foot[1] * (1 + NEAR_SIDE * size)
         return errors.prior_width_m / size
@@ -229,7 +278,7 @@ class PrismFilter:
         state = np.zeros(COUNT)
         state[[Q, W]] = 1 / range_m, 0.5 * size
         state[E] = sight.height_m / range_m - (0.0 if head is None else head[1])
-        if self.errors.height_sd_m > NO_ALTIMETER_M and foot is not None:
+        if self.altimeter.sd_m > NO_ALTIMETER_M and foot is not None:
             state[G] = foot[1] - sight.height_m / range_m
         self.state = state
         sd = self._prior_sd(size)
@@ -238,7 +287,15 @@ class PrismFilter:
         self.flown_m, self.last_m = 0.0, in_t.moved_m  # along the path since the start
         self.settled, self.gained = self.full_covariance(), np.zeros(COUNT)  # after the latest image, and since
         self.due_s, self.walked_s = 0.0, np.zeros(2)  # since the walk was added along X, and along Z
+        self.known = False  # the position
+        self.scale = 1.0  # 1/Z0 when the sigma of G was set, over the present one
+        self.first = self.information = 1 / self._height_variance()
+        self.moment = 0.0  # of the height's offset: its information times its mean
         return True
+
+    def _height_variance(self) -> float:
+        """m2, above the obstacle's own ground."""
+        return self.altimeter.sd_m**2 + (self.errors.terrain_slope_sd / self.state[Q]) ** 2
 
     def _prior_sd(self, width: float) -> np.ndarray:
         """(10,) sigmas of the first guess."""
@@ -246,8 +303,8 @@ class PrismFilter:
         sd = np.empty(COUNT)
         sd[:3] = np.radians(errors.attitude_bias_sd_deg)
         sd[2] = np.hypot(sd[2], HEADING_ARM * errors.velocity_bias_sd_m_s)
-        sd[G] = max(errors.height_sd_m * q, GROUND_MIN)
-        sd[[A, Q, W]] = 1.0, 2.0 * q, 2.5 * width
+        sd[G] = max(np.sqrt(self._height_variance()) * q, GROUND_MIN)
+        sd[[A, Q, W]] = 1.0, 4.0 * q, 2.5 * width
         sd[E] = 10 * max(abs(self.state[E]), width)
         sd[[S, D]] = footprint_sds(errors, self.state[W])
         return sd
@@ -290,6 +347,50 @@ class PrismFilter:
             self.covariance += walk**2 * self.walked_s[axis] * np.outer(direction, direction)
             self.walked_s[axis] = 0.0
         self.due_s = 0.0
+
+    def _doubt_height(self) -> None:
+        """Removes information that a better known range made too strong; the height moves by the changes of down,
+        which drift, and readings that scatter say less of it. The top counts from the altimeter's zero."""
+        errors, q = self.errors, self.state[Q]
+        if self.scale <= NARROW:
+            scale2 = max(self.scale, SCALE_MIN) ** 2
+            variance = self.full_covariance()[G, G]
+            taken = min(variance * (1 / scale2 - 1) * self.first / q**2, 1 - scale2)
+            self.covariance[G, G] += variance * taken / (1 - taken)
+            self.scale = 1.0
+        before = 1 / self.information
+        now = max(self._height_variance(), before + errors.position_walk_sd_m**2 * self.due_s)
+        if now > before:
+            direction = np.zeros(D)
+            direction[[G, E]] = 1.0, -1.0
+            self.covariance += q**2 * (now - before) * np.outer(direction, direction)
+            self.moment *= before / now
+            self.information = 1 / now
+
+    def _height_rows(self, rows: Rows) -> Rows:
+        """With the rows of the height: what a farther range made too weak, and what the readings added."""
+        q, offset_m = self.state[Q], self.state[G] / self.state[Q]
+        residual, slope = [], []
+        if self.known and self.scale >= WIDE:
+            weight = np.sqrt((1 - 1 / self.scale**2) * self.first) / q
+            residual.append(-weight * self.state[G])
+            slope.append(weight * np.eye(COUNT)[G])
+            self.scale = 1.0
+        information = 1 / self._height_variance()
+        grown = information - self.information
+        if self.known and grown > GROWN * information:
+            weight, moment = np.sqrt(grown), information * self.altimeter.mean_m
+            residual.append(weight * ((moment - self.moment) / grown - offset_m))
+            slope.append(weight / q * (np.eye(COUNT)[G] - offset_m * np.eye(COUNT)[Q]))
+            self.information, self.moment = information, moment
+        if not residual:
+            return rows
+        more = len(residual)
+        none = np.zeros((more, 3))
+        return Rows(
+            np.append(rows.side, np.full(more, -1)), np.append(rows.residual, residual), np.vstack([rows.slope, slope]),
+            np.append(rows.own, np.ones(more)), np.vstack([rows.about, none]), np.vstack([rows.shift, none]),
+        )  # fmt: skip
 
     def _rows(self, sight: Sight, q_variance: float) -> Rows | None:
         """Residuals and derivatives as measured, and white variances that include the linearization error."""
@@ -378,7 +479,9 @@ class PrismFilter:
 
     def _move(self, change: np.ndarray) -> None:
         """Changes the first states, and what the sides' errors are at them."""
+        before = self.state[Q]
         self.state = self.state + np.append(change, np.zeros(COUNT - len(change)))
+        self.scale *= before / self.state[Q]
         self.state[D] = np.clip(self.state[D], -DEPTH_LIMIT, DEPTH_LIMIT)
         for memory in self.memory:
             memory.value -= memory.by[: len(change)] @ change
@@ -387,7 +490,10 @@ class PrismFilter:
         """Takes an image; returns whether it was used."""
         self.doubted = self.refused = 0
         self.first_s = in_t.time_s if self.first_s is None else self.first_s
-        if self.state is None:
+        started = self.state is not None
+        since_s = min(in_t.time_s - self.time_s, GAP_MAX_S) if started else 0.0
+        in_t = self.altimeter.read(in_t, started, since_s)
+        if not started:
             if not self.start(in_t):
                 return False
         elif in_t.time_s - self.time_s < EARLY_SHARE * self.errors.box_correlation_time_s:
@@ -416,13 +522,16 @@ class PrismFilter:
         if not kept.any():
             self.scatter.take_fit(RATIO_MOST)
             return False
-        self._age(span_s)
         white = np.radians(self.errors.attitude_white_sd_deg)
+        self._learn(rows, white**2 * rows.about @ rows.about.T + rows.shift @ rows.shift.T)
+        self._doubt_height()
+        self._age(span_s)
+        rows = self._height_rows(rows)
         shared = white**2 * rows.about @ rows.about.T + rows.shift @ rows.shift.T
-        self._learn(rows, shared)
         nis = self._update(rows, shared, knows_depth(sight, self.state))
         self.scatter.take_fit(RATIO_MOST if poor else nis / len(rows.side))
         self.settled, self.gained = self.full_covariance(), np.zeros(COUNT)
+        self.known = bool(np.sqrt(self.settled[Q, Q]) <= RANGE_SHARE * self.state[Q])
         return True
 
     # ----------------------------------------------------------------------------------------------------- quantities

@@ -36,7 +36,8 @@ CONFIDENT_MOST: Range = (0.0, 1.0)  # % of the tracks
 FIRST_MOST: Range = (0.0, 6.0)  # images until the first answer
 BOUND_ROLLS_DEG = (0.0, 2.0, 5.0, 10.0, 25.0)
 BOUND_MOST: Range = (0.0, 1.3)
-BOUND_NOISE = ErrorModel(box_noise_px=0.5, box_noise_rel=0.0, terrain_height_sd_m=0.0, disc=True)  # the simulated noise
+LEVEL = {"height_white_sd_m": 0.0, "terrain_height_sd_m": 0.0, "terrain_slope_sd": 0.0}
+BOUND_NOISE = ErrorModel(box_noise_px=0.5, box_noise_rel=0.0, disc=True, **LEVEL)  # the simulated noise
 FIT_MOST: Range = (0.0, 1.3)
 KITTI_PATH_M = 3.0
 NO_ALTIMETER = {"navigation.height_bias_sd_m": 1000.0}
