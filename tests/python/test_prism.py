@@ -166,7 +166,8 @@ WHITE = replace(USUAL, box_noise_rel=0.0, image_rate_hz=30.0)
         (MAST, replace(USUAL, roll_deg=25.0, altitude_m=60.0), ErrorModel(border_rel=0.03, truncation_noise_rel=0.3)),
     ],
     ids=[
-        "altimeter noise", "configured altimeter noise", "no altimeter", "disc without altimeter", "position noise", "drift", "no correlation",
+        "altimeter noise", "configured altimeter noise", "no altimeter", "disc without altimeter", "position noise",
+        "drift", "no correlation",
         "30 images/s", "clipped soon", "from above, few sides at the border",
     ],
 )  # fmt: skip

@@ -163,10 +163,8 @@ def camera_settings(flight: Flight) -> dict[str, float]:
 def settings_of(flight: Flight, noise: Noise | None = None, method: str = "filter") -> dict[str, float]:
     """Settings by name for a flight's camera and noise, as a user would configure them."""
     noise = flight.noise if noise is None else noise
-    result = camera_settings(flight) | LEVEL | {
-        "filter.top_is_highest": float(flight.top_is_highest),
-        "method": float(METHODS[method]),
-    }
+    result = camera_settings(flight) | LEVEL
+    result |= {"filter.top_is_highest": float(flight.top_is_highest), "method": float(METHODS[method])}
     result |= {setting: getattr(noise, name) for name, setting in SETTING_OF.items()}
     return {name: max(value, SMALLEST.get(name, value)) for name, value in result.items()}
 

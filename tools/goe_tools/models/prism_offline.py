@@ -87,7 +87,8 @@ class Track:
     def __init__(self, flight: Flight, errors: ErrorModel) -> None:
         self.errors, prism = errors, PrismFilter(errors)
         images = sights(flight, errors)
-        if not any(prism.start(sight) for sight in images):  # stops at the first that starts
+        first = (prism.altimeter.read(sight, False, 0.0) for sight in images)
+        if not any(prism.start(sight) for sight in first):  # stops at the first that starts
             raise ValueError(f"{flight.name}: no image measures left and right of a box ahead")
         self.turn, self.origin_m, self.start_s = prism.turn, prism.origin_m, prism.start_s
         self.first_guess = np.append(prism.state, [0.0, 0.0])
@@ -200,15 +201,16 @@ class Track:
         return result + drift**2 * passed * (slope[:, :3] @ slope[:, :3].T)
 
     def priors(self, state: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Residuals (12,) of the priors, and their derivatives (12, 12). The height's sigma is configured in meters, g
-        is in units of Z0."""
+        """Residuals (12,) of the priors, and their derivatives (12, 12). The height's sigma is configured in meters,
+        except that of the slope, and g is in units of Z0."""
         sigma = prior_sigmas(state[: len(STATES)], self.errors)
         sigma[S] = self.footprint_sd[0]
         if self.estimates_depth:
             sigma[D] = self.footprint_sd[1]
         slope = np.diag(1 / sigma)
         if sigma[G] > KNOWN_SIGMA:
-            slope[G, Q] = -state[G] / (sigma[G] * state[Q])
+            in_meters = 1 - (self.errors.terrain_slope_sd / sigma[G]) ** 2  # share of the variance
+            slope[G, Q] = -in_meters * state[G] / (sigma[G] * state[Q])
         return state / sigma, slope
 
     def by_states(self, slope: np.ndarray) -> np.ndarray:
