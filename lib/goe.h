@@ -146,9 +146,9 @@ typedef enum {
 typedef struct {
     int64_t time_us;         /* any origin; strictly increasing; GOE_TIME_UNKNOWN is refused */
     float position_ned_m[3]; /* the vehicle's reference point, each +-1e6; choose an origin within 10 km */
-    float height_m;          /* camera above the ground at the obstacle, +-1e5. Exactly 0 with a box means "not set". With
-                              * boxes goe uses the first height and the changes of down. Points alone use each height,
-                              * unless navigation.height_white_sd_m is set */
+    float height_m;          /* camera above the ground at the obstacle, +-1e5. Exactly 0 with a box means "not set". The
+                              * filter averages these readings, and moves the height by the changes of down. The window
+                              * uses each reading as it is */
     float attitude[4];       /* quaternion w, x, y, z from body FRD to NED; its norm is 1 within 1 % */
     uint8_t reset_count;     /* reset counter of the autopilot's filter; it may wrap */
     bool reset_delta_known;  /* whether reset_delta_ned_m is set; read only after a change of reset_count */
@@ -176,7 +176,7 @@ typedef struct {
 /* Errors of this image alone, one sigma each, for the filter method. With 0 the setting applies. */
 typedef struct {
     float attitude_sd_deg; /* replaces navigation.attitude_white_sd_deg; 0 to 30 */
-    float height_sd_m;     /* replaces navigation.height_bias_sd_m in the first image with a box; 0 to 1e3 */
+    float height_sd_m;     /* replaces navigation.height_bias_sd_m, in the first image of a track; 0 to 1e3 */
     float pixel_sd_px;     /* replaces detector.point_noise_px and box_noise_px; 0 to 100 */
 } goe_image_noise_t;
 
@@ -248,7 +248,7 @@ typedef struct {
     float center_north_m, center_east_m; /* middle of the base in the NED frame of the latest pose ... */
     float center_ne_m2;                  /* ... and the covariance of north and east */
     float velocity_north_m_s, velocity_east_m_s; /* velocity of a moving obstacle */
-    float latency_s;  /* filter: delay of the poses relative to the images (corrected) */
+    float latency_s;  /* filter: delay of the poses relative to the images (corrected); its sigma includes 25 % of it */
     float residual;   /* window: RMS residual of the least-squares fit; filter: 0 */
     float baseline_m; /* window: spread of the camera's path; filter: distance of the camera from the track's start */
     float nis;        /* filter: normalized innovation squared of the latest image ... */

@@ -48,8 +48,8 @@
     X(navigation.position_walk_sd_m, REAL, "m/s^0.5", 0.0f, 100.0f, 0.05f, "random walk of the aircraft's position") \
     X(navigation.position_white_sd_m, REAL, "m", 0.0f, 100.0f, 0.0f, "error of each position axis, new in each image; used with boxes") \
     X(navigation.height_white_sd_m, REAL, "m", 0.0f, 1.0e3f, 0.5f, "error of pose.height_m, new in each image") \
-    X(navigation.terrain_slope_sd, REAL, "", 0.0f, 1.0f, 0.02f, "slope of the ground below the aircraft, m per m flown") \
-    X(navigation.terrain_height_sd_m, REAL, "m", 0.0f, 1.0e3f, 2.0f, "height error of the obstacle's ground, used with boxes") \
+    X(navigation.terrain_slope_sd, REAL, "", 0.0f, 1.0f, 0.02f, "slope of the ground between aircraft and obstacle at first sight") \
+    X(navigation.terrain_height_sd_m, REAL, "m", 0.0f, 1.0e3f, 2.0f, "height error of the obstacle's ground") \
     X(detector.point_noise_px, REAL, "px", 0.05f, 100.0f, 0.5f, "error of an image point, new in each image") \
     X(detector.point_noise_rel, REAL, "", 0.0f, 1.0f, 0.0f, "error of points left, right, top, as a fraction of the obstacle's width in px") \
     X(detector.point_correlation, REAL, "", 0.0f, 0.95f, 0.0f, "correlation of a point's error from image to image") \
@@ -58,7 +58,7 @@
     X(detector.box_noise_rel, REAL, "", 0.0f, 1.0f, 0.07f, "slow error of a side, as a fraction of the box's width or height") \
     X(detector.box_correlation_time_s, REAL, "s", 0.0f, 100.0f, 1.2f, "correlation time of box_noise_rel") \
     X(detector.truncation_noise_rel, REAL, "", 0.0f, 10.0f, 1.0f, "error of a cut box's sides, as a fraction of its width or height") \
-    X(filter.prior_width_m, REAL, "m", 0.1f, 1.0e3f, 6.0f, "assumed width where the ground gives no range; sigma: a factor of 3") \
+    X(filter.prior_width_m, REAL, "m", 0.1f, 1.0e3f, 6.0f, "assumed width where the ground gives no range; sigma: a factor of 5") \
     X(filter.gate_sigma, REAL, "sigma", 1.0f, 100.0f, 5.0f, "a point with a larger innovation is rejected") \
     X(filter.huber_sigma, REAL, "sigma", 0.5f, 100.0f, 2.5f, "a point with a larger innovation counts less") \
     X(filter.nis_ratio_max, REAL, "", 0.01f, 1.0e3f, 1.9f, "NIS ratio above which an estimate is suspect") \

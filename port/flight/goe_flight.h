@@ -435,9 +435,9 @@ void goe_flight_settings_default(goe_flight_settings_t *settings);
 
 /* Checks the settings of estimator and layer, copies them, and clears all state.
  *   flight_size  sizeof(goe_flight_t) in the caller's compilation
- *   estimator    as for goe_init; width_px and height_px of every camera must be set too. With boxes the layer replaces
- *                navigation.height_bias_sd_m by the sigma of the height's source, one of its settings. Leave height_white_sd_m
- *                at 0: a track takes one height, and after that only the changes of down
+ *   estimator    as for goe_init; width_px and height_px of every camera must be set too. The layer replaces
+ *                navigation.height_bias_sd_m by the sigma of the height's source, one of its settings. Set height_white_sd_m
+ *                to 0: a track takes one height, and after that only the changes of down
  *   settings     null: the defaults
  *   bad_field    receives the name of the first bad setting; null if not wanted
  * Returns GOE_FLIGHT_OK, _BAD_ARGUMENT or _BAD_SETTINGS; on failure *flight cannot be used. */
