@@ -180,6 +180,18 @@ typedef struct {
     float pixel_sd_px;     /* replaces detector.point_noise_px and box_noise_px; 0 to 100 */
 } goe_image_noise_t;
 
+/* What the detector's class says of the obstacle, for the filter method. 0: unknown. goe uses it once in a track and tests it in every
+ * image: of a class that the images contradict it makes no further use, and reports GOE_REASON_SHAPE. */
+typedef struct {
+    float width_m, width_sd_m;   /* width of the silhouette, from any side, and one sigma: size 0 to 1e3, sigma 0.01 size to 1e3 */
+    float height_m, height_sd_m; /* the same of the height */
+    uint8_t shape;               /* GOE_SHAPE_... */
+} goe_kind_t;
+
+#define GOE_SHAPE_UNKNOWN 0u
+#define GOE_SHAPE_ROUND 1u /* an upright cylinder: the filter uses the model disc */
+#define GOE_SHAPE_OTHER 2u /* none: it does not, also with the setting model disc */
+
 /* One image of one obstacle: a box, points or both, with any subset of the features.
  * Box: it replaces the points left, right and top. The box model ignores its bottom. [A29]
  * Points: supply left and right for a disc or prism, two or three base corners for a line or a box, and top for the height. Do not
@@ -192,6 +204,7 @@ typedef struct {
                                                    * between two visible faces */
     goe_box_t box;
     goe_image_noise_t noise;
+    goe_kind_t kind;
     uint8_t camera; /* number of the camera; GOE_OUT_OF_RANGE if no camera has it */
 } goe_image_t;
 
@@ -220,7 +233,7 @@ typedef enum {
                             * order of the quaternion, mounting, time) */
     GOE_REASON_MOVES,      /* the obstacle moves, or inputs contradict each other. Without GOE_HAS_VELOCITY the reported position is wrong */
     GOE_REASON_BASE,       /* the points supplied as base corners are other points; the filter no longer uses them */
-    GOE_REASON_SHAPE,      /* the settings require a disc, but the silhouette is that of another shape */
+    GOE_REASON_SHAPE,      /* the obstacle has another shape or size than the settings or goe_image_t.kind state */
     GOE_REASON_LATE,       /* poses are late or early by latency_s. The filter corrects this; suspect may be false */
     GOE_REASON_NOISE       /* errors exceed the settings, or the obstacle has another shape */
 } goe_reason_t;

@@ -388,6 +388,9 @@ goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, go
     if (status == GOE_OK && goe_uses_filter(estimator)) {
         status = goe_intake_check_noise(&image->noise);
     }
+    if (status == GOE_OK && goe_uses_filter(estimator)) {
+        status = goe_intake_check_kind(&image->kind);
+    }
     if (status == GOE_OK) {
         status = take_image(estimator, image, camera);
         copy_estimate(estimate, &estimator->estimate);

@@ -148,11 +148,11 @@ typedef struct {          /* refined/goe_box.c: what the report calls the edges 
 /* refined/goe_ground.c: the camera's height by the changes of down since the track's first image, and what the readings of the altimeter
  * say of it. */
 typedef struct {
-    float ground_m; /* down of the ground, by the heights before the filter's start */
-    float height_m; /* of the camera above it, latest image */
-    float sd_m;     /* one sigma of the first height, as its image gave it; 0: as in the settings */
-    float mean_m;   /* by how much the heights, freed of the changes of down, lie above that ground */
-    float noise_m2; /* variance of that mean by the noise of the readings and the drift of down */
+    float ground_m;            /* down of the ground, by the heights before the filter's start */
+    float height_m;            /* of the camera above it, latest image */
+    float sd_m;                /* one sigma of the first height, as its image gave it; 0: as in the settings */
+    float mean_m;              /* by how much the heights, freed of the changes of down, lie above that ground */
+    float noise_m2;            /* variance of that mean by the noise of the readings and the drift of down */
     float scatter_m2;          /* mean square of the readings about it */
     float first;               /* information of the height that the filter began with, 1/m^2 */
     float information, moment; /* of the offset, already in the filter: 1/m^2, and times its mean */
@@ -217,6 +217,15 @@ typedef struct {         /* refined/goe_refined.c: what of the latest answer out
     goe_flag_t previous; /* the answer is of the filter before it started again */
 } goe_answer_t;
 
+#define GOE_KIND_SIZES 2 /* width, height */
+typedef struct {         /* refined/goe_kind.c: what the filter uses of the detector's class */
+    float size_m[GOE_KIND_SIZES], sd_m[GOE_KIND_SIZES];
+    uint8_t used;         /* bit i: the size is information in the state */
+    uint8_t contradicted; /* images in a row that contradict it */
+    goe_flag_t wrong;     /* they did: to the end of the track it is not used */
+    goe_flag_t round;     /* the obstacle is taken to be round */
+} goe_kind_use_t;
+
 /* Small members come first: instructions reach the beginning of an object by shorter forms. */
 typedef struct {
     int64_t time_us;      /* of the latest image that the filter took */
@@ -235,6 +244,7 @@ typedef struct {
     goe_place_t measured; /* ... in the latest image that gave rows, the state's axes */
     float walk_s[2];      /* time since the walk of the own position was last added along X, and along Z */
     float due_s;          /* ... since process noise was, which waits for the next image that gives rows */
+    goe_kind_use_t kind;
     goe_candidate_t candidate;
     goe_health_t health;
     goe_answer_t answer;

@@ -12,6 +12,8 @@
 #define NOISE_MAX_DEG 30.0f
 #define NOISE_MAX_M 1.0e3f
 #define NOISE_MAX_PX 100.0f
+#define SIZE_MAX_M 1.0e3f
+#define SIZE_SHARE_MIN 0.01f      /* a class is known no better */
 #define NORM2_MIN (0.99f * 0.99f) /* the norm may be off by 1 % */
 #define NORM2_MAX (1.01f * 1.01f)
 
@@ -92,4 +94,20 @@ goe_status_t goe_intake_check_noise(const goe_image_noise_t *noise) {
                         pixel <= goe_magnitude(NOISE_MAX_PX);
     const bool negative = noise->attitude_sd_deg < 0.0f || noise->height_sd_m < 0.0f || noise->pixel_sd_px < 0.0f;
     return within && !negative ? GOE_OK : GOE_OUT_OF_RANGE;
+}
+
+static bool is_size(float size_m, float sd_m) {
+    return !(size_m < 0.0f) && goe_within(size_m, SIZE_MAX_M) &&
+           (!(size_m > 0.0f) || (goe_within(sd_m, SIZE_MAX_M) && sd_m >= SIZE_SHARE_MIN * size_m));
+}
+
+goe_status_t goe_intake_check_kind(const goe_kind_t *kind) {
+    const uint32_t width = goe_larger_bits(goe_magnitude(kind->width_m), goe_magnitude(kind->width_sd_m));
+    const uint32_t height = goe_larger_bits(goe_magnitude(kind->height_m), goe_magnitude(kind->height_sd_m));
+    if (goe_larger_bits(width, height) >= GOE_INFINITY_BITS) {
+        return GOE_NOT_FINITE;
+    }
+    const bool within = is_size(kind->width_m, kind->width_sd_m) && is_size(kind->height_m, kind->height_sd_m) &&
+                        kind->shape <= GOE_SHAPE_OTHER;
+    return within ? GOE_OK : GOE_OUT_OF_RANGE;
 }

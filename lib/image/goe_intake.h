@@ -9,5 +9,6 @@ goe_status_t goe_intake_check(const goe_motion_t *motion, const goe_image_t *ima
 
 /* The same of what only the filter method reads: GOE_OK, GOE_NOT_FINITE or GOE_OUT_OF_RANGE. */
 goe_status_t goe_intake_check_noise(const goe_image_noise_t *noise);
+goe_status_t goe_intake_check_kind(const goe_kind_t *kind);
 
 #endif

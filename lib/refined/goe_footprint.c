@@ -57,7 +57,6 @@ static float size_of(const goe_observation_t *obs, size_t side) {
 }
 
 /* The settings say that the obstacle is a disc. */
-static bool is_round(const goe_observation_t *obs) { return obs->settings->model == GOE_MODEL_DISC; }
 
 /* Derivatives of a row by the place that it touches, by the reference point as by the footprint. */
 /*@ requires \valid(by + (0 .. GOE_UNKNOWNS - 1)) && goe_observation_is_open(obs) && \valid_read(o) && \valid_read(g); */
@@ -135,7 +134,7 @@ static void add_rim(const goe_observation_t *obs, const goe_solid_t *o, float mo
     if (by == NULL) {
         return;
     }
-    *goe_rows_last_variance(rows) += is_round(obs) ? 0.0f : goe_square(2.0f * RIM_SHAPE * o->ellipse.half * g.z);
+    *goe_rows_last_variance(rows) += obs->round ? 0.0f : goe_square(2.0f * RIM_SHAPE * o->ellipse.half * g.z);
     const goe_xz_t gradient = {g.x, g.z};
     const goe_slide_t slide = goe_ellipse_slide(&o->ellipse, &contact, outward, gradient);
     const float along = goe_xz_dot(slide.by_outward, outward);
@@ -208,7 +207,7 @@ void goe_footprint_rows(const goe_observation_t *obs, goe_rows_t *rows) {
 static void fade(goe_filter_t *filter, const goe_observation_t *obs, const goe_rows_t *rows) {
     const float kept =
         goe_exp(-goe_absolute(turn_between(filter, goe_filter_measured(filter), obs->camera_m)) / SHAPE_TURN);
-    const float shape2 = is_round(obs) ? 0.0f : goe_square(SIDE_SHAPE * size_of(obs, GOE_BOX_LEFT));
+    const float shape2 = obs->round ? 0.0f : goe_square(SIDE_SHAPE * size_of(obs, GOE_BOX_LEFT));
     for (size_t side = 0; side < GOE_BOX_SIDES; side++) {
         const float share = obs->settings->detector.box_noise_rel;
         goe_side_memory_fade(&filter->side[side], obs->fade, goe_square(share * size_of(obs, side)));

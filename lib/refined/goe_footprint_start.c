@@ -8,6 +8,7 @@
 #include "maths/goe_angle.h"
 #include "maths/goe_scalar.h"
 #include "refined/goe_ground.h"
+#include "refined/goe_kind.h"
 #include "refined/goe_touch.h"
 
 #if GOE_WITH_FILTER
@@ -131,29 +132,50 @@ static bool see(const goe_observation_t *obs, sight_t *sight) {
     return true;
 }
 
-/* (R16): from flat ground, if the foot lies clearly below the horizon; otherwise from the typical size. */
-static float first_range_m(const goe_observation_t *obs, const sight_t *sight) {
+/* Angular height, 0 if not seen. */
+static float up_of(const sight_t *sight) {
+    return sight->head.usable && sight->foot.usable ? sight->foot.y - sight->head.y : 0.0f;
+}
+
+/* A first guess of the range, and one sigma of it as a share; 0: none. */
+typedef goe_kind_range_t guess_t;
+
+/* (R2), (R16): from flat ground, if the foot lies clearly below the horizon. */
+static guess_t guess_by_ground(const goe_observation_t *obs, const sight_t *sight) {
     const goe_settings_t *s = obs->settings;
     const float attitude =
         goe_square(s->navigation.attitude_bias_sd_deg * GOE_RAD_PER_DEG) + goe_square(obs->white_rad);
     const float pixel = sight->box ? obs->side_px / obs->camera->fy_px : goe_observation_pixel(obs);
     const float share = sight->box ? FOOT_SHARE * s->detector.box_noise_rel : 0.0f;
     const float foot_sd = sqrtf(attitude + goe_square(pixel) + goe_square(share * sight->size));
-    const bool grounded = sight->foot.usable && sight->foot.y > GROUND_SIGMAS * foot_sd &&
-                          obs->height_m > GROUND_SIGMAS * obs->height_sd_m;
     const float nearer = sight->box ? NEAR_SIDE * sight->size : 0.0f;
-    return grounded ? obs->height_m / sight->foot.y * (1.0f + nearer)
-                    : s->filter.prior_width_m / goe_larger(sight->size, BOX_SIZE_MIN);
+    guess_t guess = {0.0f, 0.0f};
+    if (sight->foot.usable && sight->foot.y > GROUND_SIGMAS * foot_sd &&
+        obs->height_m > GROUND_SIGMAS * obs->height_sd_m) {
+        guess.range_m = obs->height_m / sight->foot.y * (1.0f + nearer);
+        guess.share = sqrtf(goe_square(obs->height_sd_m / obs->height_m) + goe_square(foot_sd / sight->foot.y));
+    }
+    return guess;
+}
+
+/* The better of ground and class; without both, from the width that the settings assume. */
+static float first_range_m(const goe_observation_t *obs, const sight_t *sight) {
+    const guess_t ground = guess_by_ground(obs, sight);
+    const guess_t kind = goe_kind_range(obs->kind, sight->size, up_of(sight));
+    if (kind.share > 0.0f && (!(ground.share > 0.0f) || kind.share < ground.share)) {
+        return kind.range_m;
+    }
+    return ground.share > 0.0f ? ground.range_m
+                               : obs->settings->filter.prior_width_m / goe_larger(sight->size, BOX_SIZE_MIN);
 }
 
 static void set_root(const goe_observation_t *obs, const float state[GOE_STATES], float width, goe_triangle_t *root) {
-    const bool disc = obs->settings->model == GOE_MODEL_DISC;
     float sd[GOE_STATES];
     goe_observation_prior(obs, state, width, sd);
     sd[GOE_GROUND] = goe_larger(sqrtf(goe_ground_variance(obs)) * state[GOE_INVERSE_RANGE], GROUND_MIN);
-    sd[GOE_SHEAR] = (disc ? ROUND_SHEAR : SHEAR_FREEDOM) * state[GOE_HALF];
+    sd[GOE_SHEAR] = (obs->round ? ROUND_SHEAR : SHEAR_FREEDOM) * state[GOE_HALF];
     sd[GOE_HALF] = HALF_FREEDOM * width;
-    sd[GOE_LOG_DEPTH] = disc ? ROUND_FREEDOM : DEPTH_FREEDOM;
+    sd[GOE_LOG_DEPTH] = obs->round ? ROUND_FREEDOM : DEPTH_FREEDOM;
     goe_srif_from_sigmas(sd, root);
 }
 

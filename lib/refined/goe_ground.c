@@ -7,12 +7,12 @@
 
 #if GOE_WITH_FILTER
 
-#define UNKNOWN_SD_M 1.0e3f /* of a height that was not set */
-#define GROWN 1.0e-3f       /* of the information of the heights: less waits for more */
-#define NARROW 0.95f        /* of ground_scale: information too strong */
-#define WIDE 1.05f          /* ... not well enough */
-#define SCALE_MIN 0.05f     /* a smaller one counts as this */
-#define SCATTER_SEEDS 8     /* readings as configured, that their scatter is begun with */
+#define UNKNOWN_SD_M 1.0e3f  /* of a height that was not set */
+#define GROWN 1.0e-3f        /* of the information of the heights: less waits for more */
+#define NARROW 0.95f         /* of ground_scale: information too strong */
+#define WIDE 1.05f           /* ... not well enough */
+#define SCALE_MIN 0.05f      /* a smaller one counts as this */
+#define SCATTER_SEEDS 8      /* readings as configured, that their scatter is begun with */
 #define SCATTER_MEMORY 64.0f /* readings that it remembers */
 #define VARIANCE_MIN_M2 1.0e-12f
 

@@ -8,6 +8,7 @@
 #include "refined/goe_footprint.h"
 #include "refined/goe_footprint_start.h"
 #include "refined/goe_ground.h"
+#include "refined/goe_kind.h"
 
 #if GOE_WITH_FILTER
 
@@ -25,6 +26,7 @@ bool goe_model_start(goe_filter_t *filter, const goe_observation_t *obs) {
     goe_filter_enter(filter, GOE_PHASE_FOOTPRINT);
     memset(filter->side, 0, sizeof filter->side);
     goe_ground_start(filter, obs);
+    goe_kind_start(filter, obs);
     memset(filter->walk_s, 0, sizeof filter->walk_s);
     filter->due_s = 0.0f;
     filter->candidate.stand_in = false;
@@ -45,7 +47,7 @@ bool goe_model_change(goe_filter_t *filter, const goe_observation_t *obs) {
     if (goe_filter_traits(filter)->is_ellipse && obs->sides->usable != 0) {
         goe_ground_meet_box(filter);
     }
-    filter->candidate.stand_in = filter->candidate.stand_in || (obs->base && obs->settings->model != GOE_MODEL_DISC);
+    filter->candidate.stand_in = filter->candidate.stand_in || (obs->base && !obs->round);
     if (goe_filter_is_box(filter)) {
         return goe_box_change(filter, obs);
     }

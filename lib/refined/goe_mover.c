@@ -9,26 +9,26 @@
 
 #if GOE_AUGMENTED
 
-#define LATENCY_PRIOR_S 0.05f   /* one sigma of what poses are late by before anything is known */
-#define LATENCY_SHARE 0.25f     /* of a latency, one sigma: a rate of turn over a span stands for that at the exposure */
-#define SPREAD_GROWN 25.0f       /* of a velocity's variance, when the obstacle begins to be followed */
-#define LATE_MIN_S 0.02f        /* poses are reported as late from here on ... */
-#define LATE_SIGMAS 2.7f        /* ... and if it is that much more than nothing */
-#define RATE_PREDICTED 0.8f     /* of a rate of turn, by the one before it: the mean over usual swaying */
-#define MOVES_CHI2 25.0f        /* a velocity's two degrees of freedom: 4e-6 by chance, if nothing but noise is wrong */
-#define BOXES_CHI2 45.0f        /* the same of upright boxes, which drift also because they are no ellipse's */
-#define REST_CHI2 9.0f          /* something moves if a latency leaves at least this unexplained ... */
-#define REST_SHARE 0.15f        /* ... and a velocity at most this share of that */
-#define LATE_SHARE 0.3f         /* poses are late only if a velocity leaves more than this share of that */
-#define MOVING_SIGMAS2 9.0f     /* a late track moves as well if its velocity is that significant */
-#define MOVES_MIN_M_S 1.0f      /* a slower motion counts as none */
-#define MOVES_S 0.4f            /* for which it says so, image after image ... */
-#define MOVES_IMAGES 3          /* ... of which there are at least so many */
-#define SETTLED_S 1.4f          /* of informative images: less gives no velocity */
-#define SINCE_MAX_S 0.5f        /* a gap between images counts as that */
-#define COLUMN_MAX 1.0e3f       /* focal lengths per second, or per m/s: beyond that no flight is */
-#define AUGMENTED_MAX 1.0e9f    /* of the augmented states and their rows of the triangle: no flight has more */
-#define TIME_MIN_S 0.1f         /* keeps a walk over time finite */
+#define LATENCY_PRIOR_S 0.05f /* one sigma of what poses are late by before anything is known */
+#define LATENCY_SHARE 0.25f   /* of a latency, one sigma: a rate of turn over a span stands for that at the exposure */
+#define SPREAD_GROWN 25.0f    /* of a velocity's variance, when the obstacle begins to be followed */
+#define LATE_MIN_S 0.02f      /* poses are reported as late from here on ... */
+#define LATE_SIGMAS 2.7f      /* ... and if it is that much more than nothing */
+#define RATE_PREDICTED 0.8f   /* of a rate of turn, by the one before it: the mean over usual swaying */
+#define MOVES_CHI2 25.0f      /* a velocity's two degrees of freedom: 4e-6 by chance, if nothing but noise is wrong */
+#define BOXES_CHI2 45.0f      /* the same of upright boxes, which drift also because they are no ellipse's */
+#define REST_CHI2 9.0f        /* something moves if a latency leaves at least this unexplained ... */
+#define REST_SHARE 0.15f      /* ... and a velocity at most this share of that */
+#define LATE_SHARE 0.3f       /* poses are late only if a velocity leaves more than this share of that */
+#define MOVING_SIGMAS2 9.0f   /* a late track moves as well if its velocity is that significant */
+#define MOVES_MIN_M_S 1.0f    /* a slower motion counts as none */
+#define MOVES_S 0.4f          /* for which it says so, image after image ... */
+#define MOVES_IMAGES 3        /* ... of which there are at least so many */
+#define SETTLED_S 1.4f        /* of informative images: less gives no velocity */
+#define SINCE_MAX_S 0.5f      /* a gap between images counts as that */
+#define COLUMN_MAX 1.0e3f     /* focal lengths per second, or per m/s: beyond that no flight is */
+#define AUGMENTED_MAX 1.0e9f  /* of the augmented states and their rows of the triangle: no flight has more */
+#define TIME_MIN_S 0.1f       /* keeps a walk over time finite */
 #define DETERMINANT_MIN 1.0e-5f /* of a covariance of two, over the product of the variances */
 
 /*@ requires \valid(root) && i <= j < GOE_AUGMENTED; */
@@ -154,8 +154,10 @@ static bool fit_augmented(const goe_filter_t *filter, const goe_observation_t *o
     return true;
 }
 
-/* The image gives a scale that does not require a static obstacle: its foot, by the height. */
-static bool has_scale(const goe_observation_t *obs) { return goe_sides_see(obs->sides, GOE_SIDE_BOTTOM) || obs->base; }
+/* The image gives a scale that does not require a static obstacle: its foot, by the height, or a size by its class. */
+static bool has_scale(const goe_filter_t *filter, const goe_observation_t *obs) {
+    return goe_sides_see(obs->sides, GOE_SIDE_BOTTOM) || obs->base || filter->kind.used != 0;
+}
 
 /* Of the covariance (x, both; both, z). One too close to singular for float is taken as wide as it may be. */
 static float determinant_of(float x, float both, float z) {
@@ -268,7 +270,7 @@ bool goe_mover_judge(goe_filter_t *filter, const goe_observation_t *obs, const f
     }
     judge_latency(filter, &fit);
     const bool seen = is_moving(filter, &fit, since_s);
-    if (!seen || !has_scale(obs)) { /* an outline of another shape drifts, too, but fits */
+    if (!seen || !has_scale(filter, obs)) { /* an outline of another shape drifts, too, but fits */
         m->moves = m->moves || (seen && filter->health.mean_nis > obs->settings->filter.nis_ratio_max);
         return false;
     }

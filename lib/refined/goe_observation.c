@@ -14,7 +14,8 @@
 #define WHITE_MIN_DEG 1.0e-4f /* errors of an image: as of the settings */
 #define PIXEL_MIN_PX 0.05f
 #define HEIGHT_SD_MIN_M 1.0e-3f
-#define EXCESS_WEIGHT 4.0f    /* of the altimeter's scatter beyond the configured one: terrain, which is no noise, and one-sided */
+#define EXCESS_WEIGHT                                                                                                  \
+    4.0f /* of the altimeter's scatter beyond the configured one: terrain, which is no noise, and one-sided */
 #define WIDTH_AHEAD_MIN 0.01f /* of the reference point, in units of Z0 */
 #define HEADING_ARM 0.08f     /* s/m: a yaw bias this large per m/s looks like a velocity bias */
 #define BEARING_FREEDOM 1.0f  /* one sigma of the first guess of X0/Z0 */
@@ -22,6 +23,8 @@
 #define TOP_FREEDOM 10.0f     /* ... of the top, in the larger of top and width */
 #define WIDTH_MIN 1.0e-5f     /* between two ends, focal lengths */
 #define FORWARD_MIN 1.0e-4f   /* a predicted point is taken to lie at least this far ahead, in units of Z0 */
+
+static const goe_kind_t UNKNOWN; /* of a class that proved wrong */
 
 /* Left must lie left of right, or neither counts. Where base_near lies between them is not asked: the gate judges it. */
 static bool in_order(goe_point_t *left, goe_point_t *right) {
@@ -128,6 +131,11 @@ static void note_pace(goe_observation_t *obs, const goe_filter_t *filter, const 
 #endif
 }
 
+/* A class knows better than a setting. */
+static bool starts_round(goe_model_t asked, const goe_kind_t *kind) {
+    return kind->shape != GOE_SHAPE_UNKNOWN ? kind->shape == GOE_SHAPE_ROUND : asked == GOE_MODEL_DISC;
+}
+
 unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *settings, const goe_filter_t *filter,
                               const goe_view_t *view) {
     obs->settings = settings;
@@ -139,6 +147,8 @@ unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *sett
     find_body(obs, view->camera_to_body);
     obs->camera_m = goe_filter_camera(filter, view->motion);
     obs->sides = &view->sides;
+    obs->kind = filter->kind.wrong ? &UNKNOWN : &view->image->kind;
+    obs->round = goe_filter_has_started(filter) ? filter->kind.round : starts_round(settings->model, obs->kind);
     obs->height_m = filter->datum.height_m;
     obs->fade = 0.0f;
     obs->position_sd = 0.0f;

@@ -16,6 +16,7 @@ typedef struct {
     goe_xz_t camera_m; /* camera since the filter's start, the state's axes */
     float height_m;    /* camera above ground: by the changes of down, see goe_datum_t */
     const goe_sides_t *sides;
+    const goe_kind_t *kind;
     float height_sd_m;       /* one sigma of its error above the obstacle's ground, without its slope */
     float since_s;           /* the image before */
     float fade;              /* what the error of a box's side keeps since the image used before */
@@ -27,6 +28,7 @@ typedef struct {
     float depth_variance;    /* box: of GOE_DEPTH_DIFFERENCE */
     bool two_faces;          /* box: both were visible, its length is estimated */
     bool stand_in;           /* footprint: it substitutes for a box */
+    bool round;              /* by its class, or by the settings */
     bool base;               /* both outer base corners are visible */
     bool edge;               /* an edge of the base is visible */
     uint8_t number;          /* of the camera */

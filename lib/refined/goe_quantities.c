@@ -354,8 +354,8 @@ static void doubt_far_roof(const goe_filter_t *filter, bool highest, goe_shape_t
 }
 
 /* Points of a silhouette do not show that the footprint is no ellipse. */
-static void doubt_shape(const goe_filter_t *filter, goe_model_t asked, goe_shape_t *shape) {
-    if (goe_filter_traits(filter)->is_ellipse && !goe_filter_by_boxes(filter) && asked != GOE_MODEL_DISC) {
+static void doubt_shape(const goe_filter_t *filter, goe_shape_t *shape) {
+    if (goe_filter_traits(filter)->is_ellipse && !goe_filter_by_boxes(filter) && !filter->kind.round) {
         shape->place_m2 += goe_square(SHAPE_SHARE * shape->quantity[GOE_WIDTH].value);
     }
 }
@@ -371,7 +371,7 @@ static void widening_of(const goe_filter_t *filter, const goe_settings_t *settin
                         drift_t drift, goe_shape_t *shape, widening_t *wider) {
     wider->scatter = goe_scatter_factor(filter, goe_gate_repeated(filter, settings->detector.point_correlation));
     goe_srif_reciprocals(&filter->root, wider->reciprocal);
-    doubt_shape(filter, settings->model, shape);
+    doubt_shape(filter, shape);
     doubt_far_roof(filter, settings->filter.top_is_highest, shape);
     shape->top_m2 = shape->roof_m2 > 0.0f ? top_variance(motion, drift, shape) : 0.0f;
 }
@@ -395,7 +395,7 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
     wider.bend = bend_of(filter, false);
     q->before_m2 = variance_before(filter, &settings->navigation, motion);
     q->box = goe_filter_is_box(filter);
-    q->model = q->box ? GOE_MODEL_BOX : (settings->model == GOE_MODEL_DISC ? GOE_MODEL_DISC : GOE_MODEL_PRISM);
+    q->model = q->box ? GOE_MODEL_BOX : (filter->kind.round ? GOE_MODEL_DISC : GOE_MODEL_PRISM);
     q->length_axis = shape.length_axis;
     set_quantities(filter, motion, &shape, drift, &wider, q, place);
     const goe_xz_t gone = goe_filter_moved(filter, motion);

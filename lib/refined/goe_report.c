@@ -94,9 +94,10 @@ static bool is_misfit(const goe_health_t *health, float most) {
     return health->images >= SUSPECT_IMAGES && health->mean_nis > most;
 }
 
-/* A disc was configured, and it is none. */
-static bool is_forced(const goe_filter_t *filter, goe_model_t asked) {
-    return asked == GOE_MODEL_DISC && goe_filter_traits(filter)->is_ellipse && goe_footprint_is_forced(filter);
+/* It was said to be round, or to have a size, and has not. */
+static bool is_forced(const goe_filter_t *filter) {
+    return filter->kind.wrong ||
+           (filter->kind.round && goe_filter_traits(filter)->is_ellipse && goe_footprint_is_forced(filter));
 }
 
 static bool moves(const goe_filter_t *filter) {
@@ -125,7 +126,7 @@ static goe_reason_t reason_of(const goe_filter_t *filter, const goe_settings_t *
     if (health->base_refused) {
         return GOE_REASON_BASE;
     }
-    if (is_forced(filter, settings->model)) {
+    if (is_forced(filter)) {
         return GOE_REASON_SHAPE;
     }
     if (is_late(filter)) {

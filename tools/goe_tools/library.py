@@ -76,6 +76,7 @@ class Images:
     reset_m: np.ndarray | None = None  # (K, 3) size of its jump; NaN: unknown
     velocity_m_s: np.ndarray | None = None  # (K, 3) intended, for goe_hazard
     plans: tuple[Plan, ...] = ()
+    kind: np.ndarray | None = None  # (K, 5) of goe_kind_t: width, sigma, height, sigma, shape
     camera: np.ndarray | None = None  # (K,) camera number; the settings more_cameras[0] describe number 1
 
 
@@ -198,7 +199,7 @@ def to_package(images: Images) -> Any:
     """Converts to goe.Images."""
     return package().Images(
         np.rint(images.time_s * 1e6).astype(np.int64), images.position_ned_m, images.attitude, images.height_m,
-        images.box_px, images.pixel_px, images.seen, images.reset_count, images.reset_m, camera=images.camera,
+        images.box_px, images.pixel_px, images.seen, images.reset_count, images.reset_m, kind=images.kind, camera=images.camera,
         velocity_ned_m_s=images.velocity_m_s,
     )  # fmt: skip
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from enum import IntEnum
 from typing import Any, NamedTuple
 
 from ._goe import lib
@@ -83,6 +84,34 @@ class ImageNoise(Renamed):
     """Instead of the detector's ``point_noise_px`` and ``box_noise_px``, px; up to 100."""
 
 
+class Shape(IntEnum):
+    """What the detector's class says of the obstacle's shape."""
+
+    UNKNOWN = 0
+    """As the settings have it."""
+    ROUND = 1
+    """An upright cylinder: as with the setting ``Model.DISC``."""
+    OTHER = 2
+    """None, also with that setting."""
+
+
+@dataclass
+class Kind:
+    """What the detector's class says of the obstacle; None: unknown. Filter method. The images test it: a class that they
+    contradict is not used any more, and the estimate's reason is ``Reason.SHAPE``."""
+
+    width_m: float | None = None
+    """Width of the silhouette, from any side, m; up to 1e3."""
+    width_sd_m: float = 0.0
+    """One sigma of it, m; at least 1 % of the width."""
+    height_m: float | None = None
+    """Height, m; up to 1e3."""
+    height_sd_m: float = 0.0
+    """One sigma of it, m; at least 1 % of the height."""
+    shape: Shape = Shape.UNKNOWN
+    """Whether it is round."""
+
+
 @dataclass
 class Image:
     """One image of one obstacle: a box, or points, or both. Any subset may be visible; none: pass it anyway."""
@@ -105,6 +134,8 @@ class Image:
     """What detectors give. It replaces left, right and top, which are not read then."""
     noise: ImageNoise = field(default_factory=ImageNoise)
     """This image's own errors."""
+    kind: Kind = field(default_factory=Kind)
+    """What the detector's class says of it."""
     camera: int = 0
     """Number of the camera that took it."""
 
@@ -139,4 +170,7 @@ def fill_image(c: Any, image: Image) -> None:
     c.noise.attitude_sd_deg = image.noise.attitude_sd_deg or 0.0
     c.noise.height_sd_m = image.noise.height_sd_m or 0.0
     c.noise.pixel_sd_px = image.noise.pixel_sd_px or 0.0
+    c.kind.width_m, c.kind.width_sd_m = image.kind.width_m or 0.0, image.kind.width_sd_m
+    c.kind.height_m, c.kind.height_sd_m = image.kind.height_m or 0.0, image.kind.height_sd_m
+    c.kind.shape = int(image.kind.shape)
     c.camera = image.camera

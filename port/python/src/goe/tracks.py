@@ -88,6 +88,8 @@ class Images(Renamed):
     """(K, 3) by what it jumped; NaN: not known. None: of no reset."""
     noise: Any = None
     """(K, 3) this image's own sigmas: attitude, degrees; height, m; pixels, px; 0: as in the settings."""
+    kind: Any = None
+    """(K, 5) what the detector's class says: width and its sigma, height and its sigma, m, 0: not known; ``Shape``."""
     camera: Any = None
     """(K,) number of the camera that took it. None: the first."""
     velocity_ned_m_s: Any = None
@@ -118,6 +120,10 @@ class Images(Renamed):
         if self.noise is not None:
             columns = _shaped(self.noise, (count, 3), "noise").T
             noise["attitude_sd_deg"], noise["height_sd_m"], noise["pixel_sd_px"] = columns
+        if self.kind is not None:
+            columns = _shaped(self.kind, (count, 5), "kind").T
+            for name, column in zip(("width_m", "width_sd_m", "height_m", "height_sd_m", "shape"), columns):
+                c["kind"][name] = column
         if self.camera is not None:
             _put(c, "camera", self.camera, "camera")
 
