@@ -182,6 +182,8 @@ typedef struct {
     goe_pixel_t left, right, top, base_left, base_near, base_right; /* left, right, top in the image's border zone
                                                                        count as invisible; so does top if left or
                                                                        right does */
+    goe_kind_t kind; /* what the detector's class says of the obstacle; 0: unknown. A kind that is not finite or out of range is
+                        counted and treated as unknown */
 } goe_flight_detection_t;
 
 typedef struct {
@@ -286,7 +288,7 @@ typedef struct {
     uint16_t taken;   /* accepted frames */
     uint16_t late;    /* frames that came too late for the history */
     uint16_t early;   /* calls that returned GOE_FLIGHT_TOO_NEW */
-    uint16_t refused; /* samples, frames or detections that were not finite or out of range */
+    uint16_t refused; /* samples, frames, detections or kinds that were not finite or out of range */
     uint16_t weak;    /* detections below score_min */
     uint16_t renumbered; /* tracks that took over a new id */
     uint16_t evicted; /* tracks that ended because a new obstacle took their slot */
@@ -472,7 +474,7 @@ goe_flight_status_t goe_flight_pose(const goe_flight_t *flight, uint32_t time_us
 goe_flight_status_t goe_flight_timesync(goe_flight_t *flight, uint32_t offset_us, uint32_t sd_us);
 
 /* Takes the detections of an image:
- *   - A detection that is not finite or out of range is ignored and counted.
+ *   - A detection that is not finite or out of range is ignored and counted; of a bad kind, the kind alone.
  *   - A detection with a known id updates the slot with that id.
  *   - A detection with a new id takes over the track whose predicted position fits its box best, if no other detection of the call
  *     fits better. That track has no detection in this image so far. Before the image's last call it had none in the image

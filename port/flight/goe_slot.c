@@ -12,6 +12,8 @@
 #define ALIKE 3.0f /* a box this many times as wide or high as the latest one is of another thing */
 #define PIXEL_MAX 32000.0f
 #define SIZE_MIN_PX 8.0f
+#define KIND_MAX_M 1.0e3f
+#define KIND_SHARE_MIN 0.01f /* of a size: the least sigma that the estimator takes */
 #define LOCATED_S                                                                                                      \
     0.15f /* detections for so long without a new position show something else; shorter: images too soon */
 
@@ -79,6 +81,16 @@ static void keep_inside(goe_image_t *image, const goe_flight_camera_t *camera) {
     image->top.visible = goe_flight_is_set(&image->top.visible) && all;
 }
 
+static bool is_good_size(float size_m, float sd_m) {
+    return goe_flight_within(size_m, KIND_MAX_M) && !(size_m < 0.0f) && goe_flight_finite(sd_m) &&
+           (!(size_m > 0.0f) || (goe_flight_within(sd_m, KIND_MAX_M) && sd_m >= KIND_SHARE_MIN * size_m));
+}
+
+bool goe_flight_slot_is_good_kind(const goe_kind_t *kind) {
+    return is_good_size(kind->width_m, kind->width_sd_m) && is_good_size(kind->height_m, kind->height_sd_m) &&
+           kind->shape <= GOE_SHAPE_OTHER;
+}
+
 static void set_features(goe_image_t *image, const goe_flight_camera_t *camera, const goe_flight_detection_t *seen) {
     image->box = seen->box;
     image->left = seen->left;
@@ -88,6 +100,9 @@ static void set_features(goe_image_t *image, const goe_flight_camera_t *camera, 
     image->base_near = seen->base_near;
     image->base_right = seen->base_right;
     image->noise.pixel_sd_px = seen->pixel_px;
+    if (goe_flight_slot_is_good_kind(&seen->kind)) {
+        image->kind = seen->kind;
+    }
     keep_inside(image, camera);
 }
 

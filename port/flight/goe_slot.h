@@ -38,6 +38,9 @@ void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t cam
                           const goe_flight_slot_view_t *view, const float jumps_ned_m[3],
                           const goe_flight_detection_t *seen);
 
+/* Whether the estimator takes this kind. goe_flight_slot_take() leaves out any other one, as the estimator would refuse the image. */
+bool goe_flight_slot_is_good_kind(const goe_kind_t *kind);
+
 /* Computes a detection's box in whole pixels, from its box or its points. Returns false if it has neither. */
 bool goe_flight_slot_box_of(const goe_flight_detection_t *detection, int16_t box_px[4]);
 

@@ -40,7 +40,7 @@ static bool is_good(const goe_flight_detection_t *d) {
            is_good_pixel(&d->base_right);
 }
 
-/* Detections to be used, as bits; the others are counted. *readable: there is a readable detection, or the image has none. */
+/* Detections to be used, as bits; the others are counted, and so are bad kinds of used ones. *readable: there is a readable detection, or the image has none. */
 static uint32_t usable(goe_flight_t *flight, const goe_flight_slot_view_t *view, const goe_flight_frame_t *frame,
                        bool *readable) {
     uint32_t bits = 0u;
@@ -53,6 +53,9 @@ static uint32_t usable(goe_flight_t *flight, const goe_flight_slot_view_t *view,
             goe_flight_count(&flight->counters.weak);
             *readable = true;
         } else {
+            if (!goe_flight_slot_is_good_kind(&frame->detection[k].kind)) {
+                goe_flight_count(&flight->counters.refused);
+            }
             bits |= 1u << k;
             *readable = true;
         }

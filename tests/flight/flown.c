@@ -61,6 +61,7 @@ goe_flight_detection_t flown_detection(const flown_t *flown, int k) {
     detection.id = flown->id;
     detection.score = flown->score;
     detection.box = image.box;
+    detection.kind = flown->kind;
     detection.left = image.left;
     detection.right = image.right;
     detection.top = image.top;

@@ -18,6 +18,7 @@ typedef struct {
     int sample;        /* next */
     uint32_t id;       /* of the detection */
     float score;
+    goe_kind_t kind;           /* of its class; 0: unknown */
     bool detects;              /* the detector sees the obstacle */
     bool points;               /* it gives points and base corners, no box */
     uint32_t reset_horizontal; /* in all samples from now on ... */

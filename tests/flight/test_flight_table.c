@@ -49,6 +49,32 @@ static void an_obstacle_is_found_where_it_is(void) {
     TEST_ASSERT_TRUE(obstacle.in_view && !obstacle.receding && obstacle.has_hazard);
 }
 
+/* Sigma of the range, m, after so many seconds with detections of this kind. */
+static double sigma_m_of(goe_kind_t kind, double seconds) {
+    goe_flight_obstacle_t obstacle;
+    flown_start(&flown, NULL);
+    flown.scene.width_m = flown.scene.length_m = 4.0;
+    flown.scene.height_m = 12.0;
+    flown.kind = kind;
+    (void)flown_fly(&flown, seconds);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_obstacle(&flown.flight, 0, &obstacle));
+    TEST_ASSERT_TRUE((obstacle.valid & GOE_HAS_POSITION) != 0u);
+    return sqrt((double)obstacle.covariance_ne_m2[0]);
+}
+
+/* GIVEN detections of a class THEN its size reaches the estimator, which knows the range better; a bad size changes nothing. */
+static void the_size_of_a_class_is_used(void) {
+    const goe_kind_t unknown = {0.0f, 0.0f, 0.0f, 0.0f, GOE_SHAPE_UNKNOWN};
+    const goe_kind_t known = {4.0f, 0.2f, 12.0f, 0.3f, GOE_SHAPE_UNKNOWN};
+    const goe_kind_t bad = {4.0f, 0.2f, 12.0f, NAN, GOE_SHAPE_UNKNOWN};
+    const double without_m = sigma_m_of(unknown, 2.0);
+    const double with_m = sigma_m_of(known, 2.0);
+    check_report("sigma without and with the size, m", without_m);
+    check_report("", with_m);
+    TEST_ASSERT_TRUE(with_m < 0.8 * without_m);
+    CHECK_CLOSE(0.0, without_m, sigma_m_of(bad, 2.0));
+}
+
 /* Of what the estimator knows, and the manual of the layer lists, and nothing else. */
 static void valid_lists_the_fields_of_an_obstacle(void) {
     const unsigned reported =
@@ -618,6 +644,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(an_unassigned_detection_belongs_to_no_track);
     RUN_TEST(an_obstacle_is_found_where_it_is);
+    RUN_TEST(the_size_of_a_class_is_used);
     RUN_TEST(valid_lists_the_fields_of_an_obstacle);
     RUN_TEST(a_track_without_a_position_is_not_suspect);
     RUN_TEST(a_dead_detector_stays_dead);

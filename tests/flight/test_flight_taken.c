@@ -119,6 +119,47 @@ static void points_and_numbers_have_their_ranges(void) {
     }
 }
 
+/* The kind that reaches the estimator, of a detection whose box is good; *counted: by how much `refused` grew. */
+static void give_kind(goe_kind_t kind, int *counted) {
+    flown_t copy = flown;
+    goe_flight_detection_t d = good_detection();
+    d.kind = kind;
+    const goe_flight_frame_t frame = flown_frame(&copy, copy.sample - 1, &d, 1);
+    const int before = copy.flight.counters.refused;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(&copy.flight, &frame));
+    *counted = copy.flight.counters.refused - before;
+    const goe_flight_slot_t *slot = &copy.flight.slot[0];
+    TEST_ASSERT_TRUE(slot->used && slot->id == NEW_ID && !slot->fresh_track); /* the estimator took the image */
+}
+
+/* [goe_flight_detection_t.kind] A bad kind is counted, and the box is used without it. */
+static void a_bad_kind_loses_no_box(void) {
+    static const struct {
+        goe_kind_t kind;
+        int refused;
+    } cases[] = {
+        {{0.0f, 0.0f, 0.0f, 0.0f, GOE_SHAPE_UNKNOWN}, 0},
+        {{2.0f, 0.02f, 1000.0f, 1000.0f, GOE_SHAPE_OTHER}, 0},
+        {{0.0f, -1.0f, 1.7f, 0.1f, GOE_SHAPE_ROUND}, 0}, /* the sigma of no size is not read */
+        {{NAN, 1.0f, 1.7f, 0.1f, 0u}, 1},
+        {{3.2f, NAN, 1.7f, 0.1f, 0u}, 1},
+        {{0.0f, NAN, 1.7f, 0.1f, 0u}, 1},
+        {{3.2f, 0.9f, INFINITY, 0.1f, 0u}, 1},
+        {{3.2f, 0.9f, 1.7f, INFINITY, 0u}, 1},
+        {{-0.1f, 1.0f, 1.7f, 0.1f, 0u}, 1},
+        {{3.2f, 0.9f, 1000.1f, 100.0f, 0u}, 1},
+        {{3.2f, 1000.1f, 1.7f, 0.1f, 0u}, 1},
+        {{3.2f, 0.9f, 1.7f, 0.016f, 0u}, 1},
+        {{3.2f, 0.0f, 1.7f, 0.1f, 0u}, 1},
+        {{3.2f, 0.9f, 1.7f, 0.1f, 3u}, 1},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        int counted;
+        give_kind(cases[i].kind, &counted);
+        TEST_ASSERT_EQUAL(cases[i].refused, counted);
+    }
+}
+
 /* -------------------------------------------------------------------------------------------------------------- free place -- */
 
 static void put_any(goe_flight_t *to, int i, uint32_t now_us) {
@@ -373,6 +414,7 @@ int main(void) {
     RUN_TEST(sides_count_by_their_visible_part);
     RUN_TEST(a_box_has_an_inside);
     RUN_TEST(points_and_numbers_have_their_ranges);
+    RUN_TEST(a_bad_kind_loses_no_box);
     RUN_TEST(a_new_obstacle_takes_the_place_of_the_least_worth);
     RUN_TEST(an_old_track_is_given_up);
     RUN_TEST(overlap_is_the_share_of_the_union);
