@@ -26,8 +26,8 @@ OWN_BUILD = "CMakeLists.txt"  # ... of the package itself
 TYPES = {
     "goe.h": (
         "goe_status_t", "goe_model_t", "goe_method_t", "goe_pose_t", "goe_pixel_t", "goe_box_t", "goe_image_noise_t",
-        "goe_kind_t", "goe_image_t", "goe_sigma_t", "goe_reason_t", "goe_estimate_t", "goe_intent_t", "goe_hazard_t", "goe_rule_t",
-        "goe_decision_t",
+        "goe_kind_t", "goe_image_t", "goe_sigma_t", "goe_reason_t", "goe_estimate_t", "goe_intent_t", "goe_hazard_t",
+        "goe_rule_t", "goe_decision_t",
     ),
     "goe_python.h": ("goe_python_setting_t", "goe_python_rule_t"),
     "goe_flight.h": (

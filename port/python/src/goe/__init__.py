@@ -36,7 +36,7 @@ from .estimate import Center, Estimate, Length, Orientation, Position, Velocity
 from .estimator import Estimator, run, run_parallel
 from .flight import Flight
 from .hazard import Decision, DecisionRule, Hazard, Intent, Rule
-from .image import POINTS, SIDES, TIME_UNKNOWN, BoundingBox, Image, ImageNoise, Kind, Pixel, Pose, Shape
+from .image import POINTS, SIDES, TIME_UNKNOWN, BoundingBox, Image, ImageNoise, Kind, KindShape, Pixel, Pose
 from .settings import (
     CAMERAS_MAX,
     Camera,
@@ -65,8 +65,8 @@ __version__: str = "{}.{}.{}".format(*(getattr(_lib, f"GOE_VERSION_{part}") for 
 __all__ = [
     "CAMERAS_MAX", "ESTIMATE", "FINGERPRINT", "HAZARD", "IMAGE", "POINTS", "QUANTITIES", "SIDES", "TIME_UNKNOWN",
     "BoundingBox", "Camera", "Center", "Decision", "DecisionRule", "Detector", "Estimate", "Estimator",
-    "FilterSettings", "Flight", "FlightSettings", "Hazard", "Image", "ImageNoise", "Images", "Intent", "Kind", "Length",
-    "Method", "Model", "Navigation", "Orientation", "Pixel", "Pose", "Position", "Reason", "Rule", "SettingError",
-    "Settings", "Shape", "Status", "Track", "Velocity", "WindowSettings", "flight", "run", "run_parallel", "self_check",
-    "setting_rows",
+    "FilterSettings", "Flight", "FlightSettings", "Hazard", "Image", "ImageNoise", "Images", "Intent", "Kind",
+    "KindShape", "Length", "Method", "Model", "Navigation", "Orientation", "Pixel", "Pose", "Position", "Reason",
+    "Rule", "SettingError", "Settings", "Shape", "Status", "Track", "Velocity", "WindowSettings", "flight", "run",
+    "run_parallel", "self_check", "setting_rows",
 ]  # fmt: skip

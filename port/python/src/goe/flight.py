@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import Any, NamedTuple
 
@@ -23,7 +23,7 @@ from ._goe import ffi, lib
 from ._renamed import Renamed
 from .estimate import BITS, MODELS, Length
 from .hazard import Hazard, hazard_of
-from .image import BoundingBox, Pixel, Pose, fill_box, fill_points, vector
+from .image import BoundingBox, Kind, Pixel, Pose, fill_box, fill_kind, fill_points, vector
 from .settings import FlightSettings, Settings
 from .status import Model, SettingError
 
@@ -194,6 +194,8 @@ class Detection:
     base_right: Pixel | None = None
     pixel_px: float | None = None
     """One sigma of box and points, px, instead of the settings'; up to 100."""
+    kind: Kind = field(default_factory=Kind)
+    """What the detector's class says of it. A bad one is counted, and not used."""
 
 
 @dataclass
@@ -315,7 +317,7 @@ class Counters(NamedTuple):
     early: int
     """Calls that were answered by TOO_NEW."""
     refused: int
-    """Samples, frames or detections that were not finite or out of range."""
+    """Samples, frames, detections or kinds that were not finite or out of range."""
     weak: int
     """Detections below ``score_min``."""
     renumbered: int
@@ -369,6 +371,7 @@ def _fill_detection(c: Any, detection: Detection) -> None:
     c.pixel_px = detection.pixel_px or 0.0
     fill_box(c.box, detection.bounding_box)
     fill_points(c, detection)
+    fill_kind(c.kind, detection.kind)
 
 
 class Flight:

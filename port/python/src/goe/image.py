@@ -84,7 +84,7 @@ class ImageNoise(Renamed):
     """Instead of the detector's ``point_noise_px`` and ``box_noise_px``, px; up to 100."""
 
 
-class Shape(IntEnum):
+class KindShape(IntEnum):
     """What the detector's class says of the obstacle's shape."""
 
     UNKNOWN = 0
@@ -94,10 +94,13 @@ class Shape(IntEnum):
     OTHER = 2
     """None, also with that setting."""
 
+    def __str__(self) -> str:
+        return self.name.lower()
+
 
 @dataclass
 class Kind:
-    """What the detector's class says of the obstacle; None: unknown. Filter method. The images test it: a class that they
+    """What the detector's class says of the obstacle, for the filter method; None: unknown. A class that the images
     contradict is not used any more, and the estimate's reason is ``Reason.SHAPE``."""
 
     width_m: float | None = None
@@ -108,7 +111,7 @@ class Kind:
     """Height, m; up to 1e3."""
     height_sd_m: float = 0.0
     """One sigma of it, m; at least 1 % of the height."""
-    shape: Shape = Shape.UNKNOWN
+    shape: KindShape = KindShape.UNKNOWN
     """Whether it is round."""
 
 
@@ -154,6 +157,12 @@ def fill_box(c: Any, box: BoundingBox | None) -> None:
     c.sides = sum(bit for bit, side in zip(SIDE_BITS, sides) if side is not None)
 
 
+def fill_kind(c: Any, kind: Kind) -> None:
+    c.width_m, c.width_sd_m = kind.width_m or 0.0, kind.width_sd_m
+    c.height_m, c.height_sd_m = kind.height_m or 0.0, kind.height_sd_m
+    c.shape = int(kind.shape)
+
+
 def fill_image(c: Any, image: Image) -> None:
     """Writes all of a goe_image_t."""
     pose, to = image.pose, c.pose
@@ -170,7 +179,5 @@ def fill_image(c: Any, image: Image) -> None:
     c.noise.attitude_sd_deg = image.noise.attitude_sd_deg or 0.0
     c.noise.height_sd_m = image.noise.height_sd_m or 0.0
     c.noise.pixel_sd_px = image.noise.pixel_sd_px or 0.0
-    c.kind.width_m, c.kind.width_sd_m = image.kind.width_m or 0.0, image.kind.width_sd_m
-    c.kind.height_m, c.kind.height_sd_m = image.kind.height_m or 0.0, image.kind.height_sd_m
-    c.kind.shape = int(image.kind.shape)
+    fill_kind(c.kind, image.kind)
     c.camera = image.camera

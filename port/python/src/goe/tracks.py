@@ -89,7 +89,7 @@ class Images(Renamed):
     noise: Any = None
     """(K, 3) this image's own sigmas: attitude, degrees; height, m; pixels, px; 0: as in the settings."""
     kind: Any = None
-    """(K, 5) what the detector's class says: width and its sigma, height and its sigma, m, 0: not known; ``Shape``."""
+    """(K, 5) what the detector's class says: width, its sigma, height, its sigma, m; ``KindShape``; 0: not known."""
     camera: Any = None
     """(K,) number of the camera that took it. None: the first."""
     velocity_ned_m_s: Any = None
