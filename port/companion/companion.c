@@ -82,6 +82,7 @@ static void on_line(void *user, const char *line, size_t length) {
     const detection_now_t now = {clock_us(CLOCK_REALTIME), now_us, autopilot_clock_us(&c->autopilot, now_us),
                                  autopilot_clock_sd_us(&c->autopilot)};
     if (detection_text_read(line, length, &c->config, &now, &c->image, &fault)) {
+        c->counts.classless += c->image.unknown_classes;
         take_image(c);
     } else {
         c->counts.unread++;

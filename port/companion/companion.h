@@ -26,6 +26,7 @@ typedef struct {
     unsigned long late;      /* frames that came too late or had no pose */
     unsigned long unread;    /* invalid lines and messages */
     unsigned long clockless; /* lines and images that came before the autopilot's clock was known */
+    unsigned long classless; /* detections of a class whose size is not known */
 } companion_counts_t;
 
 /* Rates and delays of the latest second. */

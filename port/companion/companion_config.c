@@ -48,6 +48,7 @@ static const config_key_t keys[] = {
     {"detections.delay_sd_s", AT(detections_delay_sd_s), KEY_NUMBER, 0.0001, 0.5, 0.02, NULL},
     {"detections.shares_clock", AT(detections_shares_clock), KEY_WHOLE, 0, 1, 0, NULL},
     {"detections.classes", AT(detections_classes), KEY_TEXT, 0, 0, 0, ""},
+    {"detections.class_names", AT(detections_class_names), KEY_TEXT, 0, 0, 0, ""},
     {"camera.file", AT(camera_file), KEY_TEXT, 0, 0, 0, "camera.ini"},
     {"reaction.mode", AT(reaction_mode), KEY_CHOICE, 0, 0, REACTION_OFF, "off px4 arduplane"},
     {"reaction.modes", AT(reaction_modes), KEY_LIST, 0, 0, 3,

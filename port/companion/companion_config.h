@@ -40,9 +40,10 @@ typedef struct {
     unsigned detections_mavlink; /* DETECTIONS_... */
     double detections_delay_s, detections_delay_sd_s;
     uint32_t detections_shares_clock;
-    char detections_classes[CONFIG_TEXT_MAX]; /* names with single blanks around each; empty: all */
-    char camera_file[CONFIG_TEXT_MAX];        /* path, no longer relative to the configuration */
-    goe_settings_t estimator;                 /* camera included */
+    char detections_classes[CONFIG_TEXT_MAX];     /* names with single blanks around each; empty: all */
+    char detections_class_names[CONFIG_TEXT_MAX]; /* of the numbers 0, 1, ... */
+    char camera_file[CONFIG_TEXT_MAX];            /* path, no longer relative to the configuration */
+    goe_settings_t estimator;                     /* camera included */
     goe_flight_settings_t flight;
     reaction_mode_t reaction_mode;
     unsigned reaction_modes; /* px4: bits of mission, hold, offboard, position, altitude, rtl, land, takeoff */

@@ -8,13 +8,13 @@
 #include <string.h>
 
 #include "number_text.h"
+#include "obstacle_class.h"
 
 #define US_PER_S 1.0e6
 #define AHEAD_MAX_S 0.05 /* clocks may be apart by this much before a time counts as one of the future */
 #define AGE_MAX_S 60.0   /* an older image is another clock's */
 #define SD_MAX_US 1.0e6
 #define ID_MAX 4294967295.0
-#define CLASS_MAX 64
 
 static bool fail(detection_fault_t *fault, const char *format, ...) {
     va_list arguments;
@@ -163,14 +163,48 @@ static bool read_box(const json_t *object, goe_box_t *box, detection_fault_t *fa
     return true;
 }
 
-static bool is_wanted(const json_t *object, const char *classes) {
-    char padded[CLASS_MAX + 3];
-    const char *name = json_string_value(member(object, "class", NULL));
+typedef struct {
+    char name[OBSTACLE_CLASS_NAME_MAX + 1]; /* empty: no name of a usual length */
+    bool given;
+} class_name_t;
+
+/* The name at a place of a list with blanks between its names; empty: the list is shorter. */
+static class_name_t name_at(const char *names, json_int_t place) {
+    class_name_t found = {"", true};
+    const char *name = names + strspn(names, " ");
+    for (json_int_t i = 0; i < place && *name != '\0'; i++) {
+        name += strcspn(name, " ");
+        name += strspn(name, " ");
+    }
+    const size_t length = strcspn(name, " ");
+    if (place >= 0 && length <= OBSTACLE_CLASS_NAME_MAX) {
+        (void)memcpy(found.name, name, length);
+    }
+    return found;
+}
+
+/* A name, or else a number, of which `names` are the names. */
+static class_name_t class_of(const json_t *object, const char *names) {
+    class_name_t found = {"", false};
+    const json_t *number = member(object, "class", NULL);
+    const char *name = json_string_value(number);
     name = name != NULL ? name : json_string_value(member(object, "name", NULL));
-    if (*classes == '\0' || name == NULL || strlen(name) > CLASS_MAX) {
+    if (name == NULL && json_is_integer(number)) {
+        return name_at(names, json_integer_value(number));
+    }
+    found.given = name != NULL;
+    if (name != NULL && strlen(name) <= OBSTACLE_CLASS_NAME_MAX) {
+        (void)strcpy(found.name, name);
+    }
+    return found;
+}
+
+static bool is_wanted(const class_name_t *class_name, const char *classes) {
+    char padded[OBSTACLE_CLASS_NAME_MAX + 3];
+    if (*classes == '\0' || *class_name->name == '\0') {
         return *classes == '\0';
     }
-    (void)snprintf(padded, sizeof padded, " %s ", name);
+    (void)snprintf(padded, sizeof padded, " %s ", class_name->name);
     return strstr(classes, padded) != NULL;
 }
 
@@ -202,16 +236,21 @@ static bool read_detection(const json_t *object, goe_flight_detection_t *detecti
     return detection->box.sides != 0 || marked || fail(fault, "a detection has neither a box nor points");
 }
 
-static bool read_detections(const json_t *list, const char *classes, camera_image_t *image, detection_fault_t *fault) {
+static bool read_detections(const json_t *list, const companion_config_t *config, camera_image_t *image,
+                            detection_fault_t *fault) {
     for (size_t i = 0; i < json_array_size(list); i++) {
         const json_t *object = json_array_get(list, i);
         if (!json_is_object(object)) {
             return fail(fault, "detection %zu is no object", i + 1u);
         }
-        if (is_wanted(object, classes) && image->detections < CAMERA_IMAGE_DETECTIONS) {
-            if (!read_detection(object, &image->detection[image->detections], fault)) {
+        const class_name_t class_name = class_of(object, config->detections_class_names);
+        if (is_wanted(&class_name, config->detections_classes) && image->detections < CAMERA_IMAGE_DETECTIONS) {
+            goe_flight_detection_t *detection = &image->detection[image->detections];
+            if (!read_detection(object, detection, fault)) {
                 return false;
             }
+            const bool known = obstacle_class_kind(class_name.name, &detection->kind);
+            image->unknown_classes += class_name.given && !known ? 1u : 0u;
             image->detections++;
         }
     }
@@ -234,7 +273,7 @@ static bool read_image(const json_t *root, const companion_config_t *config, con
         return false;
     }
     image->frame.camera = (uint8_t)camera;
-    return read_detections(list, config->detections_classes, image, fault);
+    return read_detections(list, config, image, fault);
 }
 
 bool detection_text_read(const char *line, size_t length, const companion_config_t *config, const detection_now_t *now,
@@ -242,7 +281,7 @@ bool detection_text_read(const char *line, size_t length, const companion_config
     json_error_t error;
     json_t *root = json_loadb(line, length, JSON_REJECT_DUPLICATES, &error);
     (void)memset(&image->frame, 0, sizeof image->frame);
-    image->detections = 0;
+    image->detections = image->unknown_classes = 0;
     if (root == NULL) {
         return fail(fault, "column %d: %s", error.column, error.text);
     }

@@ -138,6 +138,7 @@ void status_line_summary(const companion_t *c) {
     row("images_without_clock", c->counts.clockless, "before the autopilot's clock was known");
     row("images_without_pose", c->queue.given_up, "that waited in vain");
     row("detections_refused", c->flight.counters.refused, "not finite or out of range, samples of the pose included");
+    row("classes_unknown", c->counts.classless, "detections of a class whose size is not known");
     row("tracks_evicted", c->flight.counters.evicted, "for a worse obstacle");
     row("strangers", c->autopilot.strangers,
         "messages from another address that were read before the system refused them");

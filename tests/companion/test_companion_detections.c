@@ -5,6 +5,7 @@
 
 #include "check.h"
 #include "detection_text.h"
+#include "obstacle_class.h"
 
 #define NOW_US 900000000 /* of the autopilot's clock */
 #define UNIX_US 1700000000000000
@@ -199,6 +200,53 @@ static void classes_that_are_not_wanted_are_left_out(void) {
     TEST_ASSERT_FALSE(reads(line));
 }
 
+/* A class by its name, or by its number in the list of names. Any other one has no size, is counted, and is no error. */
+static void a_class_gives_its_size(void) {
+    static const char line[] =
+        "[{\"class\": \"Car\", \"box\": [1, 2, 3, 4]}, {\"class\": 7, \"name\": \"person\", \"box\": [1, 2, 3, 4]},"
+        "{\"class\": 2, \"box\": [1, 2, 3, 4]}, {\"class\": 3, \"box\": [1, 2, 3, 4]}, {\"class\": -1, \"box\": [1, 2, "
+        "3, 4]},"
+        "{\"class\": \"cow\", \"box\": [1, 2, 3, 4]}, {\"class\": 0.5, \"box\": [1, 2, 3, 4]}, {\"box\": [1, 2, 3, "
+        "4]}]";
+    goe_kind_t car, person, pole;
+    const goe_flight_detection_t *d = image.detection;
+    TEST_ASSERT_TRUE(obstacle_class_kind("car", &car) && obstacle_class_kind("person", &person) &&
+                     obstacle_class_kind("pole", &pole));
+    (void)snprintf(config.detections_class_names, sizeof config.detections_class_names, "cat  dog pole");
+    TEST_ASSERT_TRUE_MESSAGE(reads(line), fault.text);
+    TEST_ASSERT_EQUAL_UINT(8, image.detections);
+    CHECK_SAME(car.width_m, d[0].kind.width_m);
+    CHECK_SAME(car.width_sd_m, d[0].kind.width_sd_m);
+    CHECK_SAME(person.height_m, d[1].kind.height_m);
+    CHECK_SAME(pole.height_sd_m, d[2].kind.height_sd_m);
+    TEST_ASSERT_EQUAL_UINT8(GOE_SHAPE_ROUND, d[2].kind.shape);
+    for (int i = 3; i < 8; i++) {
+        CHECK_SAME(0.0f, d[i].kind.width_m);
+        CHECK_SAME(0.0f, d[i].kind.height_m);
+        TEST_ASSERT_EQUAL_UINT8(GOE_SHAPE_UNKNOWN, d[i].kind.shape);
+    }
+    TEST_ASSERT_EQUAL_UINT(3, image.unknown_classes); /* 3, -1 and cow; 0.5 is no class */
+    (void)snprintf(config.detections_classes, sizeof config.detections_classes, " pole ");
+    TEST_ASSERT_TRUE(reads(line));
+    TEST_ASSERT_EQUAL_UINT(1, image.detections);
+    TEST_ASSERT_EQUAL_UINT(0, image.unknown_classes);
+}
+
+/* A name of any length. */
+static void a_long_name_is_an_unknown_class(void) {
+    char line[256], name[OBSTACLE_CLASS_NAME_MAX + 2];
+    for (int extra = 0; extra < 2; extra++) {
+        (void)memset(name, 'x', sizeof name);
+        name[OBSTACLE_CLASS_NAME_MAX + extra] = '\0';
+        (void)snprintf(line, sizeof line, "[{\"class\": \"%s\", \"box\": [1, 2, 3, 4]}]", name);
+        TEST_ASSERT_TRUE(reads(line));
+        TEST_ASSERT_EQUAL_UINT(1, image.unknown_classes);
+        (void)snprintf(config.detections_class_names, sizeof config.detections_class_names, "%s", name);
+        TEST_ASSERT_TRUE(reads("[{\"class\": 0, \"box\": [1, 2, 3, 4]}]"));
+        TEST_ASSERT_EQUAL_UINT(1, image.unknown_classes);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_time_is_of_its_clock);
@@ -208,5 +256,7 @@ int main(void) {
     RUN_TEST(a_detection_is_read_whole);
     RUN_TEST(what_is_no_detection_is_refused);
     RUN_TEST(classes_that_are_not_wanted_are_left_out);
+    RUN_TEST(a_class_gives_its_size);
+    RUN_TEST(a_long_name_is_an_unknown_class);
     return UNITY_END();
 }
