@@ -9,10 +9,38 @@
 #define TIME_LIMIT_US 9.2e18 /* just inside 64 bits */
 
 const char *const frame_value_name[FRAME_VALUES] = {
-    "n_m",         "e_m",          "d_m",           "agl_m",       "qw",           "qx",           "qy",
-    "qz",          "left_u",       "left_v",        "right_u",     "right_v",      "top_u",        "top_v",
-    "base_left_u", "base_left_v",  "base_near_u",   "base_near_v", "base_right_u", "base_right_v", "box_left_px",
-    "box_top_px",  "box_right_px", "box_bottom_px", "reset_n_m",   "reset_e_m",    "reset_d_m"};
+    "n_m",
+    "e_m",
+    "d_m",
+    "agl_m",
+    "qw",
+    "qx",
+    "qy",
+    "qz",
+    "left_u",
+    "left_v",
+    "right_u",
+    "right_v",
+    "top_u",
+    "top_v",
+    "base_left_u",
+    "base_left_v",
+    "base_near_u",
+    "base_near_v",
+    "base_right_u",
+    "base_right_v",
+    "box_left_px",
+    "box_top_px",
+    "box_right_px",
+    "box_bottom_px",
+    "reset_n_m",
+    "reset_e_m",
+    "reset_d_m",
+    "kind_width_m",
+    "kind_width_sd_m",
+    "kind_height_m",
+    "kind_height_sd_m",
+};
 
 static int64_t time_to_us(double time_s) {
     const double time_us = time_s * US_PER_S;
@@ -59,6 +87,14 @@ static void read_reset(const frame_t *frame, goe_pose_t *pose) {
     }
 }
 
+/* Without its size a sigma is not read. */
+static void read_size(const frame_t *frame, frame_value_t name, float *size_m, float *sd_m) {
+    if (frame->given[name]) {
+        *size_m = number_to_float(frame->value[name]);
+        *sd_m = frame->given[name + 1] ? number_to_float(frame->value[name + 1]) : 0.0f;
+    }
+}
+
 static uint8_t camera_number(int64_t number) { return number >= 0 && number < UINT8_MAX ? (uint8_t)number : UINT8_MAX; }
 
 void frame_to_image(const frame_t *frame, goe_image_t *image) {
@@ -80,5 +116,8 @@ void frame_to_image(const frame_t *frame, goe_image_t *image) {
     image->base_near = image_point(frame, FRAME_BASE_NEAR_U);
     image->base_right = image_point(frame, FRAME_BASE_RIGHT_U);
     read_box(frame, &image->box);
+    read_size(frame, FRAME_KIND_WIDTH_M, &image->kind.width_m, &image->kind.width_sd_m);
+    read_size(frame, FRAME_KIND_HEIGHT_M, &image->kind.height_m, &image->kind.height_sd_m);
+    image->kind.shape = (uint8_t)frame->kind_shape;
     image->camera = camera_number(frame->camera);
 }

@@ -9,8 +9,10 @@
 #include "table_reader.h"
 
 /* What a column of the file is: one of these, or one of frame_value_t behind them. */
-enum { COLUMN_TIME, COLUMN_ID, COLUMN_RESET_COUNT, COLUMN_CAMERA, COLUMN_VALUES };
+enum { COLUMN_TIME, COLUMN_ID, COLUMN_RESET_COUNT, COLUMN_CAMERA, COLUMN_KIND_SHAPE, COLUMN_VALUES };
 #define COLUMNS_KNOWN (COLUMN_VALUES + FRAME_VALUES)
+#define KIND_MAX_M 1.0e3
+#define KIND_SHARE_MIN 0.01f /* of a size: its least sigma; both as in goe_kind_t */
 #define VALUE_COLUMN(name) ((size_t)COLUMN_VALUES + (size_t)(name))
 
 struct frame_reader {
@@ -30,8 +32,11 @@ struct frame_reader {
 /* Time, id and pose are required, of the pose all but the height above ground. */
 static void name_columns(table_column_t columns[COLUMNS_KNOWN]) {
     static const frame_value_t required[] = {FRAME_N_M, FRAME_E_M, FRAME_D_M, FRAME_QW, FRAME_QX, FRAME_QY, FRAME_QZ};
-    static const table_column_t others[COLUMN_VALUES] = {
-        {FRAME_TIME_NAME, true}, {FRAME_ID_NAME, true}, {FRAME_RESET_COUNT_NAME, false}, {FRAME_CAMERA_NAME, false}};
+    static const table_column_t others[COLUMN_VALUES] = {{FRAME_TIME_NAME, true},
+                                                         {FRAME_ID_NAME, true},
+                                                         {FRAME_RESET_COUNT_NAME, false},
+                                                         {FRAME_CAMERA_NAME, false},
+                                                         {FRAME_KIND_SHAPE_NAME, false}};
     (void)memcpy(columns, others, sizeof others);
     for (int i = 0; i < FRAME_VALUES; i++) {
         columns[VALUE_COLUMN(i)].name = frame_value_name[i];
@@ -46,7 +51,7 @@ static bool has_value(const frame_reader_t *reader, int name) {
     return table_reader_has(reader->table, VALUE_COLUMN(name));
 }
 
-/* An image point needs both its columns, and the jump of a reset the count, without which it would be taken for motion. */
+/* An image point needs both its columns, the size of a kind its sigma, and the jump of a reset the count, without which it would be taken for motion. */
 static void check_header(frame_reader_t *reader) {
     const unsigned long line = table_reader_header_line(reader->table);
     for (int u = FRAME_LEFT_U; u < FRAME_BOX_LEFT_PX; u += 2) {
@@ -54,6 +59,13 @@ static void check_header(frame_reader_t *reader) {
         if (has_value(reader, u) != has_value(reader, v)) {
             const int absent = has_value(reader, u) ? v : u;
             FAIL(reader, line, frame_value_name[absent], "missing column, the image point's other one is there");
+        }
+    }
+    for (int size = FRAME_KIND_WIDTH_M; size <= FRAME_KIND_HEIGHT_M; size += 2) {
+        const int sd = size + 1;
+        if (has_value(reader, size) != has_value(reader, sd)) {
+            FAIL(reader, line, frame_value_name[has_value(reader, size) ? sd : size],
+                 "missing column, a size needs its sigma");
         }
     }
     for (int delta = FRAME_RESET_N_M; delta <= FRAME_RESET_D_M; delta++) {
@@ -96,6 +108,16 @@ static void store_camera(frame_reader_t *reader, const table_field_t *field, fra
     frame->camera = number;
 }
 
+static void store_shape(frame_reader_t *reader, const table_field_t *field, frame_t *frame) {
+    if (field->length > 0) {
+        store_integer(reader, FRAME_KIND_SHAPE_NAME, field, frame, &frame->kind_shape);
+    }
+    if (frame->kind_shape < GOE_SHAPE_UNKNOWN || frame->kind_shape > GOE_SHAPE_OTHER) {
+        FAIL(reader, frame->line, FRAME_KIND_SHAPE_NAME, "%" PRId64 " is no shape: 0 unknown, 1 round, 2 not round",
+             frame->kind_shape);
+    }
+}
+
 static void store_value(frame_reader_t *reader, int name, const table_field_t *field, frame_t *frame) {
     if (field->length == 0) {
         return; /* not measured */
@@ -126,9 +148,29 @@ static void store_field(frame_reader_t *reader, const table_field_t *field, fram
         case COLUMN_CAMERA:
             store_camera(reader, field, frame);
             break;
+        case COLUMN_KIND_SHAPE:
+            store_shape(reader, field, frame);
+            break;
         default:
             store_value(reader, field->column - COLUMN_VALUES, field, frame);
             break;
+    }
+}
+
+/* The size of a kind and its sigma, which the estimator takes: a fault here is of the log, not of a measurement. */
+static void check_size(frame_reader_t *reader, const frame_t *frame, int size) {
+    const int sd = size + 1;
+    for (int name = size; name <= sd; name++) {
+        if (frame->given[name] && !(frame->value[name] >= 0.0 && frame->value[name] <= KIND_MAX_M)) {
+            FAIL(reader, frame->line, frame_value_name[name], "%g is out of range: 0 to %g", frame->value[name],
+                 KIND_MAX_M);
+        }
+    }
+    const float size_m = frame->given[size] ? number_to_float(frame->value[size]) : 0.0f;
+    const float sd_m = frame->given[sd] ? number_to_float(frame->value[sd]) : 0.0f;
+    if (size_m > 0.0f && sd_m < KIND_SHARE_MIN * size_m) {
+        FAIL(reader, frame->line, frame_value_name[sd], "%g is less than 1 %% of %s", (double)sd_m,
+             frame_value_name[size]);
     }
 }
 
@@ -136,10 +178,13 @@ static void store_row(frame_reader_t *reader, const table_row_t *row, frame_t *f
     (void)memset(frame->given, 0, sizeof frame->given);
     frame->reset_count = 0;
     frame->camera = 0;
+    frame->kind_shape = 0;
     frame->line = row->line;
     for (size_t i = 0; i < row->fields && !reader->failed; i++) {
         store_field(reader, &row->field[i], frame);
     }
+    check_size(reader, frame, FRAME_KIND_WIDTH_M);
+    check_size(reader, frame, FRAME_KIND_HEIGHT_M);
 }
 
 /* ------------------------------------------------------------------------------------------------------- interface -- */

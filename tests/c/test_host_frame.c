@@ -66,6 +66,24 @@ static void a_jump_is_known_by_all_three_numbers(void) {
     CHECK_SAME(0.5f, image.pose.reset_delta_ned_m[2]);
 }
 
+/* A size without a number is unknown, and so is its sigma. */
+static void a_kind_is_passed_on(void) {
+    give(FRAME_KIND_WIDTH_SD_M, 0.5);
+    frame_to_image(&frame, &image);
+    CHECK_SAME(0.0f, image.kind.width_m);
+    CHECK_SAME(0.0f, image.kind.width_sd_m);
+    give(FRAME_KIND_WIDTH_M, 3.25);
+    give(FRAME_KIND_HEIGHT_M, 1.5);
+    give(FRAME_KIND_HEIGHT_SD_M, 0.25);
+    frame.kind_shape = GOE_SHAPE_OTHER;
+    frame_to_image(&frame, &image);
+    CHECK_SAME(3.25f, image.kind.width_m);
+    CHECK_SAME(0.5f, image.kind.width_sd_m);
+    CHECK_SAME(1.5f, image.kind.height_m);
+    CHECK_SAME(0.25f, image.kind.height_sd_m);
+    TEST_ASSERT_EQUAL_UINT8(GOE_SHAPE_OTHER, image.kind.shape);
+}
+
 static void a_wider_counter_goes_on_in_eight_bits(void) {
     static const struct {
         int64_t count;
@@ -96,6 +114,7 @@ int main(void) {
     RUN_TEST(each_side_given_is_visible);
     RUN_TEST(a_side_that_is_no_number_is_shown);
     RUN_TEST(a_jump_is_known_by_all_three_numbers);
+    RUN_TEST(a_kind_is_passed_on);
     RUN_TEST(a_wider_counter_goes_on_in_eight_bits);
     RUN_TEST(the_camera_s_number_is_shown_as_it_is);
     return UNITY_END();

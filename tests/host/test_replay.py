@@ -587,6 +587,41 @@ def test_a_jump_that_is_no_number(tmp_path: Path) -> None:
     assert (out[12]["status"], out[13]["status"]) == ("not_finite", "ok")  # the jump is reported again
 
 
+# ------------------------------------------------------------------------------------------------ class of the obstacle
+
+KIND = ["kind_width_m", "kind_width_sd_m", "kind_height_m", "kind_height_sd_m", "kind_shape"]
+
+
+def test_the_size_of_the_class_is_used(tmp_path: Path, log: Path) -> None:
+    def out(**kind: Any) -> list[dict[str, str]]:
+        rows = [{**row, **kind} for row in chimney()]
+        return replay(write_log(tmp_path / "kind", table(rows, [*COLUMNS, *KIND])))
+
+    assert out() == out(kind_width_m=0, kind_height_sd_m=2, kind_shape=0) == replay(log)
+    without, size = replay(log)[-1], out(kind_width_m=6, kind_width_sd_m=0.3)[-1]
+    assert number(size, "z_sd_m") < 0.8 * number(without, "z_sd_m")
+    assert out(kind_height_m=20, kind_height_sd_m=1)[-1] not in (without, size)
+    assert (without["model"], out(kind_shape=1)[-1]["model"]) == ("prism", "disc")
+
+
+@pytest.mark.parametrize(
+    ("column", "text", "reason"),
+    [
+        ("kind_width_m", "-1", "-1 is out of range: 0 to 1000"),
+        ("kind_height_m", "nan", "nan is out of range: 0 to 1000"),
+        ("kind_height_sd_m", "0.29", "0.29 is less than 1 % of kind_height_m"),
+        ("kind_width_sd_m", "", "0 is less than 1 % of kind_width_m"),
+        ("kind_shape", "3", "3 is no shape: 0 unknown, 1 round, 2 not round"),
+        ("kind_shape", "round", "'round' is not an integer of 64 bits"),
+    ],
+)
+def test_a_bad_kind_is_bad_input(tmp_path: Path, column: str, text: str, reason: str) -> None:
+    good = dict(zip(KIND, ("6", "1", "30", "3", "1")))
+    rows = [{**row, **good, **({column: text} if k == 5 else {})} for k, row in enumerate(chimney())]
+    folder = write_log(tmp_path, table(rows, [*COLUMNS, *KIND]))
+    assert call(folder, check=2).stderr == f"{folder}/frames.csv:7: {column}: {reason}\n"
+
+
 # --------------------------------------------------------------------------------------------------- a second camera
 
 SECOND_CAMERA = CAMERA.replace("camera.", "camera2.")
