@@ -49,7 +49,8 @@ def plain(schema: dict) -> Table:
 
 def whole(schema: dict) -> Table:
     """Every column and a good row; the first camera."""
-    return plain(schema) | {f["name"]: "0" for f in fields(schema, "optional")}
+    sigmas = {f["name"]: "10" for f in fields(schema, "optional") if f["name"].endswith("_sd_m")}  # for any size
+    return plain(schema) | {f["name"]: "0" for f in fields(schema, "optional")} | sigmas
 
 
 def allowed(schema: dict) -> Iterator[tuple[str, Table]]:
@@ -62,7 +63,7 @@ def allowed(schema: dict) -> Iterator[tuple[str, Table]]:
     for f in fields(schema):
         constraints = f.get("constraints", {})
         values = {str(constraints[end]) for end in ("minimum", "maximum") if end in constraints}
-        values |= {"0"} if f["name"] == "camera" else set(GOOD[f["type"]])
+        values |= {"0"} if {"minimum", "maximum"} & set(constraints) else set(GOOD[f["type"]])
         values |= {str(end) for end in f.get("range", ())}
         if not constraints.get("required"):
             values.add("")
@@ -313,6 +314,9 @@ def test_the_page_has_every_column_and_key() -> None:
             optional = ", optional" if f["column"] == "optional" else ""
             (cells,) = [r for r in rows[f"`{f['name']}`{optional}"] if r[1] == f["description"]]
             assert cells[0] == f["unit"]
+            constraints = f.get("constraints", {})
+            if f["name"].startswith("kind_"):
+                assert [float(x) for x in cells[2].split(" to ")] == [constraints["minimum"], constraints["maximum"]]
             if "range" in f:
                 assert [float(x) for x in cells[2].split(" to ")] == f["range"]
             assert cells[-1] == f.get("empty", "not allowed")

@@ -25,6 +25,7 @@ CAMERA = "camera.width = 640\ncamera.height=480 # px\n\n# a comment\ncamera.fx =
 )
 HEADER = "t_s,id,n_m,e_m,d_m,qw,qx,qy,qz"
 ROW = "0.5,3,1,2,-30,1,0,0,0"
+SIZE = ",kind_width_m,kind_width_sd_m"
 
 
 def write(path: Path, text: str) -> Path:
@@ -172,6 +173,28 @@ def test_boxes_and_resets_are_written_where_there_are_any(tmp_path: Path, corner
         assert ("reset" in header) == (given[1].reset_count != 0)
 
 
+def test_kinds(tmp_path: Path, corner_log: ObservationLog) -> None:
+    """The class's sizes and shape: read by both parsers, and written where there are any."""
+    columns = ",kind_width_m,kind_width_sd_m,kind_height_m,kind_height_sd_m,kind_shape"
+    rows = (
+        ROW + ",3.3,0.87,1.6,0.14,2",
+        ROW + ",,,30,3,",
+        ROW + ",,,,,",
+        ROW + ",0,1,0,0,1",
+        ROW.replace("-30", "nan"),
+    )
+    read = frames(tmp_path, HEADER + columns, *rows[:4], rows[4] + ",3.3,0.87,,,")
+    assert [frame.kind for frame in read] == [
+        (3.3, 0.87, 1.6, 0.14, 2), (0.0, 0.0, 30.0, 3.0, 0), None, (0.0, 1.0, 0.0, 0.0, 1), (3.3, 0.87, 0.0, 0.0, 0),
+    ]  # fmt: skip
+    plain = corner_log.frames
+    for given in (plain, [replace(plain[0], kind=(3.3, 0.87, 0.0, 0.0, 2)), *plain[1:]]):
+        write_log(tmp_path, replace(corner_log, frames=given))
+        assert read_frames(tmp_path / "frames.csv") == given
+        header = (tmp_path / "frames.csv").read_text().splitlines()[0]
+        assert ("kind" in header) == (given[0].kind is not None)
+
+
 def test_line_ends_and_blank_lines(tmp_path: Path) -> None:
     assert len(frames(tmp_path, HEADER, ROW, "", ROW, end="\r\n")) == 2
     assert len(read_frames(write(tmp_path / "frames.csv", "\ufeff" + HEADER + "\n" + ROW + "\n"))) == 1
@@ -198,6 +221,14 @@ def test_time_stamps(tmp_path: Path, t_s: str, time_us: int) -> None:
         ((HEADER.replace(",qy", ""), ROW), "1: qy: column is missing"),
         ((HEADER + ",left_u", ROW + ",3"), "1: left_v: column is missing"),
         ((HEADER + ",reset_n_m", ROW + ",3"), "1: reset_count: column is missing, but reset_n_m is present"),
+        ((HEADER + ",kind_width_m", ROW + ",3"), "1: kind_width_sd_m: column is missing"),
+        ((HEADER + ",kind_height_sd_m", ROW + ",3"), "1: kind_height_m: column is missing"),
+        ((HEADER + ",kind_shape", ROW + ",3"), "2: kind_shape: 3 is no shape: 0 unknown, 1 round, 2 not round"),
+        ((HEADER + ",kind_shape", ROW + ",1.0"), "2: kind_shape: '1.0' is not an integer"),
+        ((HEADER + SIZE, ROW + ",1001,20"), "2: kind_width_m: 1001 is out of range: 0 to 1000"),
+        ((HEADER + SIZE, ROW + ",3,nan"), "2: kind_width_sd_m: nan is out of range: 0 to 1000"),
+        ((HEADER + SIZE, ROW + ",3,"), "2: kind_width_sd_m: 0 is less than 1 % of kind_width_m"),
+        ((HEADER + SIZE, ROW + ",3,-1"), "2: kind_width_sd_m: -1 is out of range: 0 to 1000"),
         ((HEADER + ",box_top_px,box_top_px", ROW + ",3,3"), "1: box_top_px: column is given twice"),
         ((HEADER + ",box_top_px", ROW + ",high"), "2: box_top_px: 'high' is not a number"),
         ((HEADER + ",reset_count", ROW + ",1.0"), "2: reset_count: '1.0' is not an integer"),

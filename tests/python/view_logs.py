@@ -49,7 +49,7 @@ def several() -> ObservationLog:
 
 def spoiled() -> ObservationLog:
     """Rows without pose, time or valid values; one reported jump of the filter and one unreported; sides of boxes that
-    are NaN; a time without detections."""
+    are NaN; a time without detections; a class from there on."""
     log = make_log(BUILDING)
     frames = []
     for k, frame in enumerate(log.frames):
@@ -66,6 +66,8 @@ def spoiled() -> ObservationLog:
     frames[26] = dataclasses.replace(frames[26], position_m=(1e300, 0.0, -20.0))
     for k in range(40, 46):
         frames[k] = dataclasses.replace(frames[k], **INVISIBLE)
+    for k in range(46, len(frames)):
+        frames[k] = dataclasses.replace(frames[k], kind=(BUILDING.width_m, 2.0, BUILDING.height_m, 1.0, 2))
     return dataclasses.replace(log, frames=frames)
 
 

@@ -199,8 +199,8 @@ def to_package(images: Images) -> Any:
     """Converts to goe.Images."""
     return package().Images(
         np.rint(images.time_s * 1e6).astype(np.int64), images.position_ned_m, images.attitude, images.height_m,
-        images.box_px, images.pixel_px, images.seen, images.reset_count, images.reset_m, kind=images.kind, camera=images.camera,
-        velocity_ned_m_s=images.velocity_m_s,
+        images.box_px, images.pixel_px, images.seen, images.reset_count, images.reset_m, kind=images.kind,
+        camera=images.camera, velocity_ned_m_s=images.velocity_m_s,
     )  # fmt: skip
 
 

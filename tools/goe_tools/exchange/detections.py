@@ -1,7 +1,7 @@
 """A detector's output as a table: frames.csv without the pose.
 
-t_s (time of exposure, s, the camera's clock), id, and the columns of frames.csv for points, boxes and the camera's
-number, with the same meaning; other columns are ignored."""
+t_s (time of exposure, s, the camera's clock), id, and the columns of frames.csv for points, boxes, the class's size and
+the camera's number, with the same meaning; other columns are ignored."""
 
 from __future__ import annotations
 
@@ -10,7 +10,17 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ..logs.fields import LogError, read_integer, read_number, read_rows, warn_of_misspelt
-from ..logs.obslog import BOX_COLUMNS, CAMERA_COLUMN, FEATURES, POINT_COLUMNS, Frame, check_pairs, read_features
+from ..logs.obslog import (
+    BOX_COLUMNS,
+    CAMERA_COLUMN,
+    FEATURES,
+    POINT_COLUMNS,
+    SHAPE_COLUMN,
+    SIZE_COLUMNS,
+    Frame,
+    check_pairs,
+    read_features,
+)
 
 REQUIRED = ("t_s", "id")
 NOWHERE = (math.nan,) * 3
@@ -23,14 +33,15 @@ def read_detections(path: Path, cameras: int) -> list[Frame]:
     path, result = Path(path), []
     latest: dict[int, float] = {}
     known = (*POINT_COLUMNS, *BOX_COLUMNS)
+    used = (*REQUIRED, *known, *SIZE_COLUMNS, SHAPE_COLUMN, CAMERA_COLUMN)
 
     def check(header: list[str], path: Path, line: int) -> None:
         check_pairs(header, path, line)
-        warn_of_misspelt(header, path, line, (*REQUIRED, *known, CAMERA_COLUMN))
+        warn_of_misspelt(header, path, line, used)
         if not any(name in header for name in known):
             raise LogError(path, line, BOX_COLUMNS[0], "column is missing, and so are all others of points and boxes")
 
-    for line, row in read_rows(path, REQUIRED, (*REQUIRED, *known, CAMERA_COLUMN), check):
+    for line, row in read_rows(path, REQUIRED, used, check):
         t_s, key = read_number(row["t_s"], path, line, "t_s"), read_integer(row["id"], path, line, "id")
         if not math.isfinite(t_s):
             raise LogError(path, line, "t_s", f"'{row['t_s']}' is not finite")

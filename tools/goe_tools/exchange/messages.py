@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from ..logs.estimates import Estimate
-from ..logs.obslog import BOX_COLUMNS, FEATURES, Frame, Truth
+from ..logs.obslog import BOX_COLUMNS, FEATURES, SHAPE_COLUMN, SIZE_COLUMNS, Frame, Truth
 
 Json = dict[str, Any]
 NS = 1_000_000_000
@@ -203,6 +203,8 @@ def observation_numbers(frame: Frame) -> dict[str, float | None]:
         point = getattr(frame, name)
         result[f"{name}_u"], result[f"{name}_v"] = (None, None) if point is None else point
     result |= dict(zip(BOX_COLUMNS, frame.box_px or (None,) * len(BOX_COLUMNS)))
+    if frame.kind is not None:
+        result |= dict(zip((*SIZE_COLUMNS, SHAPE_COLUMN), frame.kind))
     return result | {"reset_count": frame.reset_count, "camera": frame.camera}
 
 

@@ -39,6 +39,7 @@ from .whole_file import replacing_all
 Pixel = tuple[float, float]
 Side = Optional[float]  # Python 3.9 syntax outside annotations
 Box = tuple[Side, Side, Side, Side]  # left, top, right, bottom; None: not visible
+Kind = tuple[float, float, float, float, int]  # width, its sigma, height, its sigma, m; shape; 0: unknown
 
 TIME_LIMIT_US = 9.2e18  # just inside 64 bits
 FEATURES = ("left", "right", "top", "base_left", "base_near", "base_right")
@@ -49,7 +50,13 @@ BOX_COLUMNS = ("box_left_px", "box_top_px", "box_right_px", "box_bottom_px")
 RESET_COLUMN = "reset_count"
 CAMERA_COLUMN = "camera"
 JUMP_COLUMNS = ("reset_n_m", "reset_e_m", "reset_d_m")
-FRAME_COLUMNS = (*REQUIRED_COLUMNS, "agl_m", *POINT_COLUMNS, *BOX_COLUMNS, CAMERA_COLUMN, RESET_COLUMN, *JUMP_COLUMNS)
+SIZE_COLUMNS = ("kind_width_m", "kind_width_sd_m", "kind_height_m", "kind_height_sd_m")
+SHAPE_COLUMN = "kind_shape"
+SIZE_MAX_M, SIZE_SHARE_MIN, SHAPE_MAX = 1000.0, 0.01, 2  # as in goe_kind_t
+FRAME_COLUMNS = (
+    *REQUIRED_COLUMNS, "agl_m", *POINT_COLUMNS, *BOX_COLUMNS, CAMERA_COLUMN, RESET_COLUMN, *JUMP_COLUMNS, *SIZE_COLUMNS,
+    SHAPE_COLUMN,
+)  # fmt: skip
 TRUTH_COLUMNS = (
     "id",
     "static",
@@ -87,6 +94,7 @@ class Frame:
     camera: int = 0  # number of the camera that took the image
     reset_count: int = 0  # of the autopilot's filter
     reset_delta_m: tuple[float, float, float] | None = None  # jump of the position, NED; None: unknown
+    kind: Kind | None = None  # what the detector's class says of the obstacle; None: nothing
 
     @property
     def height_m(self) -> float:
@@ -139,11 +147,10 @@ class ObservationLog:
 
 
 def check_pairs(header: list[str], path: Path, line: int) -> None:
-    """An image point needs both its columns, and the jump of a reset needs the count."""
-    for name in FEATURES:
-        if (f"{name}_u" in header) != (f"{name}_v" in header):
-            absent = f"{name}_v" if f"{name}_u" in header else f"{name}_u"
-            raise LogError(path, line, absent, "column is missing")
+    """An image point needs both its columns, the size of a kind its sigma, and the jump of a reset the count."""
+    for first, second in (*((f"{name}_u", f"{name}_v") for name in FEATURES), SIZE_COLUMNS[:2], SIZE_COLUMNS[2:]):
+        if (first in header) != (second in header):
+            raise LogError(path, line, second if first in header else first, "column is missing")
     jumps = [name for name in JUMP_COLUMNS if name in header]
     if jumps and RESET_COLUMN not in header:
         raise LogError(path, line, RESET_COLUMN, f"column is missing, but {jumps[0]} is present")
@@ -174,20 +181,45 @@ def _camera_number(row: Row, path: Path, line: int, cameras: int) -> int:
     return number
 
 
+def _fault_of_kind(kind: Kind) -> tuple[str, str] | None:
+    """Column and reason."""
+    for column, value in zip(SIZE_COLUMNS, kind):
+        if not 0.0 <= value <= SIZE_MAX_M:
+            return column, f"{value:g} is out of range: 0 to {SIZE_MAX_M:g}"
+    for column, size, sd in ((SIZE_COLUMNS[1], *kind[:2]), (SIZE_COLUMNS[3], *kind[2:4])):
+        if sd < SIZE_SHARE_MIN * size:
+            return column, f"{sd:g} is less than 1 % of {column.replace('_sd', '')}"
+    if not 0 <= kind[4] <= SHAPE_MAX:
+        return SHAPE_COLUMN, f"{kind[4]} is no shape: 0 unknown, 1 round, 2 not round"
+    return None
+
+
+def _kind(row: Row, path: Path, line: int) -> Kind | None:
+    width, width_sd, height, height_sd = (read_optional(row, path, line, column) or 0.0 for column in SIZE_COLUMNS)
+    shape = read_integer(row[SHAPE_COLUMN], path, line, SHAPE_COLUMN) if row.get(SHAPE_COLUMN) else 0
+    kind = (width, width_sd, height, height_sd, shape)
+    fault = _fault_of_kind(kind)
+    if fault is not None:
+        raise LogError(path, line, *fault)
+    return None if kind == NO_KIND else kind
+
+
 def read_features(row: Row, path: Path, line: int, cameras: int) -> dict[str, object]:
-    """A detector's fields in one row, as the fields of ``Frame`` with that name: points, box, camera number."""
+    """A detector's fields in one row, as the fields of ``Frame`` with that name: points, box, kind, camera number."""
     return {
         **{feature: _pixel(row, path, line, feature) for feature in FEATURES},
         "box_px": _box(row, path, line),
+        "kind": _kind(row, path, line),
         CAMERA_COLUMN: _camera_number(row, path, line, cameras),
     }
 
 
-NUMBER_COLUMNS = ("t_s", *POSE_COLUMNS, "agl_m", *POINT_COLUMNS, *BOX_COLUMNS, *JUMP_COLUMNS)
-INTEGER_COLUMNS = ("id", RESET_COLUMN, CAMERA_COLUMN)
+NUMBER_COLUMNS = ("t_s", *POSE_COLUMNS, "agl_m", *POINT_COLUMNS, *BOX_COLUMNS, *JUMP_COLUMNS, *SIZE_COLUMNS)
+INTEGER_COLUMNS = ("id", RESET_COLUMN, CAMERA_COLUMN, SHAPE_COLUMN)
 UNUSUAL = re.compile(r"[^-+.0-9eE,]").search  # words like nan, and numbers that only Python accepts
 PAIRS = range(9, 9 + len(POINT_COLUMNS), 2)  # indices in a row's numbers
 BOX, JUMP = slice(PAIRS.stop, PAIRS.stop + 4), slice(PAIRS.stop + 4, PAIRS.stop + 7)
+SIZES = slice(JUMP.stop, JUMP.stop + 4)
 ID_DIGITS_MAX = 18  # always fits 64 bits
 
 
@@ -197,10 +229,15 @@ def _plain_frame(texts: Sequence[str], integers: Sequence[str], cameras: int) ->
         return None
     try:
         row = [float(text) if text else None for text in texts]
-        key, resets, camera = (int(text) if len(text) <= ID_DIGITS_MAX and text.isdigit() else -1 for text in integers)
+        key, resets, camera, shape = (
+            int(text) if len(text) <= ID_DIGITS_MAX and text.isdigit() else -1 for text in integers
+        )
     except ValueError:
         return None
     if key < 0 or (resets < 0 and integers[1]) or (camera < 0 and integers[2]) or camera >= cameras:
+        return None
+    kind = (*(size or 0.0 for size in row[SIZES]), max(shape, 0))
+    if (shape < 0 and integers[3]) or (kind != NO_KIND and _fault_of_kind(kind)):  # type: ignore[arg-type]
         return None
     points = [None if row[i] is None or row[i + 1] is None else (row[i], row[i + 1]) for i in PAIRS]
     box, jump = tuple(row[BOX]), tuple(row[JUMP])
@@ -208,10 +245,12 @@ def _plain_frame(texts: Sequence[str], integers: Sequence[str], cameras: int) ->
         row[0], key, tuple(row[1:4]), tuple(row[4:8]), row[8], *points,  # type: ignore[arg-type]
         None if box == NO_BOX else box, max(camera, 0), max(resets, 0),  # type: ignore[arg-type]
         None if None in jump else jump,  # type: ignore[arg-type]
+        None if kind == NO_KIND else kind,  # type: ignore[arg-type]
     )  # fmt: skip
 
 
 NO_BOX = (None,) * len(BOX_COLUMNS)
+NO_KIND = (0.0, 0.0, 0.0, 0.0, 0)
 
 
 @contextmanager
@@ -353,13 +392,16 @@ def read_log(folder: Path) -> ObservationLog:
 
 
 def write_frames(path: Path, frames: Sequence[Frame]) -> None:
-    """Writes the columns of boxes, resets and the camera number only if a frame has a value other than 0."""
+    """Writes the columns of boxes, resets, kinds and the camera number only if a frame has a value other than 0."""
     boxes = any(frame.box_px is not None for frame in frames)
     resets = any(frame.reset_count != 0 or frame.reset_delta_m is not None for frame in frames)
     header = ["t_s", "id", "n_m", "e_m", "d_m", "agl_m", "qw", "qx", "qy", "qz", *POINT_COLUMNS]
+    kinds = any(frame.kind is not None for frame in frames)
     numbered = any(frame.camera != 0 for frame in frames)
     header += [*BOX_COLUMNS] if boxes else []
+    header += [*SIZE_COLUMNS] if kinds else []
     header += [*JUMP_COLUMNS, RESET_COLUMN] if resets else []
+    header += [SHAPE_COLUMN] if kinds else []
     header += [CAMERA_COLUMN] if numbered else []
     with open(path, "w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
@@ -368,9 +410,11 @@ def write_frames(path: Path, frames: Sequence[Frame]) -> None:
             pixels = [getattr(frame, feature) or (None, None) for feature in FEATURES]
             numbers = [*frame.position_m, frame.agl_m, *frame.attitude, *(value for pixel in pixels for value in pixel)]
             numbers += (frame.box_px or (None,) * len(BOX_COLUMNS)) if boxes else ()
+            numbers += (frame.kind[:4] if frame.kind else (None,) * len(SIZE_COLUMNS)) if kinds else ()
             numbers += (frame.reset_delta_m or (None,) * len(JUMP_COLUMNS)) if resets else ()
             row = [shortest(frame.t_s), frame.id, *(shortest(number) for number in numbers)]
             row += [frame.reset_count] if resets else []
+            row += [frame.kind[4] if frame.kind else 0] if kinds else []
             row += [frame.camera] if numbered else []
             writer.writerow(row)
 

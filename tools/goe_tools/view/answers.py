@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .. import library
-from ..logs.obslog import FEATURES, TIME_LIMIT_US, Camera, Frame, ObservationLog
+from ..logs.obslog import FEATURES, NO_KIND, TIME_LIMIT_US, Camera, Frame, ObservationLog
 from ..logs.progress import Progress
 from .motion import Motion
 
@@ -123,6 +123,7 @@ def _images(frames: Sequence[Frame], velocity_m_s: np.ndarray, options: Options)
         np.array([frame.reset_count & 0xFF for frame in frames]),
         np.array([frame.reset_delta_m or unknown for frame in frames], float),
         velocity_m_s, (library.Plan(options.margin_m, options.clearance_m, grows=True),),
+        np.array([frame.kind or NO_KIND for frame in frames], float),
         np.array([frame.camera for frame in frames]),
     )  # fmt: skip
 
