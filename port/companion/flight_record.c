@@ -20,7 +20,8 @@ static const char header[] =
     "t_s,id,n_m,e_m,d_m,agl_m,qw,qx,qy,qz,left_u,left_v,right_u,right_v,top_u,top_v,base_left_u,base_left_v,base_near_"
     "u,"
     "base_near_v,base_right_u,base_right_v,box_left_px,box_top_px,box_right_px,box_bottom_px,camera,"
-    "reset_count,reset_n_m,reset_e_m,reset_d_m\n";
+    "reset_count,reset_n_m,reset_e_m,reset_d_m,kind_width_m,kind_width_sd_m,kind_height_m,kind_height_sd_m,kind_"
+    "shape\n";
 
 static bool copy_bytes(FILE *in, FILE *out) {
     char bytes[4096];
@@ -160,6 +161,16 @@ static int put_reset(FILE *stream, const autopilot_t *autopilot) {
     return size;
 }
 
+/* Empty: unknown. */
+static int put_size(FILE *stream, float size_m, float sd_m) {
+    return size_m > 0.0f ? put(stream, size_m) + put(stream, sd_m) : fprintf(stream, ",,");
+}
+
+static int put_kind(FILE *stream, const goe_kind_t *kind) {
+    return put_size(stream, kind->width_m, kind->width_sd_m) + put_size(stream, kind->height_m, kind->height_sd_m) +
+           fprintf(stream, ",%u", (unsigned)kind->shape);
+}
+
 /* Times of a log increase: those of an autopilot that restarted follow the latest by a second. */
 static double time_s(flight_record_t *record, int64_t time_us) {
     if (record->rows > 0 && time_us + record->shift_us < record->latest_us - US_PER_S) {
@@ -182,7 +193,8 @@ void flight_record_put(flight_record_t *record, const goe_flight_t *flight, cons
         size += put_pose(record->stream, &pose);
         size += put_features(record->stream, detection);
         size += fprintf(record->stream, ",%u", (unsigned)frame->camera);
-        size += put_reset(record->stream, autopilot) + fprintf(record->stream, "\n");
+        size += put_reset(record->stream, autopilot) + put_kind(record->stream, &detection->kind);
+        size += fprintf(record->stream, "\n");
         record->written_mb += (double)size / BYTES_PER_MB;
         record->rows++;
     }

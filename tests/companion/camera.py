@@ -164,6 +164,12 @@ def aliases(image: Image, clock: str | None) -> str:
     return json.dumps(line) + "\n"
 
 
+def of_class(image: Image, clock: str | None) -> str:
+    line = json.loads(plain_line(image, clock))
+    line["detections"] = [{**detection(box), "class": "house"} for box in image.boxes]
+    return json.dumps(line) + "\n"
+
+
 def without_clock(image: Image, clock: str | None) -> str:
     """The configuration names the clock."""
     line = json.loads(plain_line(image, clock))

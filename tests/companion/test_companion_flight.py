@@ -21,6 +21,7 @@ from camera import (
     aliases,
     as_printed,
     bare_list,
+    of_class,
     of_second_camera,
     points,
     without_clock,
@@ -63,6 +64,7 @@ PLANS += [
 NAMES = [plan.name for plan in PLANS]
 OTHERS = [
     Plan("points", line=points),
+    Plan("house", line=of_class, recorded=True),
     Plan("other class", line=aliases, settings={"detections": {"classes": "car tree"}}),
 ]
 
@@ -333,6 +335,17 @@ def test_the_log_is_replayed(fleet: Fleet, name: str) -> None:
     found = [row for row in replay(fleet[name].log) if row["status"] == "ok"]
     places = [(float(row["center_n_m"]), float(row["center_e_m"])) for row in found]
     assert min(math.dist(place, (MAST.north_m, MAST.east_m)) for place in places[-40:]) < 10.0
+
+
+def test_the_log_has_the_size_of_the_class(fleet: Fleet) -> None:
+    """goe_replay accepts it. A class without a size is counted."""
+    columns = ("kind_width_m", "kind_width_sd_m", "kind_height_m", "kind_height_sd_m", "kind_shape")
+    for name, kind in (("house", ("13", "4.0414", "8", "2.3094", "2")), ("recorded", ("", "", "", "", "0"))):
+        rows = rows_of(fleet[name].log)
+        assert {tuple(row[column][:6] for column in columns) for row in rows} == {kind}
+    assert len(replay(fleet["house"].log)) == len(rows_of(fleet["house"].log))
+    assert fleet["aliases"].ended.count("classes_unknown") > 50
+    assert fleet["house"].ended.count("classes_unknown") == fleet["unix"].ended.count("classes_unknown") == 0
 
 
 def status_line(flight: Flight) -> str:
