@@ -14,6 +14,7 @@
 #include "image/goe_ego_motion.h"
 #include "image/goe_intake.h"
 #include "maths/goe_scalar.h"
+#include "refined/goe_answer.h"
 #include "refined/goe_ground.h"
 #include "refined/goe_refined.h"
 #include "refined/goe_report.h"
@@ -134,8 +135,8 @@ static void drop_contradicted(goe_estimator_t *estimator, const goe_view_t *view
 
 static goe_status_t report_refined(goe_estimator_t *estimator, const goe_view_t *view, const goe_faults_t *faults,
                                    bool measured) {
-    const bool fresh = measured && goe_refined_report(&estimator->filter, &estimator->settings, &estimator->motion,
-                                                      &estimator->estimate);
+    const bool fresh = measured && goe_answer_update(&estimator->filter, &estimator->settings, &estimator->motion,
+                                                     &estimator->estimate);
     if (fresh) {
         estimator->estimate_time_us = estimator->motion.time_us;
     } else {

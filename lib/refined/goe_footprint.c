@@ -6,16 +6,16 @@
 
 #include "maths/goe_exp.h"
 #include "maths/goe_scalar.h"
+#include "refined/goe_shift.h"
 #include "refined/goe_side_memory.h"
 #include "refined/goe_touch.h"
 
 #if GOE_WITH_FILTER
 
-#define DEPTH_MAX 2.0f         /* |d|, and its sigma in (R31): 7 times as deep as wide, or as flat */
-#define SHIFT_RATIO_MAX 300.0f /* of a shift that rows share, over a row's own noise */
-#define DEPTH_TURNED 0.3f      /* sine of the turn of the line of sight from which on images give the depth */
-#define BENT_MIN 0.01f         /* sigma of the log of the depth below which its exponential is a line */
-#define FORCED_SIGMAS2 18.0f   /* squared sigmas of the shear from which on it is no disc */
+#define DEPTH_MAX 2.0f       /* |d|, and its sigma in (R31): 7 times as deep as wide, or as flat */
+#define DEPTH_TURNED 0.3f    /* sine of the turn of the line of sight from which on images give the depth */
+#define BENT_MIN 0.01f       /* sigma of the log of the depth below which its exponential is a line */
+#define FORCED_SIGMAS2 18.0f /* squared sigmas of the shear from which on it is no disc */
 #define SIDE_SHAPE                                                                                                     \
     0.05f /* one sigma of what corners move the points left and right by, of the width, if it may be no disc */
 #define SHAPE_TURN 0.3f     /* sine of the turn of the line of sight in which this fades to 1/e */
@@ -90,11 +90,7 @@ static void add_side(const goe_observation_t *obs, const goe_solid_t *o, size_t 
     }
     set_place(obs, o, &t.contact, &g, by);
     by[GOE_INVERSE_RANGE] += g.y * obs->height_m;
-    const float shift = -obs->position_sd * obs->state[GOE_INVERSE_RANGE];
-    float *common = rows->shift[rows->count - 1u];
-    common[0] = shift * g.x;
-    common[1] = shift * g.y;
-    common[2] = shift * g.z;
+    goe_shift_note(rows, &g, -obs->position_sd * obs->state[GOE_INVERSE_RANGE]);
     remember(rows, side);
 }
 
@@ -225,46 +221,6 @@ void goe_footprint_recall(goe_filter_t *filter, const goe_observation_t *obs, go
     }
 }
 
-/*@ requires goe_rows_hold(rows) && a < GOE_BOX_SIDES && b < GOE_BOX_SIDES; */
-static float shared_shift(const goe_rows_t *rows, size_t a, size_t b) {
-    const float *v = rows->shift[a];
-    const float *w = rows->shift[b];
-    return rows->shifts ? v[0] * w[0] + v[1] * w[1] + v[2] * w[2] : 0.0f;
-}
-
-/* What a row counts: I + N has lost the 1, a row's own noise, among float's 24 bits where the shift is thousands of times that noise,
- * and rows would come out far too certain, or infinite. Such a row counts as if its noise were larger. */
-/*@ requires goe_rows_hold(rows) && i < GOE_BOX_SIDES; */
-static float share_of(const goe_rows_t *rows, size_t i) {
-    const float shift = goe_square(rows->weight[i]) * shared_shift(rows, i, i);
-    return shift > SHIFT_RATIO_MAX * SHIFT_RATIO_MAX ? SHIFT_RATIO_MAX / sqrtf(shift) : 1.0f;
-}
-
-/* Rows of unit noise that share a shift: their covariance is I + N; times the inverse of its Cholesky root they share none. */
-/*@ requires goe_rows_hold(rows) && rows->remembered <= GOE_BOX_SIDES; */
-static void free_of_shift(goe_rows_t *rows) {
-    float root[GOE_BOX_SIDES][GOE_BOX_SIDES];
-    for (size_t i = 0; i < rows->remembered; i++) {
-        float *row = rows->matrix->row[i];
-        const float share = share_of(rows, i);
-        rows->weight[i] *= share;
-        for (size_t j = 0; j <= i; j++) {
-            float sum = (i == j ? 1.0f : 0.0f) + rows->weight[i] * rows->weight[j] * shared_shift(rows, i, j);
-            for (size_t k = 0; k < j; k++) {
-                sum -= root[i][k] * root[j][k];
-            }
-            root[i][j] = i == j ? sqrtf(sum) : sum / root[j][j];
-        }
-        for (size_t c = 0; c < GOE_COLUMNS; c++) {
-            row[c] *= share;
-            for (size_t j = 0; j < i; j++) {
-                row[c] -= root[i][j] * rows->matrix->row[j][c];
-            }
-            row[c] = row[c] / root[i][i];
-        }
-    }
-}
-
 void goe_footprint_learn(goe_filter_t *filter, goe_rows_t *rows) {
     const float white = rows->white_rad;
     for (size_t i = 0; i < rows->remembered; i++) {
@@ -272,11 +228,9 @@ void goe_footprint_learn(goe_filter_t *filter, goe_rows_t *rows) {
         const float weight = rows->weight[i];
         const float attitude = white * white * (row[0] * row[0] + row[1] * row[1] + row[2] * row[2]);
         goe_side_memory_learn(&filter->side[rows->side[i]], row, weight,
-                              attitude + weight * weight * shared_shift(rows, i, i));
+                              attitude + weight * weight * goe_shift_shared(rows, i, i));
     }
-    if (rows->shifts) {
-        free_of_shift(rows);
-    }
+    goe_shift_whiten(rows);
 }
 
 void goe_footprint_follow(goe_filter_t *filter, const float change[GOE_UNKNOWNS]) {

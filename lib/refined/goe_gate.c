@@ -8,6 +8,7 @@
 
 #include "maths/goe_angle.h"
 #include "maths/goe_scalar.h"
+#include "refined/goe_shift.h"
 
 #if GOE_WITH_FILTER
 
@@ -39,18 +40,6 @@ static void gather(const goe_rows_t *rows, goe_axis_t axis, group_t *group) {
         goe_absolute(residual_of(rows, group->row[half - 1])) < goe_absolute(residual_of(rows, group->middle))) {
         group->middle = group->row[half - 1];
     }
-}
-
-/* Of the image's own position error in a row, or in the difference of two. */
-/*@ requires goe_rows_hold(rows) && row < rows->count && middle < rows->count; */
-static float shift_variance(const goe_rows_t *rows, size_t row, size_t middle, float other) {
-    float sum = 0.0f;
-    for (size_t c = 0; c < 3; c++) {
-        const float own = row < rows->remembered ? rows->shift[row][c] : 0.0f;
-        const float common = middle < rows->remembered ? rows->shift[middle][c] : 0.0f;
-        sum += goe_square(own - other * common);
-    }
-    return sum;
 }
 
 #if GOE_AUGMENTED
@@ -94,7 +83,7 @@ static float innovation(const known_t *known, const goe_rows_t *rows, size_t row
         weight[c + 4] = a[GOE_STATE_COLUMN + c + 4] - other * b[GOE_STATE_COLUMN + c + 4];
     }
     if (rows->shifts) {
-        attitude += shift_variance(rows, row, middle, other) / (white * white);
+        attitude += goe_shift_variance(rows, row, middle, other) / (white * white);
     }
     const float residual = a[GOE_RESIDUAL] - other * b[GOE_RESIDUAL];
     const float own = rows->variance[row] + other * rows->variance[middle];

@@ -10,10 +10,4 @@
 bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, const goe_view_t *view,
                         unsigned *swapped);
 
-/* After an update that returned true: sets *estimate from the filter's state. A quantity is known only if the image before
- * knew it, too: sigma and value come from the same linearization, so one image alone may be lucky. Returns as
- * goe_report_quantities(). */
-bool goe_refined_report(goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
-                        goe_estimate_t *estimate);
-
 #endif
