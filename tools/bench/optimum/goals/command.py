@@ -33,6 +33,7 @@ from .pixel_noise import gauss_group
 from .recorded import recorded_group
 from .rivals import rivals_group
 from .table3 import table3_group
+from .thin import thin_group
 from .work import FULL, QUICK, Amount
 
 GROUPS: dict[str, Callable[[str, Amount], list[Goal]]] = {
@@ -46,6 +47,7 @@ GROUPS: dict[str, Callable[[str, Amount], list[Goal]]] = {
     "recorded": recorded_group,
     "kitti": kitti_group,
     "boxes": boxes_group,
+    "thin": thin_group,
     "attack": attack_group,
     "hazard": hazard_group,
     "rivals": rivals_group,
@@ -54,6 +56,7 @@ ABSENT = {
     "float32": "the target goe_python_double is not built",
     "recorded": f"no flights in {RECORDED_FOLDER}",
     "kitti": f"no logs in {KITTI_FOLDER}",
+    "thin": "no logs av2, oda beside those of the boxes",
     "rivals": "the rivals are not installed",
 }
 
