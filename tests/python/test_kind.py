@@ -207,7 +207,7 @@ def off_sigmas(kind: np.ndarray, track: Track) -> float:
 @pytest.mark.parametrize("features", SEEN)
 @pytest.mark.parametrize(("real", "stated"), [("truck", "car"), ("car", "truck"), ("car", "person")])
 def test_a_wrong_class_is_flagged(real: str, stated: str, features: str) -> None:
-    """[GOE_REASON_SHAPE] Where four sigmas can tell it; then it is not used."""
+    """[GOE_REASON_SHAPE] If it is wrong by four sigmas; then it is not used."""
     kind, flagged, inside, lies = SORTS[stated].stated(), [], [], []
     for inputs in flights(SEEN[features], range(6500, 6530), SORTS[real].one):
         if off_sigmas(kind, track_of(inputs, None)) < 4.0:
@@ -220,7 +220,7 @@ def test_a_wrong_class_is_flagged(real: str, stated: str, features: str) -> None
             assert track.suspect[has(track, SHAPE)].all()
             inside += [ratios(outcome, q)[-1] < 2.0 for q in (X0, Z0) if len(ratios(outcome, q))]
     if not flagged:
-        pytest.skip("four sigmas tell none of them")
+        pytest.skip("none is wrong by four sigmas")
     assert np.mean(flagged) >= 0.8, (np.mean(flagged), len(flagged))
     assert np.mean(inside) >= 0.9, (np.mean(inside), len(inside))
     assert np.mean(lies) <= 0.05, np.mean(lies)
