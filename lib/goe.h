@@ -180,8 +180,9 @@ typedef struct {
     float pixel_sd_px;     /* replaces detector.point_noise_px and box_noise_px; 0 to 100 */
 } goe_image_noise_t;
 
-/* What the detector's class says of the obstacle, for the filter method. 0: unknown. goe uses it once in a track and tests it in every
- * image: of a class that the images contradict it makes no further use, and reports GOE_REASON_SHAPE. */
+/* What the detector's class says of the obstacle, for the filter method. 0: unknown. Until images show the range, goe estimates it from
+ * the size; such an estimate never gives GOE_DECISION_CLEAR. If images contradict a size, goe reports GOE_REASON_SHAPE, and ignores the
+ * class to the end of the track. */
 typedef struct {
     float width_m, width_sd_m;   /* width of the silhouette, from any side, and one sigma: size 0 to 1e3, sigma 0.01 size to 1e3 */
     float height_m, height_sd_m; /* the same of the height */

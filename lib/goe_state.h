@@ -215,12 +215,13 @@ typedef struct {         /* refined/goe_refined.c: what of the latest answer out
     float height_bias_m; /* constant error of the camera's height that the answer is freed of, m */
     goe_flag_t outdated; /* the state has changed since, other than by time */
     goe_flag_t previous; /* the answer is of the filter before it started again */
+    goe_flag_t by_kind;  /* the answer's range is that of the detector's class */
 } goe_answer_t;
 
 #define GOE_KIND_SIZES 2 /* width, height */
 typedef struct {         /* refined/goe_kind.c: what the filter uses of the detector's class */
     float size_m[GOE_KIND_SIZES], sd_m[GOE_KIND_SIZES];
-    uint8_t used;         /* bit i: the size is information in the state */
+    uint8_t known;        /* GOE_HAS_...: what the image before knew well enough with the sizes */
     uint8_t contradicted; /* images in a row that contradict it */
     goe_flag_t wrong;     /* they did: to the end of the track it is not used */
     goe_flag_t round;     /* the obstacle is taken to be round */

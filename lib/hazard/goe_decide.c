@@ -82,6 +82,16 @@ static bool is_misplaced(const goe_estimate_t *estimate) {
     return estimate->reason == GOE_REASON_MOVES && (estimate->valid & GOE_HAS_VELOCITY) == 0u;
 }
 
+/* Whether the range is that of a class, which may be wrong, and no image has tested yet. */
+static bool is_presumed(const goe_estimator_t *estimator) {
+#if GOE_WITH_FILTER
+    return goe_uses_filter(estimator) && estimator->filter.answer.by_kind != 0u;
+#else
+    (void)estimator;
+    return false;
+#endif
+}
+
 /* Between the two bounds of the time, and between a small probability and a distance that is kept, too little is known to clear. */
 static goe_decision_t decision_of(const goe_hazard_t *met, const goe_intent_t *intent, const goe_rule_t *rule) {
     if (met->conflict_probability < rule->conflict_probability_max) {
@@ -111,7 +121,7 @@ static GOE_NOINLINE goe_decision_t judge(const goe_estimator_t *estimator, const
         return status == GOE_CONVERGING ? GOE_DECISION_UNKNOWN : GOE_DECISION_KEEP;
     }
     const goe_decision_t decision = decision_of(met, &wide, rule);
-    const bool clears = !is_superseded(estimator) && !is_misplaced(&estimator->estimate);
+    const bool clears = !is_superseded(estimator) && !is_presumed(estimator) && !is_misplaced(&estimator->estimate);
     return decision == GOE_DECISION_CLEAR && !clears ? GOE_DECISION_UNKNOWN : decision;
 }
 

@@ -6,6 +6,7 @@
 
 #include "maths/goe_scalar.h"
 #include "refined/goe_ellipse.h"
+#include "refined/goe_kind.h"
 #include "refined/goe_report.h"
 
 #if GOE_WITH_FILTER
@@ -71,6 +72,7 @@ static void keep_answer(goe_filter_t *filter, unsigned valid) {
     answer->height_bias_m = filter->state[GOE_GROUND] / filter->state[GOE_INVERSE_RANGE];
     answer->outdated = false;
     answer->previous = false;
+    answer->by_kind = false;
 }
 
 /* Whether a position lies behind the camera, with all of its extent, in an image that shows the obstacle ahead. */
@@ -82,8 +84,8 @@ static bool lies_behind(const goe_filter_t *filter, const goe_quantities_t *quan
            -(reach_m + (quantities->box ? quantities->value[GOE_LENGTH] : 0.0f));
 }
 
-bool goe_answer_update(goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
-                       goe_estimate_t *estimate) {
+static bool update(goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
+                   goe_estimate_t *estimate) {
     goe_quantities_t quantities;
     goe_quantities_find(filter, settings, motion, &quantities);
     filter->known = (uint8_t)quantities.now;
@@ -98,6 +100,31 @@ bool goe_answer_update(goe_filter_t *filter, const goe_settings_t *settings, con
     const bool fresh = goe_report_quantities(&quantities, motion, estimate);
     if (fresh) {
         keep_answer(filter, estimate->valid);
+    }
+    return fresh;
+}
+
+/* What the images know without the sizes is left as it is: with them, `known` is another. The covariance of a loan does not outlive it. */
+static bool update_with_sizes(goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
+                              goe_estimate_t *estimate) {
+    filter->known = filter->kind.known;
+    const bool fresh = update(filter, settings, motion, estimate);
+    filter->kind.known = filter->known;
+    filter->known = 0;
+    filter->answer.outdated = true;
+    filter->answer.by_kind = fresh || filter->answer.by_kind;
+    return fresh;
+}
+
+bool goe_answer_update(goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
+                       goe_estimate_t *estimate) {
+    goe_kind_loan_t loan;
+    if (!goe_kind_lend(filter, settings->filter.range_sd_rel_max, &loan)) {
+        return update(filter, settings, motion, estimate);
+    }
+    const bool fresh = update_with_sizes(filter, settings, motion, estimate);
+    if (goe_filter_has_started(filter)) {
+        goe_kind_return(filter, &loan);
     }
     return fresh;
 }

@@ -18,6 +18,7 @@
 #define FOOT_SHARE 0.6f      /* of box_noise_rel of the width, in that sigma */
 #define NEAR_SIDE 0.5f       /* a box's foot is nearer than the middle by half the width */
 #define RANGE_MIN_M 1.0f     /* of a first guess */
+#define FARTHER_MAX 5.0f     /* times that a class may place the obstacle farther than the settings */
 #define RANGE_MAX_M 1.0e6f   /* the same */
 #define NO_ALTIMETER_M 50.0f /* sigma of the height from which on the first box sets it */
 #define HALF_FREEDOM 2.5f    /* one sigma of the first guess of the half width, in widths */
@@ -137,11 +138,8 @@ static float up_of(const sight_t *sight) {
     return sight->head.usable && sight->foot.usable ? sight->foot.y - sight->head.y : 0.0f;
 }
 
-/* A first guess of the range, and one sigma of it as a share; 0: none. */
-typedef goe_kind_range_t guess_t;
-
-/* (R2), (R16): from flat ground, if the foot lies clearly below the horizon. */
-static guess_t guess_by_ground(const goe_observation_t *obs, const sight_t *sight) {
+/* (R2): from flat ground, if the foot lies clearly below the horizon; otherwise 0. */
+static float range_by_ground_m(const goe_observation_t *obs, const sight_t *sight) {
     const goe_settings_t *s = obs->settings;
     const float attitude =
         goe_square(s->navigation.attitude_bias_sd_deg * GOE_RAD_PER_DEG) + goe_square(obs->white_rad);
@@ -149,24 +147,21 @@ static guess_t guess_by_ground(const goe_observation_t *obs, const sight_t *sigh
     const float share = sight->box ? FOOT_SHARE * s->detector.box_noise_rel : 0.0f;
     const float foot_sd = sqrtf(attitude + goe_square(pixel) + goe_square(share * sight->size));
     const float nearer = sight->box ? NEAR_SIDE * sight->size : 0.0f;
-    guess_t guess = {0.0f, 0.0f};
-    if (sight->foot.usable && sight->foot.y > GROUND_SIGMAS * foot_sd &&
-        obs->height_m > GROUND_SIGMAS * obs->height_sd_m) {
-        guess.range_m = obs->height_m / sight->foot.y * (1.0f + nearer);
-        guess.share = sqrtf(goe_square(obs->height_sd_m / obs->height_m) + goe_square(foot_sd / sight->foot.y));
-    }
-    return guess;
+    const bool grounded = sight->foot.usable && sight->foot.y > GROUND_SIGMAS * foot_sd &&
+                          obs->height_m > GROUND_SIGMAS * obs->height_sd_m;
+    return grounded ? obs->height_m / sight->foot.y * (1.0f + nearer) : 0.0f;
 }
 
-/* The better of ground and class; without both, from the width that the settings assume. */
+/* (R16): without ground from the size, by its class or as the settings assume it. A class may be wrong, and must not put the obstacle
+ * where the sigma of the guess does not reach back. */
 static float first_range_m(const goe_observation_t *obs, const sight_t *sight) {
-    const guess_t ground = guess_by_ground(obs, sight);
-    const guess_t kind = goe_kind_range(obs->kind, sight->size, up_of(sight));
-    if (kind.share > 0.0f && (!(ground.share > 0.0f) || kind.share < ground.share)) {
-        return kind.range_m;
+    const float ground_m = range_by_ground_m(obs, sight);
+    const float prior_m = obs->settings->filter.prior_width_m / goe_larger(sight->size, BOX_SIZE_MIN);
+    const float kind_m = goe_kind_range_m(obs->kind, sight->size, up_of(sight));
+    if (ground_m > 0.0f) {
+        return ground_m;
     }
-    return ground.share > 0.0f ? ground.range_m
-                               : obs->settings->filter.prior_width_m / goe_larger(sight->size, BOX_SIZE_MIN);
+    return kind_m >= RANGE_MIN_M && kind_m <= FARTHER_MAX * prior_m ? kind_m : prior_m;
 }
 
 static void set_root(const goe_observation_t *obs, const float state[GOE_STATES], float width, goe_triangle_t *root) {

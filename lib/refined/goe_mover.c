@@ -154,10 +154,8 @@ static bool fit_augmented(const goe_filter_t *filter, const goe_observation_t *o
     return true;
 }
 
-/* The image gives a scale that does not require a static obstacle: its foot, by the height, or a size by its class. */
-static bool has_scale(const goe_filter_t *filter, const goe_observation_t *obs) {
-    return goe_sides_see(obs->sides, GOE_SIDE_BOTTOM) || obs->base || filter->kind.used != 0;
-}
+/* The image gives a scale that does not require a static obstacle: its foot, by the height. */
+static bool has_scale(const goe_observation_t *obs) { return goe_sides_see(obs->sides, GOE_SIDE_BOTTOM) || obs->base; }
 
 /* Of the covariance (x, both; both, z). One too close to singular for float is taken as wide as it may be. */
 static float determinant_of(float x, float both, float z) {
@@ -270,7 +268,7 @@ bool goe_mover_judge(goe_filter_t *filter, const goe_observation_t *obs, const f
     }
     judge_latency(filter, &fit);
     const bool seen = is_moving(filter, &fit, since_s);
-    if (!seen || !has_scale(filter, obs)) { /* an outline of another shape drifts, too, but fits */
+    if (!seen || !has_scale(obs)) { /* an outline of another shape drifts, too, but fits */
         m->moves = m->moves || (seen && filter->health.mean_nis > obs->settings->filter.nis_ratio_max);
         return false;
     }

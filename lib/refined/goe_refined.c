@@ -91,7 +91,6 @@ static bool measure(goe_filter_t *filter, const goe_observation_t *obs, goe_rows
     filter->measured.dz_m = obs->camera_m.z;
     doubt(filter, obs);
     verdict->rows += goe_ground_row(filter, obs, rows);
-    verdict->rows += goe_kind_rows(filter, obs, rows);
     const float nis = goe_model_update(filter, 1.0f / rows->white_rad, rows, change);
     /* Variances were inflated by (1+r)/(1-r) for the correlation in time, the scatter within one image is not: undone for the
      * NIS. */
@@ -167,8 +166,10 @@ GOE_NOINLINE static bool use_rows(goe_filter_t *filter, const goe_observation_t 
         goe_box_clip(filter);
     }
     const bool moves = measured && starts_to_move(filter, obs, change);
-    const bool contradicts = measured && goe_kind_contradicts(filter);
-    if (goe_health_judge(filter, obs->settings->model, verdict) || moves || contradicts) {
+    if (measured) {
+        goe_kind_test(filter, obs);
+    }
+    if (goe_health_judge(filter, obs->settings->model, verdict) || moves) {
         goe_filter_enter(filter, GOE_PHASE_NONE);
         return false;
     }

