@@ -45,7 +45,8 @@ constants! {
     goe_reason_t: GOE_REASON_NONE = 0, GOE_REASON_CONVENTION = 1, GOE_REASON_MOVES = 2, GOE_REASON_BASE = 3,
         GOE_REASON_SHAPE = 4, GOE_REASON_LATE = 5, GOE_REASON_NOISE = 6;
     goe_decision_t: GOE_DECISION_UNKNOWN = 0, GOE_DECISION_CLEAR = 1, GOE_DECISION_ACT = 2, GOE_DECISION_KEEP = 3;
-    u8: GOE_SIDE_LEFT = 1, GOE_SIDE_TOP = 2, GOE_SIDE_RIGHT = 4, GOE_SIDE_BOTTOM = 8;
+    u8: GOE_SIDE_LEFT = 1, GOE_SIDE_TOP = 2, GOE_SIDE_RIGHT = 4, GOE_SIDE_BOTTOM = 8,
+        GOE_SHAPE_UNKNOWN = 0, GOE_SHAPE_ROUND = 1, GOE_SHAPE_OTHER = 2;
     c_uint: GOE_HAS_POSITION = 0x01, GOE_HAS_LENGTH = 0x02, GOE_HAS_HEIGHT = 0x04, GOE_HAS_ORIENTATION = 0x08,
         GOE_HAS_CENTER = 0x10, GOE_HAS_WIDTH = 0x20, GOE_HAS_VELOCITY = 0x40;
     usize: GOE_FAULT_COUNTS = 16, GOE_QUANTITIES = 6;
@@ -88,6 +89,7 @@ c_struct! {
     goe_pixel_t { u_px: f32, v_px: f32, visible: bool }
     goe_box_t { left_px: f32, top_px: f32, right_px: f32, bottom_px: f32, sides: u8 }
     goe_image_noise_t { attitude_sd_deg: f32, height_sd_m: f32, pixel_sd_px: f32 }
+    goe_kind_t { width_m: f32, width_sd_m: f32, height_m: f32, height_sd_m: f32, shape: u8 }
     goe_image_t {
         pose: goe_pose_t,
         left: goe_pixel_t,
@@ -98,6 +100,7 @@ c_struct! {
         base_right: goe_pixel_t,
         box_: goe_box_t,
         noise: goe_image_noise_t,
+        kind: goe_kind_t,
         camera: u8,
     }
     goe_estimate_t {
@@ -278,6 +281,7 @@ mod flight {
             base_left: goe_pixel_t,
             base_near: goe_pixel_t,
             base_right: goe_pixel_t,
+            kind: goe_kind_t,
         }
         goe_flight_frame_t {
             arrival_us: u32,

@@ -9,7 +9,7 @@ use core::{fmt, ptr};
 use crate::ffi;
 use crate::image::pixel_to_c;
 use crate::settings::bad_setting;
-use crate::{BoundingBox, Error, Hazard, Length, Model, Pixel, Pose, Settings};
+use crate::{BoundingBox, Error, Hazard, Kind, Length, Model, Pixel, Pose, Settings};
 
 /// Obstacles that are followed at a time.
 pub const SLOTS: usize = ffi::GOE_FLIGHT_SLOTS;
@@ -211,6 +211,7 @@ impl Detection {
                 base_left: invisible,
                 base_near: invisible,
                 base_right: invisible,
+                kind: Kind::default().to_c(),
             },
         }
     }
@@ -226,6 +227,13 @@ impl Detection {
     #[must_use]
     pub fn with_pixel_px(mut self, sd_px: f32) -> Self {
         self.c.pixel_px = sd_px;
+        self
+    }
+
+    /// What the detector's class says of it. A bad one is counted, and not used.
+    #[must_use]
+    pub fn with_kind(mut self, kind: Kind) -> Self {
+        self.c.kind = kind.to_c();
         self
     }
 

@@ -1,5 +1,6 @@
 //! What the estimator is given with each image.
 
+use crate::estimate::Length;
 use crate::ffi;
 
 /// Where the aircraft was at the time of exposure, not when the image arrived.
@@ -98,6 +99,46 @@ pub struct ImageNoise {
     pub pixel_sd_px: Option<f32>,
 }
 
+/// What the detector's class says of the obstacle's shape.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum KindShape {
+    /// As the settings have it.
+    #[default]
+    Unknown,
+    /// An upright cylinder: as with [`Shape::Disc`](crate::Shape::Disc) of the settings.
+    Round,
+    /// None, also with that setting.
+    Other,
+}
+
+/// What the detector's class says of the obstacle; `None`: unknown. Filter method. A class that the images contradict is not used any
+/// more, and the estimate's reason is [`Reason::Shape`](crate::Reason::Shape).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Kind {
+    /// Width of the silhouette, from any side, up to 1e3 m; its sigma at least 1 % of it.
+    pub width: Option<Length>,
+    /// Height, up to 1e3 m; its sigma at least 1 % of it.
+    pub height: Option<Length>,
+    /// Whether it is round.
+    pub shape: KindShape,
+}
+
+impl Kind {
+    pub(crate) fn to_c(self) -> ffi::goe_kind_t {
+        ffi::goe_kind_t {
+            width_m: self.width.map_or(0.0, |width| width.m),
+            width_sd_m: self.width.map_or(0.0, |width| width.sd_m),
+            height_m: self.height.map_or(0.0, |height| height.m),
+            height_sd_m: self.height.map_or(0.0, |height| height.sd_m),
+            shape: match self.shape {
+                KindShape::Unknown => ffi::GOE_SHAPE_UNKNOWN,
+                KindShape::Round => ffi::GOE_SHAPE_ROUND,
+                KindShape::Other => ffi::GOE_SHAPE_OTHER,
+            },
+        }
+    }
+}
+
 /// One image of one obstacle: a box, or points, or both. Any subset may be visible; none: pass the image anyway.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Image {
@@ -119,6 +160,8 @@ pub struct Image {
     pub bounding_box: Option<BoundingBox>,
     /// This image's own errors.
     pub noise: ImageNoise,
+    /// What the detector's class says of it.
+    pub kind: Kind,
 }
 
 pub(crate) fn pixel_to_c(pixel: Option<Pixel>) -> ffi::goe_pixel_t {
@@ -154,6 +197,7 @@ impl Image {
                 height_sd_m: self.noise.height_sd_m.unwrap_or(0.0),
                 pixel_sd_px: self.noise.pixel_sd_px.unwrap_or(0.0),
             },
+            kind: self.kind.to_c(),
             camera: 0,
         }
     }

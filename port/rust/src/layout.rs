@@ -136,7 +136,7 @@ layout! {
         height_sd_m: 4,
         pixel_sd_px: 8,
     }
-    goe_image_t: 168 {
+    goe_image_t: 184 {
         pose: 0,
         left: 56,
         right: 68,
@@ -146,7 +146,15 @@ layout! {
         base_right: 116,
         box_: 128,
         noise: 148,
-        camera: 160,
+        kind: 160,
+        camera: 180,
+    }
+    goe_kind_t: 20 {
+        width_m: 0,
+        width_sd_m: 4,
+        height_m: 8,
+        height_sd_m: 12,
+        shape: 16,
     }
     goe_navigation_t: 40 {
         attitude_bias_sd_deg: 0,
@@ -271,7 +279,7 @@ layout_flight! {
         resets: 16,
         lost: 18,
     }
-    goe_flight_detection_t: 104 {
+    goe_flight_detection_t: 124 {
         id: 0,
         score: 4,
         pixel_px: 8,
@@ -282,6 +290,7 @@ layout_flight! {
         base_left: 68,
         base_near: 80,
         base_right: 92,
+        kind: 104,
     }
     goe_flight_obstacle_t: 132 {
         id: 0,

@@ -60,7 +60,7 @@ pub use estimate::{Center, Estimate, Length, Model, Orientation, Position, Reaso
 pub use estimator::{Estimator, QUANTITIES};
 #[cfg(feature = "hazard")]
 pub use hazard::{Decision, DecisionRule, Hazard, Intent};
-pub use image::{BoundingBox, Image, ImageNoise, Pixel, Pose};
+pub use image::{BoundingBox, Image, ImageNoise, Kind, KindShape, Pixel, Pose};
 pub use settings::{Camera, Detector, FilterSettings, Method, Navigation, Settings, Shape, WindowSettings};
 pub use status::{Error, Fault, Status};
 

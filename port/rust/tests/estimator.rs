@@ -41,6 +41,34 @@ fn nothing_is_wrong_with_the_arithmetic() {
 #[cfg(feature = "filter")]
 mod filter {
     use super::*;
+    use goe::{Kind, KindShape, Length, Model};
+
+    #[test]
+    #[allow(clippy::result_large_err)] // of the closure
+    fn a_class_gives_size_and_shape() {
+        let with = |kind: Kind| {
+            let mut estimator = Estimator::new(&settings()).expect("good settings");
+            let image = |k| Image { kind, ..image(k) };
+            (0..20).map(|k| estimator.update(&image(k))).last().expect("an image")
+        };
+        let plain = with(Kind::default()).expect("a good image");
+        let sized = with(Kind {
+            height: Some(Length { m: 30.0, sd_m: 1.0 }),
+            ..Kind::default()
+        });
+        let sd_m = |estimate: Estimate| estimate.position.expect("a position").z.sd_m;
+        assert!(sd_m(sized.expect("a good image")) < 0.9 * sd_m(plain));
+        let round = Kind {
+            shape: KindShape::Round,
+            ..Kind::default()
+        };
+        assert_eq!(with(round).expect("a good image").model, Some(Model::Disc));
+        let bad = with(Kind {
+            width: Some(Length { m: 6.0, sd_m: 0.0 }),
+            ..Kind::default()
+        });
+        assert_eq!(bad.expect_err("no sigma").estimate.status, Status::OutOfRange);
+    }
 
     #[test]
     fn the_figures_of_the_readme() {

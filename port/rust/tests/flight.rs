@@ -5,7 +5,7 @@ use goe::flight::{
     Action, Attitude, Capture, Detection, Flight, FlightError, FlightPhase, FlightSettings, Frame, Heights, LatLon,
     PositionSample, Sector, SLOTS,
 };
-use goe::{BoundingBox, Error, Settings};
+use goe::{BoundingBox, Error, Kind, Length, Settings};
 
 const SPEED_M_S: f32 = 16.0;
 
@@ -116,6 +116,29 @@ fn refused_input_is_reported_and_counted() {
     flight.restart();
     assert_eq!(flight.pose(980_000, 0), Err(FlightError::NoPose));
     assert!(format!("{flight:?}").contains("lost: 1"));
+}
+
+#[test]
+fn a_bad_kind_is_counted_and_loses_no_box() {
+    let mut flight = Flight::new(&settings(), &FlightSettings::default()).expect("good settings");
+    let bad = Kind {
+        height: Some(Length {
+            m: 30.0,
+            sd_m: f32::NAN,
+        }),
+        ..Kind::default()
+    };
+    let mut taken = 0;
+    for k in 1..=50_u16 {
+        let time_us = 20_000 * u32::from(k);
+        samples(&mut flight, time_us, 0.02 * SPEED_M_S * f32::from(k)).expect("good samples");
+        let detections = [mast(200.0 - 0.02 * SPEED_M_S * f32::from(k)).with_kind(bad)];
+        let frame = Frame::new(time_us, Capture::Autopilot { capture_us: time_us }, &detections);
+        taken += u16::from(flight.frame(&frame).is_ok());
+    }
+    assert!(taken > 40);
+    assert_eq!(flight.counters().refused, taken);
+    assert!(flight.obstacle(0).is_ok());
 }
 
 #[test]
