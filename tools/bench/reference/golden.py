@@ -37,7 +37,7 @@ DOUBLE_TOLERANCE = 1e-9
 EXIT_DIFFERENT = 1
 CORNER = ROOT / "tests" / "data" / "corner"
 # This data is for the window method, which uses neither boxes nor the errors of an image.
-NO_BOX = "{.sides = 0}, {.pixel_sd_px = 0}, 0"  # and from the first camera
+NO_BOX = "{.sides = 0}, {.pixel_sd_px = 0}, {.shape = 0}, 0"  # of no class, and from the first camera
 VALID = {
     "GOE_HAS_POSITION": "x0_m",
     "GOE_HAS_LENGTH": "length_m",
