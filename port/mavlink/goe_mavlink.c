@@ -50,8 +50,8 @@ typedef struct {
      (END_OF(message, last) - offsetof(goe_mavlink_##message##_t, first)) / (size)}
 
 static const run_t features[] = {RUN(features, time_usec, time_usec, 8), RUN(features, age_usec, obstacle_id, 4),
-                                 RUN(features, box, visible, 2), RUN(features, camera_id, score, 1),
-                                 RUN(features, u, v, 2)};
+                                 RUN(features, box, visible, 2),         RUN(features, camera_id, score, 1),
+                                 RUN(features, u, kind_height_sd, 2),    RUN(features, kind_shape, kind_shape, 1)};
 static const run_t obstacle[] = {RUN(obstacle, time_usec, time_usec, 8), RUN(obstacle, id, age, 4),
                                  RUN(obstacle, slot, flags, 1)};
 static const run_t hazard[] = {RUN(hazard, time_usec, time_usec, 8), RUN(hazard, id, needed, 4),

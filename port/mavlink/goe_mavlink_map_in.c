@@ -6,6 +6,7 @@
 
 #define NO_CAMERA 255u /* none has this number: goe_flight_frame() refuses it */
 #define PX_PER_UNIT 0.1f
+#define M_PER_UNIT 0.01f
 #define SCORE_UNKNOWN 255u
 #define SCORE_MAX 100u
 #define SIDE_MAX_PX 1.0e5f                       /* of goe_box_t */
@@ -70,6 +71,14 @@ static void read_points(const goe_mavlink_features_t *message, goe_flight_detect
     }
 }
 
+static void read_kind(const goe_mavlink_features_t *message, goe_kind_t *kind) {
+    kind->width_m = M_PER_UNIT * (float)message->kind_width;
+    kind->width_sd_m = M_PER_UNIT * (float)message->kind_width_sd;
+    kind->height_m = M_PER_UNIT * (float)message->kind_height;
+    kind->height_sd_m = M_PER_UNIT * (float)message->kind_height_sd;
+    kind->shape = message->kind_shape;
+}
+
 static float read_score(uint8_t score) {
     return score < SCORE_MAX ? 0.01f * (float)score : 1.0f; /* also SCORE_UNKNOWN */
 }
@@ -95,6 +104,7 @@ bool goe_mavlink_from_features(const goe_mavlink_features_t *message, uint32_t a
     sighting->detection.pixel_px = PX_PER_UNIT * (float)message->pixel_sd;
     read_box(message, &sighting->detection.box);
     read_points(message, &sighting->detection);
+    read_kind(message, &sighting->detection.kind);
     return true;
 }
 

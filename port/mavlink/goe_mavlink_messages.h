@@ -1,7 +1,7 @@
 /* GOE_MAVLINK_INFO(message, name, id, crc_extra, length_min, length): every message of goe_mavlink_message_t, in its order.
  * tests/python/test_mavlink.py checks that mavgen generates the same values from goe.xml and the standard definitions.
  * SPDX-License-Identifier: MIT */
-GOE_MAVLINK_INFO(FEATURES, "GOE_FEATURES", 42700, 27, 37, 61)
+GOE_MAVLINK_INFO(FEATURES, "GOE_FEATURES", 42700, 27, 37, 70)
 GOE_MAVLINK_INFO(OBSTACLE, "GOE_OBSTACLE", 42701, 189, 87, 87)
 GOE_MAVLINK_INFO(HAZARD, "GOE_HAZARD", 42702, 62, 67, 67)
 GOE_MAVLINK_INFO(STATUS, "GOE_STATUS", 42703, 89, 32, 33)

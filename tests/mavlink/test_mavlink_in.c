@@ -93,6 +93,31 @@ static void points_keep_their_order(void) {
     }
 }
 
+/* Centimeters; a shorter message, without these fields, has no kind. */
+static void a_kind_is_read_in_centimeters(void) {
+    uint8_t payload[GOE_MAVLINK_PAYLOAD_MAX];
+    features.kind_width = 330u;
+    features.kind_width_sd = 87u;
+    features.kind_height = 65535u;
+    features.kind_height_sd = 1000u;
+    features.kind_shape = GOE_SHAPE_OTHER;
+    const size_t length = goe_mavlink_pack_features(&features, payload);
+    TEST_ASSERT_EQUAL_UINT(70u, length);
+    goe_mavlink_read_features(payload, length, &features);
+    TEST_ASSERT_TRUE(goe_mavlink_from_features(&features, ARRIVAL_US, &sighting));
+    const goe_kind_t *kind = &sighting.detection.kind;
+    CHECK_CLOSE(1e-5, 3.3, kind->width_m);
+    CHECK_CLOSE(1e-5, 0.87, kind->width_sd_m);
+    CHECK_CLOSE(1e-3, 655.35, kind->height_m);
+    CHECK_CLOSE(1e-5, 10.0, kind->height_sd_m);
+    TEST_ASSERT_EQUAL_UINT8(GOE_SHAPE_OTHER, kind->shape);
+    goe_mavlink_read_features(payload, 61u, &features);
+    TEST_ASSERT_TRUE(goe_mavlink_from_features(&features, ARRIVAL_US, &sighting));
+    CHECK_SAME(0.0f, kind->width_m);
+    CHECK_SAME(0.0f, kind->height_m);
+    TEST_ASSERT_EQUAL_UINT8(GOE_SHAPE_UNKNOWN, kind->shape);
+}
+
 static void times_are_of_their_clock(void) {
     features.time_usec = 0x1200000034u; /* beyond 32 bits: modulo */
     features.age_usec = 40000u;
@@ -301,6 +326,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(features_are_tenths_from_the_middle);
     RUN_TEST(points_keep_their_order);
+    RUN_TEST(a_kind_is_read_in_centimeters);
     RUN_TEST(times_are_of_their_clock);
     RUN_TEST(a_score_that_is_not_known_is_whole);
     RUN_TEST(an_image_without_detections_shows_that_the_detector_is_alive);
