@@ -258,16 +258,23 @@ static bool detect(run_t *run, uint32_t i, const goe_pose_t *pose, float t_s, go
 static void spoil_detection(run_t *run, goe_flight_detection_t *d) {
     float *const numbers[] = {&d->score,        &d->pixel_px,      &d->box.left_px, &d->box.top_px,
                               &d->box.right_px, &d->box.bottom_px, &d->left.u_px,   &d->base_near.v_px};
+    float *const sizes[] = {&d->kind.width_m, &d->kind.width_sd_m, &d->kind.height_m, &d->kind.height_sd_m};
     const uint32_t how = fuzz_byte(&run->in);
-    switch (how % 4u) {
+    switch (how % 5u) {
         case 0:
-            *numbers[how / 4u % 8u] = fuzz_any(&run->in, -1.0e5f, 1.0e5f);
+            *numbers[how / 5u % 8u] = fuzz_any(&run->in, -1.0e5f, 1.0e5f);
             break;
         case 1:
             d->id = fuzz_byte(&run->in);
             break;
         case 2:
             d->box.sides = fuzz_byte(&run->in);
+            break;
+        case 3:
+            for (int i = 0; i < 4; i++) {
+                *sizes[i] = fuzz_any(&run->in, 0.0f, 100.0f);
+            }
+            d->kind.shape = fuzz_byte(&run->in) % 4u;
             break;
         default:
             d->pixel_px = fuzz_any(&run->in, 0.0f, 100.0f);
