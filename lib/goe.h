@@ -146,9 +146,9 @@ typedef enum {
 typedef struct {
     int64_t time_us;         /* any origin; strictly increasing; GOE_TIME_UNKNOWN is refused */
     float position_ned_m[3]; /* the vehicle's reference point, each +-1e6; choose an origin within 10 km */
-    float height_m;          /* camera above the ground at the obstacle, +-1e5. Exactly 0 with a box means "not set". The
-                              * filter averages these readings, and moves the height by the changes of down. The window
-                              * uses each reading as it is */
+    float height_m;          /* camera above the ground at the obstacle, +-1e5. Exactly 0 with a box means "not set". goe
+                              * averages the readings and moves the height by the changes of down; window: each reading
+                              * as it is */
     float attitude[4];       /* quaternion w, x, y, z from body FRD to NED; its norm is 1 within 1 % */
     uint8_t reset_count;     /* reset counter of the autopilot's filter; it may wrap */
     bool reset_delta_known;  /* whether reset_delta_ned_m is set; read only after a change of reset_count */
@@ -262,7 +262,7 @@ typedef struct {
     float center_north_m, center_east_m; /* middle of the base in the NED frame of the latest pose ... */
     float center_ne_m2;                  /* ... and the covariance of north and east */
     float velocity_north_m_s, velocity_east_m_s; /* velocity of a moving obstacle */
-    float latency_s;  /* filter: delay of the poses relative to the images (corrected); its sigma includes 25 % of it */
+    float latency_s;  /* filter: delay of the poses relative to the images (corrected) */
     float residual;   /* window: RMS residual of the least-squares fit; filter: 0 */
     float baseline_m; /* window: spread of the camera's path; filter: distance of the camera from the track's start */
     float nis;        /* filter: normalized innovation squared of the latest image ... */

@@ -30,8 +30,8 @@ static float camera_down_m(const goe_view_t *view) {
     return view->image->pose.position_ned_m[2] + arm_m;
 }
 
-/* A first-order Kalman filter of the altimeter's zero: down drifts, and readings scatter by what is configured or by more. Before the
- * filter starts the ground is where the mean puts it. */
+/* A first-order Kalman filter of the altimeter's zero: down drifts, and readings scatter as configured or more. Before the filter starts
+ * the ground is where the mean puts it. */
 static void average(goe_datum_t *datum, const goe_navigation_t *navigation, bool started, float off_m, float since_s) {
     const float innovation2 = goe_square(off_m - datum->mean_m);
     const float counted = (float)(datum->readings + SCATTER_SEEDS);

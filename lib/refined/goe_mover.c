@@ -9,26 +9,26 @@
 
 #if GOE_AUGMENTED
 
-#define LATENCY_PRIOR_S 0.05f /* one sigma of what poses are late by before anything is known */
-#define LATENCY_SHARE 0.25f   /* of a latency, one sigma: a rate of turn over a span stands for that at the exposure */
-#define SPREAD_GROWN 25.0f    /* of a velocity's variance, when the obstacle begins to be followed */
-#define LATE_MIN_S 0.02f      /* poses are reported as late from here on ... */
-#define LATE_SIGMAS 2.7f      /* ... and if it is that much more than nothing */
-#define RATE_PREDICTED 0.8f   /* of a rate of turn, by the one before it: the mean over usual swaying */
-#define MOVES_CHI2 25.0f      /* a velocity's two degrees of freedom: 4e-6 by chance, if nothing but noise is wrong */
-#define BOXES_CHI2 45.0f      /* the same of upright boxes, which drift also because they are no ellipse's */
-#define REST_CHI2 9.0f        /* something moves if a latency leaves at least this unexplained ... */
-#define REST_SHARE 0.15f      /* ... and a velocity at most this share of that */
-#define LATE_SHARE 0.3f       /* poses are late only if a velocity leaves more than this share of that */
-#define MOVING_SIGMAS2 9.0f   /* a late track moves as well if its velocity is that significant */
-#define MOVES_MIN_M_S 1.0f    /* a slower motion counts as none */
-#define MOVES_S 0.4f          /* for which it says so, image after image ... */
-#define MOVES_IMAGES 3        /* ... of which there are at least so many */
-#define SETTLED_S 1.4f        /* of informative images: less gives no velocity */
-#define SINCE_MAX_S 0.5f      /* a gap between images counts as that */
-#define COLUMN_MAX 1.0e3f     /* focal lengths per second, or per m/s: beyond that no flight is */
-#define AUGMENTED_MAX 1.0e9f  /* of the augmented states and their rows of the triangle: no flight has more */
-#define TIME_MIN_S 0.1f       /* keeps a walk over time finite */
+#define LATENCY_PRIOR_S 0.05f   /* one sigma of what poses are late by before anything is known */
+#define LATENCY_SHARE 0.25f     /* of a latency, one sigma: a rate of turn over a span replaces that at the exposure */
+#define SPREAD_GROWN 25.0f      /* of a velocity's variance, when the obstacle begins to be followed */
+#define LATE_MIN_S 0.02f        /* poses are reported as late from here on ... */
+#define LATE_SIGMAS 2.7f        /* ... and if it is that much more than nothing */
+#define RATE_PREDICTED 0.8f     /* of a rate of turn, by the one before it: the mean over usual swaying */
+#define MOVES_CHI2 25.0f        /* a velocity's two degrees of freedom: 4e-6 by chance, if nothing but noise is wrong */
+#define BOXES_CHI2 45.0f        /* the same of upright boxes, which drift also because they are no ellipse's */
+#define REST_CHI2 9.0f          /* something moves if a latency leaves at least this unexplained ... */
+#define REST_SHARE 0.15f        /* ... and a velocity at most this share of that */
+#define LATE_SHARE 0.3f         /* poses are late only if a velocity leaves more than this share of that */
+#define MOVING_SIGMAS2 9.0f     /* a late track moves as well if its velocity is that significant */
+#define MOVES_MIN_M_S 1.0f      /* a slower motion counts as none */
+#define MOVES_S 0.4f            /* for which it says so, image after image ... */
+#define MOVES_IMAGES 3          /* ... of which there are at least so many */
+#define SETTLED_S 1.4f          /* of informative images: less gives no velocity */
+#define SINCE_MAX_S 0.5f        /* a gap between images counts as that */
+#define COLUMN_MAX 1.0e3f       /* focal lengths per second, or per m/s: beyond that no flight is */
+#define AUGMENTED_MAX 1.0e9f    /* of the augmented states and their rows of the triangle: no flight has more */
+#define TIME_MIN_S 0.1f         /* keeps a walk over time finite */
 #define DETERMINANT_MIN 1.0e-5f /* of a covariance of two, over the product of the variances */
 
 /*@ requires \valid(root) && i <= j < GOE_AUGMENTED; */
@@ -96,7 +96,7 @@ float goe_mover_own_variance(const goe_navigation_t *navigation, float elapsed_s
            goe_square(navigation->position_walk_sd_m) / goe_larger(elapsed_s, TIME_MIN_S);
 }
 
-/* What is not taken off because it is not significant is an error, too. */
+/* A latency that is not taken off, because it is not significant, is an error, too. */
 float goe_mover_latency_sd(const goe_filter_t *filter) {
     const float wider = goe_larger(filter->health.mean_nis, 1.0f);
     const float root = filter->root.element[goe_srif_augmented_row()];

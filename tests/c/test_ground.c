@@ -327,8 +327,8 @@ static void down_that_drifts_makes_the_height_uncertain(void) {
 }
 
 /* [navigation.height_white_sd_m]
- * GIVEN readings that scatter more than configured THEN four times the variance beyond it counts, however many readings there are; what is
- * configured is averaged. A filter that already started loses that information, the obstacle's own height none. */
+ * GIVEN readings that scatter more than configured THEN four times the variance beyond it counts, however many readings there are; the
+ * configured part is averaged. A filter that already started loses that information, the obstacle's own height none. */
 static void a_scatter_beyond_the_configured_one_stays(void) {
     const double excess_m2 = (double)(WHITE_M * WHITE_M) - 0.25;
     const double limit_m = sqrt((double)(CONSTANT_M * CONSTANT_M) + 4.0 * excess_m2);
@@ -343,7 +343,7 @@ static void a_scatter_beyond_the_configured_one_stays(void) {
     CHECK_CLOSE(0.02 * limit_m, limit_m, obs.height_sd_m);
     CHECK_CLOSE(0.02 * limit_m, limit_m, ground_sd_m());
     CHECK_CLOSE(0.02 * own_sd, own_sd, sum_sd());
-    /* AND the same readings are averaged if that is what is configured */
+    /* AND the same readings are averaged if they scatter as configured */
     goe_filter_clear(&filter);
     settings.navigation.height_white_sd_m = WHITE_M;
     for (int k = 0; k <= 1000; k++) {
