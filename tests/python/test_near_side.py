@@ -17,7 +17,9 @@ CONFIGURED = {  # the errors of BoxOptions
     "detector.box_noise_px": 0.5,
     "detector.box_noise_rel": 0.04,
     "detector.box_correlation_time_s": 1.0,
+    "navigation.height_white_sd_m": 0.0,
     "navigation.terrain_height_sd_m": 0.0,
+    "navigation.terrain_slope_sd": 0.0,
 }
 PAST = BoxOptions(roll_deg=5.0)
 AHEAD = BoxOptions(roll_deg=3.0, aside_m=(-2.0, 2.0), ahead_m=(300.0, 440.0), stop_m=40.0)

@@ -325,8 +325,10 @@ def test_decisions_are_those_of_the_rule() -> None:
         15.0, 10.0, conflict_probability_max=0.9, act_within_s=6.0, suspect_factor=3.0, stale_growth_m_s=0.5
     )
     rules = [goe.Rule(15.0, 10.0), other]
-    track = goe.run(settings(), images, rules=rules)
-    estimator = goe.Estimator(settings())
+    configured = settings()
+    configured.navigation.terrain_height_sd_m = configured.navigation.terrain_slope_sd = 0.0  # it is level
+    track = goe.run(configured, images, rules=rules)
+    estimator = goe.Estimator(configured)
     for k in range(len(images)):
         estimate = estimator.update(image(k, images))
         for number, rule in enumerate(rules):

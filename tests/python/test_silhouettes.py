@@ -26,7 +26,9 @@ SETTINGS = {
     "navigation.attitude_white_sd_deg": WHITE_DEG,
     "navigation.attitude_bias_sd_deg": BIAS_DEG,
     "navigation.height_bias_sd_m": 0.5,
+    "navigation.height_white_sd_m": 0.0,
     "navigation.terrain_height_sd_m": TERRAIN_M,
+    "navigation.terrain_slope_sd": 0.0,
 }
 LEFT, RIGHT, TOP = range(3)
 

@@ -75,6 +75,7 @@ def settings(world: World, i: int) -> goe.Settings:
     """The settings for a flight."""
     p, heading = world.p, world.heading_deg[i].item()
     group = {name: {field: p[own][i].item() for field, own in rows} for name, rows in SETTINGS.items()}
+    group["navigation"] |= {"terrain_slope_sd": 0.0} | ({} if p["ground_drawn"][i] else {"terrain_height_sd_m": 0.0})
     return goe.Settings(
         camera=goe.Camera(**_camera(world, i, 0)),
         more_cameras=(goe.Camera(**_camera(world, i, 1)),) if p["two_cameras"][i] else (),

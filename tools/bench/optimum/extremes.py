@@ -13,7 +13,7 @@ import numpy as np
 from goe_tools.flights.flight import Obstacle
 from goe_tools.flights.rotations import matrices, multiply, quaternions, small_rotations
 from goe_tools.flights.scene import Scene, look
-from goe_tools.library import METHODS, MODEL_DISC, Images
+from goe_tools.library import LEVEL, METHODS, MODEL_DISC, Images
 from goe_tools.logs.obslog import Camera
 
 KINDS = ("disc", "outline", "corners", "boxes")  # visible features of the obstacle
@@ -171,7 +171,7 @@ def settings_of(case: Case, f: dict[str, float]) -> dict[str, float]:
         "detector.box_noise_px": f["point_px"],
         "filter.prior_width_m": min(max(f["width"] * f["range_m"], 0.1), 1e3),
     }  # fmt: skip
-    return settings | ({"model": float(MODEL_DISC)} if case.kind == "disc" else {})
+    return settings | LEVEL | ({"model": float(MODEL_DISC)} if case.kind == "disc" else {})
 
 
 def scene_at(case: Case, domain: Domain, point: np.ndarray) -> tuple[Images, dict[str, float]]:
