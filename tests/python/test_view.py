@@ -174,7 +174,7 @@ def test_truth_is_drawn_where_the_log_has_it() -> None:
 
 @pytest.mark.parametrize("make", [lambda: read_log(view_logs.CORNER), view_logs.several, view_logs.boxes])
 def test_good_answers_converge_to_the_true_values(make: Callable[[], ObservationLog]) -> None:
-    shown = story(make())
+    shown = story(make(), settings=library.LEVEL)
     for track in shown.tracks:
         answers, last = track.answers, len(track.answers) - 1
         from_above = track.id == 7  # its highest point in the image is not the one that goe.h defines
@@ -319,14 +319,14 @@ def test_thinning_keeps_the_changes() -> None:
 def test_the_obstacle_that_is_shown_first() -> None:
     """The obstacle with the most answers, once it has a width; for one that is visible briefly, its own part of the
     map."""
-    shown = story(view_logs.several())
+    shown = story(view_logs.several(), settings=library.LEVEL)
     assert [shown.brief(track) for track in shown.tracks] == [False, False, False] and shown.chosen(None).id == 3
     for track in shown.tracks:
         row = track.row_at[shown.first_look(track)]
         assert math.isfinite(track.answers.column["width_m"][row])
     log = view_logs.several()
     frames = [f for f in log.frames if f.id != 11 or f.t_s > 6.0]
-    late = story(dataclasses.replace(log, frames=frames))
+    late = story(dataclasses.replace(log, frames=frames), settings=library.LEVEL)
     chimney = late.chosen(11)
     assert late.brief(chimney)
     left, right, bottom, top = map_bounds(late, chimney)
