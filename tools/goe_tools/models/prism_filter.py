@@ -34,11 +34,12 @@ Not modeled: the library's reaction to sides that repeatedly do not fit, which i
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..flights.flight import Flight
+from .altimeter import Altimeter
 from .model import undistort
 from .prism import (
     BX,
@@ -61,6 +62,7 @@ from .prism import (
     turned,
     visible_row_of,
 )
+from .scatter import RATIO_MOST, Scatter
 
 COUNT = len(STATES)
 SCATTER_SHARE = 0.01  # white part of a side's error, of the box's size
@@ -76,10 +78,6 @@ RANGE_MIN_M, RANGE_MAX_M = 1.0, 1e6
 NO_ALTIMETER_M = 50.0  # from this sigma of the height on the first box determines it
 HEADING_ARM = 0.08  # rad/(m/s): a yaw bias looks like a velocity bias
 GROUND_MIN = 1e-6  # units of Z0
-UNKNOWN_SD_M = 1e3  # of a first height that is not set
-SCATTER_SEEDS, SCATTER_MEMORY = 8, 64  # readings as configured, and how many their mean square remembers
-VARIANCE_MIN_M2 = 1e-12
-EXCESS_WEIGHT = 4.0  # of the readings' scatter beyond the configured one
 NARROW, WIDE, SCALE_MIN = 0.95, 1.05, 0.05  # of 1/Z0 when the sigma of G was set, over the present one
 GROWN = 1e-3  # of the height's information: less waits for more
 RANGE_SHARE = 10.0  # largest relative sigma of a range at which the readings count: as large as the setting can be
@@ -88,11 +86,6 @@ SHEAR_SHARE = 0.6  # sigma of s, of the first half width
 DEPTH_SD = 1.0  # of d
 ROUND_SHEAR_SHARE, ROUND_DEPTH_SD = 0.02, 1e-3  # the same if the model is a disc
 DEPTH_TURNED = float(np.float32(0.3))  # sine of the turn of the line of sight above which an image estimates d
-
-SCATTER_KEPT, CORRELATION_MOST = (float(np.float32(share)) for share in (0.985, 0.9))  # as in the library
-SCATTER_CLIP, SCATTER_SEED = 10.0, 10.0
-MEAN_SEEDS, MEAN_IMAGES, RATIO_MOST = 8, 64, 20.0
-CHANCE = float(np.float32(0.07))  # one sigma of both means: only an excess widens the sigmas
 
 
 def footprint_sds(errors: ErrorModel, half: float) -> tuple[float, float]:
@@ -121,84 +114,6 @@ class Memory:
         self.value *= share
         self.by = self.by * share
         self.variance = min(share**2 * self.variance + (1 - share**2) * variance, variance)
-
-
-def _beyond_chance(excess: float) -> float:
-    return excess - CHANCE**2 / excess if excess > CHANCE else 0.0
-
-
-@dataclass
-class Scatter:
-    """Size of the normalized residuals compared with the configured noise, and their correlation with the image
-    before."""
-
-    before: np.ndarray  # (4,) by side, sigmas; 0: none
-    products: float = 0.0
-    squares: float = 0.0
-    recent: float = 0.0  # mean of nis over rows, over the latest images
-    whole: float = 0.0  # mean of its excess over 1, over the whole track
-    images: int = 0
-
-    def take(self, side: np.ndarray, residual: np.ndarray) -> None:
-        now = np.zeros(4)
-        now[side] = np.clip(residual, -SCATTER_CLIP, SCATTER_CLIP)
-        both = (now != 0) & (self.before != 0)
-        self.products = SCATTER_KEPT * self.products + float(now[both] @ self.before[both])
-        self.squares = SCATTER_KEPT * self.squares + float(now[both] @ now[both])
-        self.before = now
-
-    def take_fit(self, ratio: float) -> None:
-        self.images += 1
-        heard = self.images + MEAN_SEEDS
-        self.recent += (min(ratio, RATIO_MOST) - self.recent) / min(heard, MEAN_IMAGES)
-        self.whole += (min(ratio - 1, RATIO_MOST) - self.whole) / heard
-
-    def factor(self) -> float:
-        correlation = min(_beyond_chance(self.products / (self.squares + SCATTER_SEED)), CORRELATION_MOST)
-        excess = max(self.recent - 1, self.whole)
-        scale = 1 + (_beyond_chance(excess) if excess > 0 else excess)
-        return max(scale * (1 + correlation) / (1 - correlation), 1.0)
-
-
-class Altimeter:
-    """A first-order Kalman filter of the height's offset: down drifts, and the readings scatter."""
-
-    def __init__(self, errors: ErrorModel) -> None:
-        self.errors = errors
-        self.lifted_m = 0.0  # by the mean before the start
-        self.mean_m = self.noise_m2 = 0.0
-        self.bias_m: float | None = None
-        self.scatter_m2 = errors.height_white_sd_m**2
-        self.readings = 0
-
-    def read(self, sight: Sight, started: bool, span_s: float) -> Sight:
-        """Returns the image with the height as known."""
-        lacks = sight.given_height_m == 0
-        if self.bias_m is None:
-            self.bias_m = UNKNOWN_SD_M if lacks else self.errors.height_bias_sd_m
-        if not lacks:
-            self._average(sight.given_height_m - sight.height_m - self.lifted_m, span_s)
-            if not started:
-                self.lifted_m += self.mean_m
-                self.mean_m = 0.0
-        return replace(sight, height_m=sight.height_m + self.lifted_m)
-
-    def _average(self, off_m: float, span_s: float) -> None:
-        innovation2 = (off_m - self.mean_m) ** 2
-        self.scatter_m2 += (innovation2 - self.scatter_m2) / min(self.readings + SCATTER_SEEDS, SCATTER_MEMORY)
-        white2 = max(self.errors.height_white_sd_m**2, self.scatter_m2)
-        predicted = self.noise_m2 + self.errors.position_walk_sd_m**2 * span_s
-        gain = predicted / max(predicted + white2, VARIANCE_MIN_M2) if self.readings else 1.0
-        self.readings = min(self.readings + 1, 255)
-        self.noise_m2 = gain * white2
-        self.mean_m += gain * (off_m - self.mean_m)
-
-    @property
-    def sd_m(self) -> float:
-        """Above the obstacle's ground, without its slope."""
-        excess = max(self.scatter_m2 - self.errors.height_white_sd_m**2, 0.0)
-        constant = self.bias_m**2 + self.errors.terrain_height_sd_m**2
-        return float(np.sqrt(constant + self.noise_m2 + EXCESS_WEIGHT * excess))
 
 
 @dataclass
