@@ -33,7 +33,7 @@ static float camera_down_m(const goe_view_t *view) {
 /* A first-order Kalman filter of the altimeter's zero: down drifts, and readings scatter as configured or more. Before the filter starts
  * the ground is where the mean puts it. */
 static void average(goe_datum_t *datum, const goe_navigation_t *navigation, bool started, float off_m, float since_s) {
-    const float innovation2 = goe_square(off_m - datum->mean_m);
+    const float innovation2 = datum->readings > 0 ? goe_square(off_m - datum->mean_m) : 0.0f;
     const float counted = (float)(datum->readings + SCATTER_SEEDS);
     datum->scatter_m2 += (innovation2 - datum->scatter_m2) / (counted < SCATTER_MEMORY ? counted : SCATTER_MEMORY);
     const float white2 = goe_larger(goe_square(navigation->height_white_sd_m), datum->scatter_m2);
@@ -95,9 +95,10 @@ void goe_ground_drift(goe_filter_t *filter, const goe_observation_t *obs) {
     direction[GOE_GROUND] = 1.0f;
     direction[GOE_TOP] = -1.0f;
     goe_srif_spread(&filter->root, direction, GOE_GROUND, GOE_TOP,
-                    filter->state[GOE_INVERSE_RANGE] * sqrtf(now - before));
+                    filter->ground_scale * filter->state[GOE_INVERSE_RANGE] * sqrtf(now - before));
     datum->moment *= before / now;
     datum->information = 1.0f / now;
+    datum->first = datum->first < datum->information ? datum->first : datum->information;
 }
 
 void goe_ground_widen(goe_filter_t *filter) {

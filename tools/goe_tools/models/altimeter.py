@@ -38,7 +38,7 @@ class Altimeter:
         return replace(sight, height_m=sight.height_m + self.lifted_m)
 
     def _average(self, off_m: float, span_s: float) -> None:
-        innovation2 = (off_m - self.mean_m) ** 2
+        innovation2 = (off_m - self.mean_m) ** 2 if self.readings else 0.0
         self.scatter_m2 += (innovation2 - self.scatter_m2) / min(self.readings + SCATTER_SEEDS, SCATTER_MEMORY)
         white2 = max(self.errors.height_white_sd_m**2, self.scatter_m2)
         predicted = self.noise_m2 + self.errors.position_walk_sd_m**2 * span_s

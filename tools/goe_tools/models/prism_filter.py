@@ -278,9 +278,10 @@ class PrismFilter:
         if now > before:
             direction = np.zeros(D)
             direction[[G, E]] = 1.0, -1.0
-            self.covariance += q**2 * (now - before) * np.outer(direction, direction)
+            self.covariance += (self.scale * q) ** 2 * (now - before) * np.outer(direction, direction)
             self.moment *= before / now
             self.information = 1 / now
+            self.first = min(self.first, self.information)
 
     def _height_rows(self, rows: Rows) -> Rows:
         """With the rows of the height: what a farther range made too weak, and what the readings added."""
