@@ -30,7 +30,7 @@
  *
  * Order of calls: goe_settings_default, goe_init; then for every image goe_update, followed by goe_decide or goe_hazard. Call
  * goe_reset before another obstacle. goe.h includes goe_limits.h (compile-time options), goe_settings.h, goe_hazard.h (closest
- * approach, decision, covariance) and goe_diagnostics.h (self-check).
+ * approach, decision, covariance), goe_class.h (detector's class) and goe_diagnostics.h (self-check).
  * DESIGN.md explains methods and limits; GLOSSARY.md defines terms.
  *
  * Frames
@@ -142,7 +142,7 @@ typedef enum {
 
 /* Pose of the aircraft AT THE TIME OF EXPOSURE. A jump of the autopilot's filter is not motion. [A27] Supply the filter's reset
  * counter and, if known, the jump: new minus old position, summed since the last image that was taken. A jump of unknown size,
- * also of attitude, starts a new track. height_m may jump with down or not. */
+ * also of attitude, starts a new track. height_m may jump or not. */
 typedef struct {
     int64_t time_us;         /* any origin; strictly increasing; GOE_TIME_UNKNOWN is refused */
     float position_ned_m[3]; /* the vehicle's reference point, each +-1e6; choose an origin within 10 km */
@@ -180,19 +180,7 @@ typedef struct {
     float pixel_sd_px;     /* replaces detector.point_noise_px and box_noise_px; 0 to 100 */
 } goe_image_noise_t;
 
-/* What the detector's class says of the obstacle, for the filter method. 0: unknown. Until images show the range, goe estimates it from
- * the size; such an estimate never gives GOE_DECISION_CLEAR. If images contradict a size, goe reports GOE_REASON_SHAPE, and ignores the
- * class to the end of the track. */
-typedef struct {
-    float width_m, width_sd_m;   /* width of the silhouette, from any side, and one sigma: size 0 to 1e3, sigma 0.01 size to 1e3 */
-    float height_m, height_sd_m; /* the same of the height */
-    uint8_t shape;               /* GOE_SHAPE_... */
-} goe_kind_t;
-
-#define GOE_SHAPE_UNKNOWN 0u
-#define GOE_SHAPE_ROUND 1u /* an upright cylinder: the filter uses the model disc */
-#define GOE_SHAPE_OTHER 2u /* none: it does not, also with the setting model disc */
-
+#include "goe_class.h"
 /* One image of one obstacle: a box, points or both, with any subset of the features.
  * Box: it replaces the points left, right and top. The box model ignores its bottom. [A29]
  * Points: supply left and right for a disc or prism, two or three base corners for a line or a box, and top for the height. Do not
@@ -293,7 +281,7 @@ GOE_NODISCARD goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator
  *             GOE_NOT_INITIALIZED and GOE_CORRUPTED. With any other negative status it is the last estimate, marked stale
  * Returns GOE_OK, a positive status, GOE_BEHIND_CAMERA to GOE_NO_HEIGHT (except GOE_BAD_HEIGHT), GOE_BAD_ARGUMENT,
  * GOE_NOT_INITIALIZED, GOE_CORRUPTED. Faults of images are counted. The solution's status has priority over a feature's.
- * Cost: at most 54000 instructions, 2048 bytes of stack; 75000 with lens distortion; window: 5500.
+ * Cost: at most 60000 instructions, 2048 bytes of stack; 81000 with lens distortion; window: 5500.
  * The window method's figure excludes lens distortion. */
 goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, goe_estimate_t *estimate);
 

@@ -98,7 +98,7 @@ typedef struct { /* window/goe_window.c */
 /* --------------------------------------------------------------------------------------------------------- filter -- */
 
 #define GOE_STATES 10
-#define GOE_FEATURES ((int)((offsetof(goe_image_t, box) - offsetof(goe_image_t, left)) / sizeof(goe_pixel_t)))
+#define GOE_FEATURES 6
 
 /* The state and the augmented states. */
 #define GOE_UNKNOWNS (GOE_STATES + GOE_AUGMENTED)
@@ -222,6 +222,7 @@ typedef struct {         /* refined/goe_refined.c: what of the latest answer out
 typedef struct {         /* refined/goe_kind.c: what the filter uses of the detector's class */
     float size_m[GOE_KIND_SIZES], sd_m[GOE_KIND_SIZES];
     uint8_t known;        /* GOE_HAS_...: what the image before knew well enough with the sizes */
+    uint8_t usable;       /* bit i: the size does not differ from what images know */
     uint8_t contradicted; /* images in a row that contradict it */
     goe_flag_t wrong;     /* they did: to the end of the track it is not used */
     goe_flag_t round;     /* the obstacle is taken to be round */

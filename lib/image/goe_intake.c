@@ -108,6 +108,6 @@ goe_status_t goe_intake_check_kind(const goe_kind_t *kind) {
         return GOE_NOT_FINITE;
     }
     const bool within = is_size(kind->width_m, kind->width_sd_m) && is_size(kind->height_m, kind->height_sd_m) &&
-                        kind->shape <= GOE_SHAPE_OTHER;
+                        kind->shape <= GOE_KIND_OTHER;
     return within ? GOE_OK : GOE_OUT_OF_RANGE;
 }

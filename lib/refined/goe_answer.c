@@ -119,7 +119,8 @@ static bool update_with_sizes(goe_filter_t *filter, const goe_settings_t *settin
 bool goe_answer_update(goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
                        goe_estimate_t *estimate) {
     goe_kind_loan_t loan;
-    if (!goe_kind_lend(filter, settings->filter.range_sd_rel_max, &loan)) {
+    const bool own = (estimate->valid & GOE_HAS_POSITION) != 0u && !filter->answer.by_kind; /* no class replaces it */
+    if (own || !goe_kind_lend(filter, settings->filter.range_sd_rel_max, &loan)) {
         return update(filter, settings, motion, estimate);
     }
     const bool fresh = update_with_sizes(filter, settings, motion, estimate);

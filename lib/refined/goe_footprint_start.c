@@ -133,7 +133,7 @@ static bool see(const goe_observation_t *obs, sight_t *sight) {
     return true;
 }
 
-/* Angular height, 0 if not seen. */
+/* Angular height, 0 if not visible. */
 static float up_of(const sight_t *sight) {
     return sight->head.usable && sight->foot.usable ? sight->foot.y - sight->head.y : 0.0f;
 }

@@ -89,7 +89,7 @@ void goe_ground_drift(goe_filter_t *filter, const goe_observation_t *obs) {
     const float before = 1.0f / datum->information;
     const float walked = before + goe_square(obs->settings->navigation.position_walk_sd_m) * filter->due_s;
     const float now = goe_larger(goe_ground_variance(obs), walked);
-    if (!(now > before)) {
+    if (!(filter->due_s > 0.0f) || !(now > before)) {
         return;
     }
     direction[GOE_GROUND] = 1.0f;

@@ -30,6 +30,7 @@ float goe_kind_range_m(const goe_kind_t *kind, float across, float up) {
 
 void goe_kind_start(goe_filter_t *filter, const goe_observation_t *obs) {
     filter->kind.known = 0;
+    filter->kind.usable = 0;
     filter->kind.contradicted = 0;
     filter->kind.round = obs->round;
 }
@@ -59,11 +60,13 @@ static float excess_of(const goe_filter_t *filter, size_t size, float size_m, fl
     return x[GOE_TOP] + x[GOE_GROUND] - size_m * x[GOE_INVERSE_RANGE];
 }
 
-/* Of a row with the derivatives `by`, which are used up. */
-static float variance_of(const goe_filter_t *filter, float by[GOE_STATES]) {
-    float reciprocal[GOE_STATES];
-    goe_srif_reciprocals(&filter->root, reciprocal);
-    return goe_srif_project(&filter->root, reciprocal, GOE_UNWEIGHTED, by);
+/* One sigma of the class, units of Z0. While the range is hardly known, the visible size says in which unit, not the range. */
+static float sd_of(const goe_filter_t *filter, size_t size) {
+    float by[GOE_STATES];
+    const float size_m = filter->kind.size_m[size];
+    const float q = filter->state[GOE_INVERSE_RANGE];
+    const float visible = excess_of(filter, size, size_m, by) + size_m * q;
+    return filter->kind.sd_m[size] * goe_larger(q, visible / size_m);
 }
 
 static void take(goe_filter_t *filter, const goe_kind_t *kind) {
@@ -77,36 +80,50 @@ static void take(goe_filter_t *filter, const goe_kind_t *kind) {
     }
 }
 
-/* Whether the images know the size, and another one. */
-static bool is_off(const goe_filter_t *filter, size_t size, float sigmas2) {
+/* (excess over its sigma)^2, of class and images together. */
+static float difference2(const goe_filter_t *filter, const float reciprocal[GOE_STATES], size_t size) {
     float by[GOE_STATES];
     const float excess = excess_of(filter, size, filter->kind.size_m[size], by);
-    const float class2 = goe_square(filter->kind.sd_m[size] * filter->state[GOE_INVERSE_RANGE]);
-    return goe_square(excess) > sigmas2 * (class2 + variance_of(filter, by));
+    const float variance = goe_srif_project(&filter->root, reciprocal, GOE_UNWEIGHTED, by);
+    return goe_square(excess) / (goe_square(sd_of(filter, size)) + variance);
+}
+
+static void count(goe_kind_use_t *kind, bool off) {
+    if (!off) {
+        kind->contradicted = 0;
+    } else if (goe_count_image(&kind->contradicted) >= WRONG_IMAGES) {
+        kind->wrong = true;
+        memset(kind->size_m, 0, sizeof kind->size_m);
+    }
 }
 
 void goe_kind_test(goe_filter_t *filter, const goe_observation_t *obs) {
+    float reciprocal[GOE_STATES];
     bool off = false;
     take(filter, obs->kind);
+    filter->kind.usable = 0;
+    if (!(filter->kind.size_m[WIDTH] > 0.0f) && !(filter->kind.size_m[HEIGHT] > 0.0f)) {
+        return; /* no class, which is usual */
+    }
+    goe_srif_reciprocals(&filter->root, reciprocal);
     for (size_t i = 0; i < SIZES; i++) {
-        off = (filter->kind.size_m[i] > 0.0f && is_off(filter, i, WRONG_SIGMAS2)) || off;
+        if (filter->kind.size_m[i] > 0.0f) {
+            const float squared = difference2(filter, reciprocal, i);
+            filter->kind.usable |= squared < DOUBT_SIGMAS2 ? (uint8_t)(1u << i) : (uint8_t)0u;
+            off = squared > WRONG_SIGMAS2 || off;
+        }
     }
-    if (!off) {
-        filter->kind.contradicted = 0;
-    } else if (goe_count_image(&filter->kind.contradicted) >= WRONG_IMAGES) {
-        filter->kind.wrong = true;
-        memset(filter->kind.size_m, 0, sizeof filter->kind.size_m);
-    }
+    count(&filter->kind, off);
 }
 
-static void add_size(const goe_filter_t *filter, size_t size, goe_matrix_t *matrix, size_t *count) {
-    const float weight = 1.0f / (WIDER * filter->kind.sd_m[size] * filter->state[GOE_INVERSE_RANGE]);
-    float *row = matrix->row[(*count)++];
-    float *by = &row[GOE_STATE_COLUMN];
-    row[GOE_RESIDUAL] = -weight * excess_of(filter, size, filter->kind.size_m[size], by);
-    for (size_t i = 0; i < GOE_STATES; i++) {
-        by[i] *= weight;
+static void add_size(goe_filter_t *filter, size_t size, float right[GOE_UNKNOWNS]) {
+    float row[GOE_UNKNOWNS] = {0.0f};
+    const float weight = 1.0f / (WIDER * sd_of(filter, size));
+    const float excess = excess_of(filter, size, filter->kind.size_m[size], row);
+    for (size_t i = GOE_UNWEIGHTED; i < GOE_STATES; i++) {
+        row[i] *= weight;
     }
+    goe_srif_add(&filter->root, row, -weight * excess, right);
 }
 
 static bool is_range_known(const goe_filter_t *filter, float share) {
@@ -116,30 +133,24 @@ static bool is_range_known(const goe_filter_t *filter, float share) {
 
 void goe_kind_return(goe_filter_t *filter, const goe_kind_loan_t *loan) {
     memcpy(filter->state, loan->state, sizeof loan->state);
-    filter->root = loan->root;
+    memcpy(&filter->root, &loan->root, sizeof loan->root);
 }
 
 bool goe_kind_lend(goe_filter_t *filter, float range_share, goe_kind_loan_t *loan) {
-    goe_matrix_t matrix;
-    float change[GOE_UNKNOWNS];
-    size_t count = 0;
-    const bool own = (filter->known & GOE_HAS_POSITION) != 0u;
-    if (own || filter->kind.contradicted > 0 || !goe_filter_has_started(filter) ||
+    float change[GOE_UNKNOWNS] = {0.0f};
+    const unsigned sizes = filter->kind.usable;
+    if (sizes == 0 || filter->kind.contradicted > 0 || !goe_filter_has_started(filter) ||
         is_range_known(filter, range_share)) {
         return false;
     }
-    memset(&matrix, 0, sizeof matrix);
+    memcpy(loan->state, filter->state, sizeof loan->state);
+    memcpy(&loan->root, &filter->root, sizeof loan->root);
     for (size_t i = 0; i < SIZES; i++) {
-        if (filter->kind.size_m[i] > 0.0f && !is_off(filter, i, DOUBT_SIGMAS2)) {
-            add_size(filter, i, &matrix, &count);
+        if ((sizes & (1u << i)) != 0u) {
+            add_size(filter, i, change);
         }
     }
-    if (count == 0) {
-        return false;
-    }
-    memcpy(loan->state, filter->state, sizeof loan->state);
-    loan->root = filter->root;
-    (void)goe_srif_update(&filter->root, 1.0f, &matrix, count, change);
+    goe_srif_solve(&filter->root, change);
     for (size_t i = 0; i < GOE_STATES; i++) {
         filter->state[i] += change[i];
     }

@@ -1,6 +1,6 @@
 /* The size and the shape that the detector's class says. SPDX-License-Identifier: MIT
  *
- * The filter never takes a size in: a wrong one would turn growth into motion, and could not be told from the state any more. The size
+ * The filter never takes a size in: a wrong one would turn growth into motion, and the state would no longer show which. The size
  * gives the first guess of the range, and an answer until the images know the range themselves. Each image tests it. */
 #ifndef GOE_KIND_H
 #define GOE_KIND_H

@@ -16,6 +16,8 @@
 #define HEIGHT_SD_MIN_M 1.0e-3f
 #define EXCESS_WEIGHT                                                                                                  \
     4.0f /* of the altimeter's scatter beyond the configured one: terrain, which is no noise, and one-sided */
+#define SCATTER_CHANCE                                                                                                 \
+    1.4f /* of the configured one, that it reaches by chance: two sigma of a mean square of 64 readings */
 #define WIDTH_AHEAD_MIN 0.01f /* of the reference point, in units of Z0 */
 #define HEADING_ARM 0.08f     /* s/m: a yaw bias this large per m/s looks like a velocity bias */
 #define BEARING_FREEDOM 1.0f  /* one sigma of the first guess of X0/Z0 */
@@ -98,7 +100,7 @@ static void take_noise(goe_observation_t *obs, const goe_filter_t *filter, const
         given_or(noise->attitude_sd_deg, WHITE_MIN_DEG, navigation->attitude_white_sd_deg) * GOE_RAD_PER_DEG;
     obs->point_px = given_or(noise->pixel_sd_px, PIXEL_MIN_PX, settings->detector.point_noise_px);
     obs->side_px = given_or(noise->pixel_sd_px, PIXEL_MIN_PX, settings->detector.box_noise_px);
-    const float excess = datum->scatter_m2 - goe_square(navigation->height_white_sd_m);
+    const float excess = datum->scatter_m2 - SCATTER_CHANCE * goe_square(navigation->height_white_sd_m);
     const float bias_m = given_or(datum->sd_m, HEIGHT_SD_MIN_M, navigation->height_bias_sd_m);
     obs->height_sd_m = sqrtf(goe_square(bias_m) + goe_square(navigation->terrain_height_sd_m) + datum->noise_m2 +
                              EXCESS_WEIGHT * goe_larger(excess, 0.0f));
@@ -133,7 +135,7 @@ static void note_pace(goe_observation_t *obs, const goe_filter_t *filter, const 
 
 /* A class knows better than a setting. */
 static bool starts_round(goe_model_t asked, const goe_kind_t *kind) {
-    return kind->shape != GOE_SHAPE_UNKNOWN ? kind->shape == GOE_SHAPE_ROUND : asked == GOE_MODEL_DISC;
+    return kind->shape != GOE_KIND_UNKNOWN ? kind->shape == GOE_KIND_ROUND : asked == GOE_MODEL_DISC;
 }
 
 unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *settings, const goe_filter_t *filter,

@@ -259,15 +259,15 @@ static void set_quantities(const goe_filter_t *filter, const goe_motion_t *motio
         error->by = shape->quantity[i].by;
         float found = has(q, i) ? project(filter, wider, counted_of(i, elapsed_s), error) : 0.0f;
         found *= depends_on_corner(i) ? shape->corner_growth : 1.0f;
-        float excluded = goe_filter_traits(filter)->is_ellipse ? goe_srif_last_variance(error->by) : 0.0f;
+        const float excluded = goe_filter_traits(filter)->is_ellipse ? goe_srif_last_variance(error->by) : 0.0f;
         const float given = drift_variance(motion, drift, shape, q->box, i);
         q->value[i] = shape->quantity[i].value;
         q->sigma[i] = sqrtf(wider->scatter * found + given);
-        if (i == GOE_HEIGHT) {
-            excluded = goe_larger(excluded, found - top_variance_above_zero(filter, wider, shape->scale_m));
-        }
         q->worked_out[i] = sqrtf(goe_larger(found + given - excluded, 0.0f));
     }
+    const float top = top_variance_above_zero(filter, wider, shape->scale_m);
+    const float known = sqrtf(top + drift_variance(motion, drift, shape, q->box, GOE_HEIGHT));
+    q->worked_out[GOE_HEIGHT] = known < q->worked_out[GOE_HEIGHT] ? known : q->worked_out[GOE_HEIGHT];
 }
 
 /* Of the middle of the base along a direction, T axes; error->by: where the part of the state goes. But of a box it is the reference

@@ -42,8 +42,7 @@ static void fly_on(goe_filter_t *filter, const goe_motion_t *motion) {
 }
 
 /* Whether an image comes so soon after the one before that the errors of its box are the same: it is not used. */
-static bool comes_too_soon(const goe_filter_t *filter, const goe_detector_t *detector, const goe_motion_t *motion) {
-    const float since_s = goe_time_between_s(filter->time_us, motion->time_us, GAP_MAX_US);
+static bool comes_too_soon(const goe_filter_t *filter, const goe_detector_t *detector, float since_s) {
     return goe_filter_by_boxes(filter) && since_s < TOO_SOON_SHARE * detector->box_correlation_time_s;
 }
 
@@ -200,9 +199,9 @@ bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, co
         goe_filter_enter(filter, GOE_PHASE_NONE); /* an unknown one: it starts again */
     }
     const float since_s = goe_time_between_s(filter->time_us, view->motion->time_us, GAP_MAX_US);
-    goe_ground_read(filter, &settings->navigation, view, goe_filter_has_started(filter) ? since_s : 0.0f);
-    if (comes_too_soon(filter, &settings->detector, view->motion) ||
-        !open_image(filter, settings, view, &obs, swapped)) {
+    const bool too_soon = comes_too_soon(filter, &settings->detector, since_s);
+    goe_ground_read(filter, &settings->navigation, view, goe_filter_has_started(filter) && !too_soon ? since_s : 0.0f);
+    if (too_soon || !open_image(filter, settings, view, &obs, swapped)) {
         return false;
     }
     obs.since_s = goe_time_between_s(filter->time_us, view->motion->time_us, GAP_MAX_US);

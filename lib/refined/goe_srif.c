@@ -220,6 +220,27 @@ float goe_srif_update_considering(goe_triangle_t *root, float nuisance_root, goe
     return update(root, nuisance_root, matrix, count <= GOE_ROWS_FEW, GOE_STATES - 1, change);
 }
 
+/* Of the augmented states that the row involves, none is estimated by it. */
+void goe_srif_add(goe_triangle_t *root, float row[GOE_UNKNOWNS], float residual, float right[GOE_UNKNOWNS]) {
+    for (size_t i = GOE_UNWEIGHTED; i < GOE_STATES; i++) {
+        float *r = &root->element[goe_srif_row(i)];
+        const float length = sqrtf(r[i] * r[i] + row[i] * row[i]);
+        const float c = r[i] / length;
+        const float s = row[i] / length;
+        for (size_t j = i; j < GOE_UNKNOWNS; j++) {
+            const float p = r[j];
+            const float q = row[j];
+            r[j] = c * p + s * q;
+            row[j] = c * q - s * p;
+        }
+        const float p = right[i];
+        right[i] = c * p + s * residual;
+        residual = c * residual - s * p;
+    }
+}
+
+void goe_srif_solve(const goe_triangle_t *root, float right[GOE_UNKNOWNS]) { solve_back(root, right); }
+
 /* ------------------------------------------------------------------------------------------------------ process noise -- */
 
 /* A disturbance d of the state, x = x' + direction d, enters as a row (1/sigma) d = 0; Givens rotations then take it out of

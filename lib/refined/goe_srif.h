@@ -54,6 +54,9 @@ static inline void goe_srif_zero(float by[GOE_UNKNOWNS], size_t first) {
 /* Forgets the state; the augmented states stay known. */
 void goe_srif_clear(goe_triangle_t *root);
 
+/* The first elements of rows that may be 0: the attitude bias. */
+#define GOE_UNWEIGHTED 3
+
 /* An update by at most so many rows takes the shorter kernel. */
 #define GOE_ROWS_FEW 5
 
@@ -68,6 +71,13 @@ float goe_srif_update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *m
  * known to be 0, and its own information stays as it was; R then holds its part in the variances of the others. */
 float goe_srif_update_considering(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, size_t count,
                                   float change[GOE_UNKNOWNS]);
+
+/* For few rows and no nuisance: rotates a whitened row into R by Givens rotations, which cost less than reflections, and its residual into
+ * `right`, 0 before the first row. Its first GOE_UNWEIGHTED elements are 0; it is used up. */
+void goe_srif_add(goe_triangle_t *root, float row[GOE_UNKNOWNS], float residual, float right[GOE_UNKNOWNS]);
+
+/* The change of the state from `right`, in place. */
+void goe_srif_solve(const goe_triangle_t *root, float right[GOE_UNKNOWNS]);
 
 /* Adds variance sigma^2 along a direction, of which the states from first to last are read and the others are 0; sigma > 0. */
 /*@ requires \valid(root) && \valid_read(direction + (0 .. GOE_STATES - 1)) && first <= last < GOE_STATES; */
@@ -85,7 +95,6 @@ void goe_srif_reciprocals(const goe_triangle_t *root, float reciprocal[GOE_STATE
 /* w becomes R^-1' w: the derivative in terms of independent unit errors. Returns its squared norm, the variance of w' x, as if the
  * augmented states were known. If the first GOE_UNWEIGHTED weights are 0, `first` may be GOE_UNWEIGHTED, for half of the cost;
  * otherwise it is 0. */
-#define GOE_UNWEIGHTED 3
 float goe_srif_project(const goe_triangle_t *root, const float reciprocal[GOE_STATES], size_t first,
                        float weight[GOE_STATES]);
 

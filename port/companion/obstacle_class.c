@@ -30,19 +30,19 @@ typedef struct {
 } obstacle_class_t;
 
 static const obstacle_class_t classes[] = {
-    {"car", {1.8f, 4.8f}, {1.35f, 1.85f}, GOE_SHAPE_OTHER},
-    {"van", {1.9f, 7.7f}, {1.9f, 2.9f}, GOE_SHAPE_OTHER},
-    {"truck", {1.9f, 18.9f}, {1.8f, 4.0f}, GOE_SHAPE_OTHER},
-    {"bus", {2.1f, 18.9f}, {2.6f, 4.0f}, GOE_SHAPE_OTHER},
-    {"motorcycle", {0.8f, 2.4f}, {1.1f, 1.8f}, GOE_SHAPE_OTHER},
-    {"motor", {0.8f, 2.4f}, {1.1f, 1.8f}, GOE_SHAPE_OTHER}, /* of VisDrone */
-    {"bicycle", {0.5f, 1.9f}, {1.0f, 1.9f}, GOE_SHAPE_OTHER},
-    {"person", {0.25f, 0.95f}, {1.3f, 1.9f}, GOE_SHAPE_UNKNOWN},
-    {"pedestrian", {0.25f, 0.95f}, {1.4f, 1.9f}, GOE_SHAPE_UNKNOWN}, /* of VisDrone: they stand or walk */
-    {"people", {0.25f, 0.95f}, {0.8f, 1.9f}, GOE_SHAPE_UNKNOWN},     /* of VisDrone: in any other posture */
-    {"pole", {0.0f, 0.0f}, {6.0f, 12.0f}, GOE_SHAPE_ROUND},
-    {"chimney", {0.0f, 0.0f}, {0.0f, 0.0f}, GOE_SHAPE_ROUND},
-    {"house", {6.0f, 20.0f}, {4.0f, 12.0f}, GOE_SHAPE_OTHER},
+    {"car", {1.8f, 4.8f}, {1.35f, 1.85f}, GOE_KIND_OTHER},
+    {"van", {1.9f, 7.7f}, {1.9f, 2.9f}, GOE_KIND_OTHER},
+    {"truck", {1.9f, 18.9f}, {1.8f, 4.0f}, GOE_KIND_OTHER},
+    {"bus", {2.1f, 18.9f}, {2.6f, 4.0f}, GOE_KIND_OTHER},
+    {"motorcycle", {0.8f, 2.4f}, {1.1f, 1.8f}, GOE_KIND_OTHER},
+    {"motor", {0.8f, 2.4f}, {1.1f, 1.8f}, GOE_KIND_OTHER}, /* of VisDrone */
+    {"bicycle", {0.5f, 1.9f}, {1.0f, 1.9f}, GOE_KIND_OTHER},
+    {"person", {0.25f, 0.95f}, {1.3f, 1.9f}, GOE_KIND_UNKNOWN},
+    {"pedestrian", {0.25f, 0.95f}, {1.4f, 1.9f}, GOE_KIND_UNKNOWN}, /* of VisDrone: they stand or walk */
+    {"people", {0.25f, 0.95f}, {0.8f, 1.9f}, GOE_KIND_UNKNOWN},     /* of VisDrone: in any other posture */
+    {"pole", {0.0f, 0.0f}, {6.0f, 12.0f}, GOE_KIND_ROUND},
+    {"chimney", {0.0f, 0.0f}, {0.0f, 0.0f}, GOE_KIND_ROUND},
+    {"house", {6.0f, 20.0f}, {4.0f, 12.0f}, GOE_KIND_OTHER},
 };
 
 static void set_size(const float range_m[2], float *size_m, float *sd_m) {

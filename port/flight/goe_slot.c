@@ -88,7 +88,7 @@ static bool is_good_size(float size_m, float sd_m) {
 
 bool goe_flight_slot_is_good_kind(const goe_kind_t *kind) {
     return is_good_size(kind->width_m, kind->width_sd_m) && is_good_size(kind->height_m, kind->height_sd_m) &&
-           kind->shape <= GOE_SHAPE_OTHER;
+           kind->shape <= GOE_KIND_OTHER;
 }
 
 static void set_features(goe_image_t *image, const goe_flight_camera_t *camera, const goe_flight_detection_t *seen) {

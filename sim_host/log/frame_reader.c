@@ -112,7 +112,7 @@ static void store_shape(frame_reader_t *reader, const table_field_t *field, fram
     if (field->length > 0) {
         store_integer(reader, FRAME_KIND_SHAPE_NAME, field, frame, &frame->kind_shape);
     }
-    if (frame->kind_shape < GOE_SHAPE_UNKNOWN || frame->kind_shape > GOE_SHAPE_OTHER) {
+    if (frame->kind_shape < GOE_KIND_UNKNOWN || frame->kind_shape > GOE_KIND_OTHER) {
         FAIL(reader, frame->line, FRAME_KIND_SHAPE_NAME, "%" PRId64 " is no shape: 0 unknown, 1 round, 2 not round",
              frame->kind_shape);
     }

@@ -11,6 +11,7 @@
 #define SLOPE_BOUND 2.0e-3    /* of the largest derivative by a state, and the last digits of small differences */
 
 static const goe_sides_t no_sides; /* an image without a box */
+static const goe_kind_t no_kind;
 
 /* Product of rotations about x, y, z. */
 static void rotation_of(double x, double y, double z, double m[9]) {
@@ -50,6 +51,7 @@ void sighting_start(sighting_t *sighting, check_random_t *random) {
     sighting->sight.settings = &sighting->settings;
     sighting->sight.camera = &sighting->settings.camera;
     sighting->sight.sides = &no_sides;
+    sighting->sight.kind = &no_kind;
     sighting->sight.point_px = sighting->settings.detector.point_noise_px;
     sighting->sight.side_px = sighting->settings.detector.box_noise_px;
     sighting->sight.white_rad = sighting->settings.navigation.attitude_white_sd_deg * GOE_RAD_PER_DEG;

@@ -297,7 +297,7 @@ static void a_start_matches_one_box(void) {
     for (size_t i = 0; i < GOE_STATES; i++) {
         CHECK_CLOSE(1.0e-4, 1.0, sigma[i] * (double)*goe_srif_at(&root, i, i));
     }
-    sighting.settings.model = GOE_MODEL_DISC; /* which is as deep as wide */
+    sighting.sight.round = true; /* as deep as wide */
     TEST_ASSERT_TRUE(goe_footprint_start(&sighting.sight, x, &root));
     CHECK_CLOSE(1.0, 1000.0, *goe_srif_at(&root, GOE_LOG_DEPTH, GOE_LOG_DEPTH));
     CHECK_CLOSE(1.0, 50.0 / 0.05, *goe_srif_at(&root, GOE_SHEAR, GOE_SHEAR)); /* which shows that it is none */
@@ -574,7 +574,7 @@ static void without_an_altimeter_the_foot_gives_the_height(void) {
 
 /* ------------------------------------------------------------------------------------------------------------ errors -- */
 
-/* GIVEN rows of unit noise to which the image's own position error adds one that they share WHEN they are freed of it THEN they are
+/* [goe_shift.c] GIVEN rows of unit noise to which the image's own position error adds one that they share WHEN they are freed of it THEN they are
  * the old ones times the inverse of a Cholesky root of their covariance: none shares anything any more. Points that come after
  * the sides stay as they are, and without such an error the sides do. */
 static void rows_are_whitened(void) {

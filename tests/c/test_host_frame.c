@@ -75,13 +75,13 @@ static void a_kind_is_passed_on(void) {
     give(FRAME_KIND_WIDTH_M, 3.25);
     give(FRAME_KIND_HEIGHT_M, 1.5);
     give(FRAME_KIND_HEIGHT_SD_M, 0.25);
-    frame.kind_shape = GOE_SHAPE_OTHER;
+    frame.kind_shape = GOE_KIND_OTHER;
     frame_to_image(&frame, &image);
     CHECK_SAME(3.25f, image.kind.width_m);
     CHECK_SAME(0.5f, image.kind.width_sd_m);
     CHECK_SAME(1.5f, image.kind.height_m);
     CHECK_SAME(0.25f, image.kind.height_sd_m);
-    TEST_ASSERT_EQUAL_UINT8(GOE_SHAPE_OTHER, image.kind.shape);
+    TEST_ASSERT_EQUAL_UINT8(GOE_KIND_OTHER, image.kind.shape);
 }
 
 static void a_wider_counter_goes_on_in_eight_bits(void) {

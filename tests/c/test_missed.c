@@ -155,7 +155,7 @@ static bool is_violated(int k) {
     return behind_m < 0.5 * least_m + MARGIN_M;
 }
 
-/* [A34]
+/* [A34, goe_answer.c]
  * GIVEN a warning WHEN the filter starts again, whatever comes next THEN the warning stays for as long as the truth is a violation:
  * position and size are kept until an answer replaces them that is better or says otherwise. */
 static void a_new_start_of_the_filter_takes_no_warning_back(void) {

@@ -316,6 +316,8 @@ static goe_settings_t settings_of(const flight_t *flight) {
     settings.camera.fx_px = settings.camera.fy_px = (float)FOCAL_PX;
     settings.camera.cx_px = settings.camera.cy_px = (float)MIDDLE_PX;
     settings.model = flight->model;
+    settings.navigation.terrain_height_sd_m = 0.0f; /* level ground, as it is flown over */
+    settings.navigation.terrain_slope_sd = 0.0f;
     if ((flight->how & GAPS) != 0) {
         settings.camera.width_px = settings.camera.height_px = 2.0f * (float)MIDDLE_PX;
         settings.navigation.position_white_sd_m = 0.2f;
@@ -338,27 +340,27 @@ static goe_settings_t settings_of(const flight_t *flight) {
 
 static const flight_t flights[] = {
     {"a house by its corners", &house, POINTS | BASE, 70, 130.0, -25.0, 20.0, 10.0, 0.03, 0.5, GOE_MODEL_AUTO,
-     GOE_MODEL_BOX, 0x3Fu, GOE_REASON_NONE, 0x9C64C26E29905030u},
+     GOE_MODEL_BOX, 0x3Fu, GOE_REASON_NONE, 0xB30C0FDF5A4FD3F6u},
     {"a turned one, with gaps and a jump", &turned_house, POINTS | BASE | GAPS | JUMPS | WHITE | LENS, 70, 140.0, 20.0,
-     25.0, 11.0, 0.04, 0.7, GOE_MODEL_AUTO, GOE_MODEL_BOX, 0x3Fu, GOE_REASON_NONE, 0xFCB645ACD353C39Du},
+     25.0, 11.0, 0.04, 0.7, GOE_MODEL_AUTO, GOE_MODEL_BOX, 0x3Fu, GOE_REASON_NONE, 0xF621E939046197F9u},
     {"a box asked for, passed closely", &turned_house, POINTS | BASE, 70, 90.0, -20.0, 15.0, 10.0, 0.03, 0.3,
-     GOE_MODEL_LINE, GOE_MODEL_BOX, 0x3Fu, GOE_REASON_NONE, 0x775BF8F9324C7E75u},
+     GOE_MODEL_LINE, GOE_MODEL_BOX, 0x3Fu, GOE_REASON_NONE, 0xAF1DA4C0B6623BE0u},
     {"a mast by its outline", &mast, POINTS, 60, 150.0, 12.0, 15.0, 12.0, 0.03, 0.4, GOE_MODEL_AUTO, GOE_MODEL_PRISM,
-     0x35u, GOE_REASON_NONE, 0x9739657C7808ED44u},
+     0x35u, GOE_REASON_NONE, 0xB5FBA52F11881605u},
     {"a house for which a disc was configured", &turned_house, POINTS | WINDY, 60, 110.0, -25.0, 15.0, 11.0, 0.02, 0.2,
-     GOE_MODEL_DISC, GOE_MODEL_DISC, 0x01u, GOE_REASON_SHAPE, 0x2B53694B4454C069u},
+     GOE_MODEL_DISC, GOE_MODEL_DISC, 0x01u, GOE_REASON_SHAPE, 0x35C630CA593F6C52u},
     {"a house by its outline", &turned_house, POINTS | WINDY, 110, 130.0, 25.0, 15.0, 9.5, 0.02, 0.2, GOE_MODEL_AUTO,
-     GOE_MODEL_PRISM, 0x01u, GOE_REASON_NONE, 0x9575820244620D20u},
+     GOE_MODEL_PRISM, 0x01u, GOE_REASON_NONE, 0x83658593797E0F1Au},
     {"a mast by upright boxes", &mast, BOXES | WINDY | LENS, 60, 150.0, 10.0, 15.0, 12.0, 0.08, 0.5, GOE_MODEL_AUTO,
-     GOE_MODEL_PRISM, 0x05u, GOE_REASON_NONE, 0x6499E6C2DC4D2C92u},
+     GOE_MODEL_PRISM, 0x05u, GOE_REASON_NONE, 0x95B3DC9735413EDEu},
     {"a house by upright boxes, with gaps", &turned_house, BOXES | GAPS | WINDY, 70, 150.0, -20.0, 30.0, 11.0, 0.05,
-     0.8, GOE_MODEL_AUTO, GOE_MODEL_PRISM, 0x01u, GOE_REASON_NONE, 0x26247B9B1B581E39u},
+     0.8, GOE_MODEL_AUTO, GOE_MODEL_PRISM, 0x01u, GOE_REASON_NONE, 0xB36710B56EB376C9u},
     {"boxes and corners", &house, POINTS | BASE | BOXES, 50, 120.0, 18.0, 18.0, 11.0, 0.04, 0.5, GOE_MODEL_AUTO,
-     GOE_MODEL_BOX, 0x3Fu, GOE_REASON_NONE, 0x067C86A09D9EF17Bu},
+     GOE_MODEL_BOX, 0x3Fu, GOE_REASON_NONE, 0x4329F3BB4F77F0A2u},
     {"a truck that moves", &turned_house, POINTS | BASE | MOVING, 60, 160.0, -30.0, 20.0, 10.0, 0.03, 0.4,
-     GOE_MODEL_AUTO, GOE_MODEL_PRISM, GOE_HAS_VELOCITY, GOE_REASON_MOVES, 0xF326B0073C56DDCDu},
+     GOE_MODEL_AUTO, GOE_MODEL_PRISM, GOE_HAS_VELOCITY, GOE_REASON_MOVES, 0x142942527B27E3B7u},
     {"poses that are late", &house, POINTS | BASE | LATE, 70, 140.0, 15.0, 20.0, 10.0, 0.06, 0.4, GOE_MODEL_AUTO,
-     GOE_MODEL_BOX, 0x01u, GOE_REASON_LATE, 0x925E2B7AF7BBD4EFu},
+     GOE_MODEL_BOX, 0x01u, GOE_REASON_LATE, 0x9554FA5CB4F2B38Bu},
 };
 
 static void print_hash(const flight_t *flight) {

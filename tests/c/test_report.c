@@ -47,7 +47,7 @@ static void check_reason(goe_reason_t reason, bool suspect) {
 /* A footprint for which a disc was configured, whose shear is beyond chance. */
 static void be_sheared(void) {
     filter.phase = GOE_PHASE_FOOTPRINT;
-    settings.model = GOE_MODEL_DISC;
+    filter.kind.round = true;
     filter.state[GOE_SHEAR] = 1.0f;
     inverse_start(&filter.root, 0.1);
     know_latency();
@@ -92,7 +92,7 @@ static void few_images_make_nothing_suspect(void) {
 static void a_shear_matters_where_a_disc_was_requested(void) {
     be_sheared();
     check_reason(GOE_REASON_SHAPE, true);
-    settings.model = GOE_MODEL_AUTO;
+    filter.kind.round = false;
     check_reason(GOE_REASON_NONE, false);
     be_sheared();
     filter.phase = GOE_PHASE_BOX;
@@ -100,6 +100,8 @@ static void a_shear_matters_where_a_disc_was_requested(void) {
     be_sheared();
     filter.state[GOE_SHEAR] = 0.4f; /* 4 sigma; 4.2 are too many for a cylinder */
     check_reason(GOE_REASON_NONE, false);
+    filter.kind.wrong = true; /* the images contradict the class */
+    check_reason(GOE_REASON_SHAPE, true);
 }
 
 /* GIVEN an answer of the window's, which knows of no motion and of no false corners THEN the filter's knowledge of them is reported with

@@ -82,7 +82,7 @@ static void a_name_is_a_whole_word(void) {
         CHECK_SAME(0.0f, kind.width_sd_m);
         CHECK_SAME(0.0f, kind.height_m);
         CHECK_SAME(0.0f, kind.height_sd_m);
-        TEST_ASSERT_EQUAL_UINT8(GOE_SHAPE_UNKNOWN, kind.shape);
+        TEST_ASSERT_EQUAL_UINT8(GOE_KIND_UNKNOWN, kind.shape);
     }
 }
 

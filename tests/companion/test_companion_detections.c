@@ -219,11 +219,11 @@ static void a_class_gives_its_size(void) {
     CHECK_SAME(car.width_sd_m, d[0].kind.width_sd_m);
     CHECK_SAME(person.height_m, d[1].kind.height_m);
     CHECK_SAME(pole.height_sd_m, d[2].kind.height_sd_m);
-    TEST_ASSERT_EQUAL_UINT8(GOE_SHAPE_ROUND, d[2].kind.shape);
+    TEST_ASSERT_EQUAL_UINT8(GOE_KIND_ROUND, d[2].kind.shape);
     for (int i = 3; i < 8; i++) {
         CHECK_SAME(0.0f, d[i].kind.width_m);
         CHECK_SAME(0.0f, d[i].kind.height_m);
-        TEST_ASSERT_EQUAL_UINT8(GOE_SHAPE_UNKNOWN, d[i].kind.shape);
+        TEST_ASSERT_EQUAL_UINT8(GOE_KIND_UNKNOWN, d[i].kind.shape);
     }
     TEST_ASSERT_EQUAL_UINT(3, image.unknown_classes); /* 3, -1 and cow; 0.5 is no class */
     (void)snprintf(config.detections_classes, sizeof config.detections_classes, " pole ");

@@ -138,9 +138,9 @@ static void a_bad_kind_loses_no_box(void) {
         goe_kind_t kind;
         int refused;
     } cases[] = {
-        {{0.0f, 0.0f, 0.0f, 0.0f, GOE_SHAPE_UNKNOWN}, 0},
-        {{2.0f, 0.02f, 1000.0f, 1000.0f, GOE_SHAPE_OTHER}, 0},
-        {{0.0f, -1.0f, 1.7f, 0.1f, GOE_SHAPE_ROUND}, 0}, /* the sigma of no size is not read */
+        {{0.0f, 0.0f, 0.0f, 0.0f, GOE_KIND_UNKNOWN}, 0},
+        {{2.0f, 0.02f, 1000.0f, 1000.0f, GOE_KIND_OTHER}, 0},
+        {{0.0f, -1.0f, 1.7f, 0.1f, GOE_KIND_ROUND}, 0}, /* the sigma of no size is not read */
         {{NAN, 1.0f, 1.7f, 0.1f, 0u}, 1},
         {{3.2f, NAN, 1.7f, 0.1f, 0u}, 1},
         {{0.0f, NAN, 1.7f, 0.1f, 0u}, 1},

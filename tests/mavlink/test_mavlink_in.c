@@ -100,7 +100,7 @@ static void a_kind_is_read_in_centimeters(void) {
     features.kind_width_sd = 87u;
     features.kind_height = 65535u;
     features.kind_height_sd = 1000u;
-    features.kind_shape = GOE_SHAPE_OTHER;
+    features.kind_shape = GOE_KIND_OTHER;
     const size_t length = goe_mavlink_pack_features(&features, payload);
     TEST_ASSERT_EQUAL_UINT(70u, length);
     goe_mavlink_read_features(payload, length, &features);
@@ -110,12 +110,12 @@ static void a_kind_is_read_in_centimeters(void) {
     CHECK_CLOSE(1e-5, 0.87, kind->width_sd_m);
     CHECK_CLOSE(1e-3, 655.35, kind->height_m);
     CHECK_CLOSE(1e-5, 10.0, kind->height_sd_m);
-    TEST_ASSERT_EQUAL_UINT8(GOE_SHAPE_OTHER, kind->shape);
+    TEST_ASSERT_EQUAL_UINT8(GOE_KIND_OTHER, kind->shape);
     goe_mavlink_read_features(payload, 61u, &features);
     TEST_ASSERT_TRUE(goe_mavlink_from_features(&features, ARRIVAL_US, &sighting));
     CHECK_SAME(0.0f, kind->width_m);
     CHECK_SAME(0.0f, kind->height_m);
-    TEST_ASSERT_EQUAL_UINT8(GOE_SHAPE_UNKNOWN, kind->shape);
+    TEST_ASSERT_EQUAL_UINT8(GOE_KIND_UNKNOWN, kind->shape);
 }
 
 static void times_are_of_their_clock(void) {

@@ -20,7 +20,7 @@ from ci.cost.modules import bytes_of_object
 from goe_tools.places import PUBLIC_HEADERS, interface
 
 ROOT = Path(__file__).resolve().parents[2]
-ROWS_MOST = 440  # of the ledger: some 11 rows for each public function
+ROWS_MOST = 450  # of the ledger: some 11 rows for each public function
 
 # -------------------------------------------------------------------------------------------------------------- stack
 
@@ -290,9 +290,9 @@ def test_a_guarantee_that_the_readme_does_not_state_is_reported(tmp_path: Path) 
     root = copy_of_pages(tmp_path)
     readme = root / "README.md"
     text = readme.read_text(encoding="utf-8")
-    assert text.count("54,000 instructions") == 2
-    readme.write_text(text.replace("54,000 instructions", "few instructions"), encoding="utf-8")
-    assert ["54,000 instructions" in wrong for wrong in pages.wrong_pages(root, committed())] == [True]
+    assert text.count("60,000 instructions") == 2
+    readme.write_text(text.replace("60,000 instructions", "few instructions"), encoding="utf-8")
+    assert ["60,000 instructions" in wrong for wrong in pages.wrong_pages(root, committed())] == [True]
 
 
 def test_a_cost_that_the_header_understates_is_reported(tmp_path: Path) -> None:
@@ -301,8 +301,8 @@ def test_a_cost_that_the_header_understates_is_reported(tmp_path: Path) -> None:
     ledger = committed()
     header = root / "lib" / "goe_hazard.h"
     limits = stated.stated(interface(root / "lib"))
-    assert limits["instructions proved: goe_update"] == 54000
-    assert limits["instructions proved: goe_update with lens distortion"] == 75000
+    assert limits["instructions proved: goe_update"] == 60000
+    assert limits["instructions proved: goe_update with lens distortion"] == 81000
     assert limits["instructions proved: goe_update, window"] == 5500
     assert len(limits) == 2 * len(PUBLIC) + 2
     hazard = r"at most \d+ instructions(, \d+ bytes of stack\. \*/\nGOE_NODISCARD goe_status_t goe_hazard\()"
@@ -320,12 +320,12 @@ def test_a_cost_that_the_header_understates_is_reported(tmp_path: Path) -> None:
 def test_a_broken_promise_is_reported() -> None:
     ledger = committed()
     assert guarantees.broken_promises(ledger) == []
-    ledger["m4f-gcc-o2"]["instructions proved: goe_update"] = 54001
+    ledger["m4f-gcc-o2"]["instructions proved: goe_update"] = 60001
     ledger["m4f-clang-os"]["instructions: goe_update: max"] = 99999  # a target without a promise
     ledger["rv32imac-gcc-o2"]["data bytes: total"] = 4
     ledger["m4f-gcc-o2"]["calls to other libraries"] = "memcpy malloc"
     assert guarantees.broken_promises(ledger) == [
-        "m4f-gcc-o2: instructions proved: goe_update: 54001, promised 54000",
+        "m4f-gcc-o2: instructions proved: goe_update: 60001, promised 60000",
         "m4f-gcc-o2: the library calls malloc",
         "rv32imac-gcc-o2: data bytes: total: 4, promised 0",
     ]

@@ -133,7 +133,7 @@ def setup_module() -> None:
 
 @pytest.mark.parametrize("name", SORTS)
 def test_the_class_gives_the_range_without_ground(name: str) -> None:
-    """[goe_kind_t] From the second answer on the sigmas hold; without a class the first answer is later, and worse than
+    """[goe_kind_t.height_m] From the second answer on the sigmas hold; without a class the first answer is later, and worse than
     that with a class in the same image."""
     first, inside, later, errors = [], [], [], []
     for inputs in flights(BOXES, range(6100, 6150), SORTS[name].one):
@@ -167,11 +167,13 @@ def test_the_width_of_a_pole_gives_its_range(features: str) -> None:
     for inputs in flights(POLES.by(features=features), range(6200, 6360), pole):
         outcome = judged(inputs, track_of(inputs, np.array([*POLE_M, 0.0, 0.0, ROUND])))
         error = np.abs(outcome.error[:, Z0])[np.isfinite(outcome.error[:, Z0])]
-        assert len(error)
+        if not len(error):
+            continue
         range_m = np.linalg.norm(inputs.truth.eye_ned_m[:, :2], axis=1)
         first.append(error[0] / range_m[0])
         last.append(error[-1] / range_m[0])
         inside.append(np.mean(ratios(outcome) < 2.0))
+    assert len(first) > 150, len(first)
     assert np.median(first) < 0.15, np.median(first)
     assert np.median(last) < 0.15, np.median(last)
     assert np.mean(inside) > 0.86, np.mean(inside)
@@ -239,7 +241,7 @@ def test_a_wrong_class_is_flagged(real: str, stated: str, features: str) -> None
 
 
 def test_oncoming_cars_are_reported_as_moving() -> None:
-    """[goe_kind_t, GOE_REASON_MOVES] At 15 m/s, by boxes."""
+    """[goe_kind_t.height_m, GOE_REASON_MOVES] At 15 m/s, by boxes."""
     oncoming = BOXES.by(moves="oncoming", moves_m_s=15.0, collides=True, ahead_m=(100.0, 200.0))
     outcomes, velocity, left, soon = [], [], [], []
     for inputs in flights(oncoming, range(6600, 6680), SORTS["car"].one):
@@ -333,7 +335,7 @@ def test_the_limits_are_accepted(kind: tuple[float, ...]) -> None:
 
 
 def test_the_package_names_the_shapes() -> None:
-    """[GOE_SHAPE_] And not those of the setting ``model`` by the same name."""
+    """[GOE_KIND_ROUND] And not those of the setting ``model`` by the same name."""
     assert goe.Image().kind.shape is goe.KindShape.UNKNOWN
     assert [(shape.name, int(shape)) for shape in goe.KindShape] == [("UNKNOWN", 0), ("ROUND", 1), ("OTHER", 2)]
 
@@ -379,7 +381,7 @@ def test_no_class_takes_a_warning_away(features: str) -> None:
 
 
 def test_a_round_obstacle_is_a_disc() -> None:
-    """[GOE_SHAPE_ROUND] By points, with and without a size."""
+    """[GOE_KIND_ROUND] By points, with and without a size."""
     for size in (False, True):
         inside = []
         for inputs in flights(SEEN["outline"].by(kind="cylinder"), range(7000, 7030)):
@@ -393,7 +395,7 @@ def test_a_round_obstacle_is_a_disc() -> None:
 
 
 def test_another_shape_is_no_disc() -> None:
-    """[GOE_SHAPE_OTHER] Also with the model disc; unknown: that model counts."""
+    """[GOE_KIND_OTHER] Also with the model disc; unknown: that model counts."""
     disc = {"model": float(MODEL_DISC)}
     for inputs in flights(SEEN["outline"].by(kind="box"), range(7100, 7120)):
         other, unknown, plain = (

@@ -168,7 +168,7 @@ def test_one_screen(browser: Any, live: Path) -> None:
 
 def test_noise_widens_the_band(browser: Any, live: Path) -> None:
     for detector in (0, 1):
-        open_page(browser, live, f"t=8&detector={detector}&pixel_px=1")
+        open_page(browser, live, f"t=10&detector={detector}&pixel_px=1")
         calm = state(browser)
         noisy = drag(browser, "pixel_px", 6)
         assert noisy["ahead"][1] > (1.1 if detector == 0 else 2.0) * calm["ahead"][1]
@@ -184,7 +184,8 @@ def test_unconfigured_noise_is_suspect(browser: Any, live: Path) -> None:
 
 
 def test_a_high_altimeter_makes_things_large(browser: Any, live: Path) -> None:
-    open_page(browser, live, "t=6&knows=0&detector=0")
+    """Until the growth of the image shows the range."""
+    open_page(browser, live, "t=4&knows=0&detector=0")
     low, high = drag(browser, "height_offset_m", -8), drag(browser, "height_offset_m", 8)
     for quantity in ("ahead", "width", "height"):
         assert high[quantity][0] > 1.1 * low[quantity][0], quantity

@@ -6,7 +6,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 # In lib/; goe.h includes the others.
-PUBLIC_HEADERS = ("goe_limits.h", "goe_settings.h", "goe.h", "goe_hazard.h", "goe_diagnostics.h")
+PUBLIC_HEADERS = ("goe_limits.h", "goe_settings.h", "goe.h", "goe_class.h", "goe_hazard.h", "goe_diagnostics.h")
 
 
 def interface(lib: Path = ROOT / "lib") -> str:

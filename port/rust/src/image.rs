@@ -131,9 +131,9 @@ impl Kind {
             height_m: self.height.map_or(0.0, |height| height.m),
             height_sd_m: self.height.map_or(0.0, |height| height.sd_m),
             shape: match self.shape {
-                KindShape::Unknown => ffi::GOE_SHAPE_UNKNOWN,
-                KindShape::Round => ffi::GOE_SHAPE_ROUND,
-                KindShape::Other => ffi::GOE_SHAPE_OTHER,
+                KindShape::Unknown => ffi::GOE_KIND_UNKNOWN,
+                KindShape::Round => ffi::GOE_KIND_ROUND,
+                KindShape::Other => ffi::GOE_KIND_OTHER,
             },
         }
     }

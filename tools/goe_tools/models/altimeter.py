@@ -11,6 +11,7 @@ from .prism import ErrorModel, Sight
 UNKNOWN_SD_M = 1e3  # of a first height that is not set
 SCATTER_SEEDS, SCATTER_MEMORY = 8, 64  # readings as configured, and how many their mean square remembers
 VARIANCE_MIN_M2 = 1e-12
+SCATTER_CHANCE = 1.4  # of the configured scatter: no excess
 EXCESS_WEIGHT = 4.0  # of the readings' scatter beyond the configured one
 
 
@@ -50,6 +51,6 @@ class Altimeter:
     @property
     def sd_m(self) -> float:
         """Above the obstacle's ground, without its slope."""
-        excess = max(self.scatter_m2 - self.errors.height_white_sd_m**2, 0.0)
+        excess = max(self.scatter_m2 - SCATTER_CHANCE * self.errors.height_white_sd_m**2, 0.0)
         constant = self.bias_m**2 + self.errors.terrain_height_sd_m**2
         return float(np.sqrt(constant + self.noise_m2 + EXCESS_WEIGHT * excess))

@@ -408,11 +408,9 @@ class PrismFilter:
         self.first_s = in_t.time_s if self.first_s is None else self.first_s
         started = self.state is not None
         since_s = min(in_t.time_s - self.time_s, GAP_MAX_S) if started else 0.0
-        in_t = self.altimeter.read(in_t, started, since_s)
-        if not started:
-            if not self.start(in_t):
-                return False
-        elif in_t.time_s - self.time_s < EARLY_SHARE * self.errors.box_correlation_time_s:
+        too_soon = started and since_s < EARLY_SHARE * self.errors.box_correlation_time_s
+        in_t = self.altimeter.read(in_t, started, 0.0 if too_soon else since_s)
+        if too_soon or (not started and not self.start(in_t)):
             return False
         self.flown_m += float(np.linalg.norm((in_t.moved_m - self.last_m)[[0, 2]]))
         self.last_m = in_t.moved_m

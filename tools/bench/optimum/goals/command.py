@@ -56,7 +56,7 @@ ABSENT = {
     "float32": "the target goe_python_double is not built",
     "recorded": f"no flights in {RECORDED_FOLDER}",
     "kitti": f"no logs in {KITTI_FOLDER}",
-    "thin": "no logs av2, oda beside those of the boxes",
+    "thin": "no logs av2, oda in the folder of the boxes",
     "rivals": "the rivals are not installed",
 }
 
