@@ -67,14 +67,13 @@ void goe_ground_read(goe_filter_t *filter, const goe_navigation_t *navigation, c
 
 /* --------------------------------------------------------------------------------------------------------------- known -- */
 
-float goe_ground_variance(const goe_observation_t *obs) {
-    return goe_square(obs->height_sd_m) +
-           goe_square(obs->settings->navigation.terrain_slope_sd / obs->state[GOE_INVERSE_RANGE]);
+float goe_ground_variance(const goe_observation_t *obs, float inverse_range) {
+    return goe_square(obs->height_sd_m) + goe_square(obs->settings->navigation.terrain_slope_sd / inverse_range);
 }
 
 void goe_ground_start(goe_filter_t *filter, const goe_observation_t *obs) {
     filter->datum.boxes = obs->sides->usable != 0;
-    filter->datum.first = 1.0f / goe_ground_variance(obs);
+    filter->datum.first = 1.0f / goe_ground_variance(obs, filter->state[GOE_INVERSE_RANGE]);
     filter->datum.information = filter->datum.first;
     filter->datum.moment = 0.0f;
     filter->ground_scale = 1.0f;
@@ -88,7 +87,7 @@ void goe_ground_drift(goe_filter_t *filter, const goe_observation_t *obs) {
     goe_datum_t *datum = &filter->datum;
     const float before = 1.0f / datum->information;
     const float walked = before + goe_square(obs->settings->navigation.position_walk_sd_m) * filter->due_s;
-    const float now = goe_larger(goe_ground_variance(obs), walked);
+    const float now = goe_larger(goe_ground_variance(obs, filter->state[GOE_INVERSE_RANGE]), walked);
     if (!(filter->due_s > 0.0f) || !(now > before)) {
         return;
     }
@@ -135,7 +134,7 @@ static int add_first(goe_filter_t *filter, goe_rows_t *rows) {
 static int add_grown(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
     goe_datum_t *datum = &filter->datum;
     const float q = filter->state[GOE_INVERSE_RANGE];
-    const float information = 1.0f / goe_ground_variance(obs);
+    const float information = 1.0f / goe_ground_variance(obs, filter->state[GOE_INVERSE_RANGE]);
     const float grown = information - datum->information;
     const float moment = information * datum->mean_m;
     if (rows->count >= GOE_ROWS_MAX || !(grown > GROWN * information)) {

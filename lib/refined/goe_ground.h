@@ -17,8 +17,8 @@ static inline bool goe_ground_lacks_height(const goe_image_t *image) {
 /* The autopilot's down jumped by this. */
 static inline void goe_ground_move(goe_filter_t *filter, float down_m) { filter->datum.ground_m += down_m; }
 
-/* m2, of the height above the obstacle's own ground, which may slope up or down to it from the filter's start. */
-float goe_ground_variance(const goe_observation_t *obs);
+/* m2, of the height above the obstacle's own ground, which may slope up or down to it over a range of 1/inverse_range. */
+float goe_ground_variance(const goe_observation_t *obs, float inverse_range);
 
 /* The filter starts by this image: its model already has the height so far. */
 void goe_ground_start(goe_filter_t *filter, const goe_observation_t *obs);

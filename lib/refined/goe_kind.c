@@ -85,7 +85,8 @@ static float difference2(const goe_filter_t *filter, const float reciprocal[GOE_
     float by[GOE_STATES];
     const float excess = excess_of(filter, size, filter->kind.size_m[size], by);
     const float variance = goe_srif_project(&filter->root, reciprocal, GOE_UNWEIGHTED, by);
-    return goe_square(excess) / (goe_square(sd_of(filter, size)) + variance);
+    const float sd = filter->kind.sd_m[size] * filter->state[GOE_INVERSE_RANGE];
+    return goe_square(excess) / (goe_square(sd) + variance);
 }
 
 static void count(goe_kind_use_t *kind, bool off) {

@@ -67,7 +67,8 @@ static void start(float range_m) {
     filter.state[GOE_GROUND] = 0.0f;
     look();
     *goe_srif_at(&filter.root, GOE_INVERSE_RANGE, GOE_INVERSE_RANGE) = RANGE_KNOWN * range_m;
-    *goe_srif_at(&filter.root, GOE_GROUND, GOE_GROUND) = range_m / sqrtf(goe_ground_variance(&obs));
+    *goe_srif_at(&filter.root, GOE_GROUND, GOE_GROUND) =
+        range_m / sqrtf(goe_ground_variance(&obs, filter.state[GOE_INVERSE_RANGE]));
     *goe_srif_at(&filter.root, GOE_TOP, GOE_TOP) = TOP_KNOWN;
     goe_ground_start(&filter, &obs);
 }
@@ -445,7 +446,8 @@ static void the_slope_counts_over_the_range(void) {
         const double slope_m = (double)(SLOPE * range_m[i / 2]);
         const double expected = sqrt((double)(CONSTANT_M * CONSTANT_M) + 1.5 * 1.5 + slope_m * slope_m);
         CHECK_CLOSE(1.0e-4 * expected, expected, ground_sd_m());
-        CHECK_CLOSE(1.0e-4 * expected, expected, sqrt((double)goe_ground_variance(&obs)));
+        CHECK_CLOSE(1.0e-4 * expected, expected,
+                    sqrt((double)goe_ground_variance(&obs, filter.state[GOE_INVERSE_RANGE])));
         filter.flown_m = 50.0f; /* the way that was flown has no part in it */
         TEST_ASSERT_EQUAL_INT(0, measure());
         CHECK_CLOSE(1.0e-4 * expected, expected, ground_sd_m());

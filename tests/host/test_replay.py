@@ -36,6 +36,7 @@ RESIDUALS = (
 )
 PAPER = ("--method", "window")
 CORNER = ROOT / "tests" / "data" / "corner"
+LEVEL = ("--set", "navigation.terrain_height_sd_m=0", "--set", "navigation.terrain_slope_sd=0")  # as in the logs
 POSE = ["t_s", "id", "n_m", "e_m", "d_m", "agl_m", "qw", "qx", "qy", "qz"]
 POINTS = ["left", "right", "top", "base_left", "base_near", "base_right"]
 COLUMNS = POSE + [f"{point}_{axis}" for point in POINTS for axis in "uv"]
@@ -274,7 +275,7 @@ def test_refined_chimney(log: Path) -> None:
 
 def test_refined_box() -> None:
     """The corner log: the box replaces the footprint, sooner than the window's line does, and stays."""
-    out = replay(CORNER)
+    out = replay(CORNER, *LEVEL)
     models = [row["model"] for row in out]
     start = models.index("box")
     assert 0 < start < [row["model"] for row in replay(CORNER, *PAPER)].index("line")
@@ -290,14 +291,14 @@ def test_refined_box() -> None:
 def test_refined_footprint_in_place_of_a_box_has_no_width() -> None:
     """Before its orientation is known, a box is estimated as an ellipse, whose width would equal neither of its
     sides."""
-    alone, first = replay(CORNER)[:2]
+    alone, first = replay(CORNER, *LEVEL)[:2]
     assert (alone["status"], alone["model"]) == ("converging", "none")
     assert (first["status"], first["model"]) == ("ok", "prism")
     assert first["z0_m"] != "" and first["width_m"] == first["width_sd_m"] == ""
 
 
 def test_refined_forced_model() -> None:
-    assert {row["model"] for row in replay(CORNER, "--model=disc")[1:]} == {"disc"}
+    assert {row["model"] for row in replay(CORNER, "--model=disc", *LEVEL)[1:]} == {"disc"}
     assert {row["model"] for row in replay(CORNER, "--model=line")} <= {"none", "line", "box"}
 
 
@@ -323,7 +324,7 @@ def test_residuals_are_columns_at_the_end(method: str) -> None:
 def test_suspect() -> None:
     """The configured pixel noise is five times too small; then the limit is set."""
     configured = ("--set", "detector.point_noise_px=0.06", "--set", "navigation.attitude_white_sd_deg=1e-4")
-    configured += ("--set", "filter.gate_sigma=100", "--set", "filter.nis_ratio_max=1.5")
+    configured += (*LEVEL, "--set", "filter.gate_sigma=100", "--set", "filter.nis_ratio_max=1.5")
     out = replay(CORNER, "--residuals", *configured, "--set", "filter.huber_sigma=100")
     assert number(out[-1], "nis_ratio") > 1.5
     images = accumulate(int(row["nis_rows"]) > 0 for row in out)
@@ -598,10 +599,12 @@ def test_the_size_of_the_class_is_used(tmp_path: Path, log: Path) -> None:
         return replay(write_log(tmp_path / "kind", table(rows, [*COLUMNS, *KIND])))
 
     assert out() == out(kind_width_m=0, kind_height_sd_m=2, kind_shape=0) == replay(log)
-    without, size = replay(log)[-1], out(kind_width_m=6, kind_width_sd_m=0.3)[-1]
-    assert number(size, "z_sd_m") < 0.8 * number(without, "z_sd_m")
+    without, size = (
+        [row["z_m"] != "" for row in rows].index(True) for rows in (out(), out(kind_width_m=6, kind_width_sd_m=0.3))
+    )
+    assert size < without  # it gives an answer until images know the range
     assert out(kind_height_m=20, kind_height_sd_m=1)[-1] not in (without, size)
-    assert (without["model"], out(kind_shape=1)[-1]["model"]) == ("prism", "disc")
+    assert (out()[-1]["model"], out(kind_shape=1)[-1]["model"]) == ("prism", "disc")
 
 
 @pytest.mark.parametrize(

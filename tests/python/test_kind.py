@@ -133,8 +133,8 @@ def setup_module() -> None:
 
 @pytest.mark.parametrize("name", SORTS)
 def test_the_class_gives_the_range_without_ground(name: str) -> None:
-    """[goe_kind_t.height_m] From the second answer on the sigmas hold; without a class the first answer is later, and worse than
-    that with a class in the same image."""
+    """[goe_kind_t.height_m] From the second answer on the sigmas hold; without a class the first answer is later, and
+    worse than that with a class in the same image."""
     first, inside, later, errors = [], [], [], []
     for inputs in flights(BOXES, range(6100, 6150), SORTS[name].one):
         known, unknown = (judged(inputs, track_of(inputs, k, NO_GROUND)) for k in (SORTS[name].stated(), None))
@@ -217,8 +217,8 @@ def later(outcome: judging.Outcome) -> judging.Outcome:
 @pytest.mark.parametrize("features", SEEN)
 @pytest.mark.parametrize(("real", "stated"), [("truck", "car"), ("car", "truck"), ("car", "person")])
 def test_a_wrong_class_is_flagged(real: str, stated: str, features: str) -> None:
-    """[GOE_REASON_SHAPE] If it is wrong by four sigmas; then it is not used. Before images know the range, a wrong class
-    gives a wrong one: confident errors count from ``LEARNED_S`` after the first answer on."""
+    """[GOE_REASON_SHAPE] If it is wrong by four sigmas; then it is not used. Before images know the range, a wrong
+    class gives a wrong one: confident errors count from ``LEARNED_S`` after the first answer on."""
     kind, flagged, inside, lies = SORTS[stated].stated(), [], [], []
     for inputs in flights(SEEN[features], range(6500, 6530), SORTS[real].one):
         if off_sigmas(kind, track_of(inputs, None)) < 4.0:

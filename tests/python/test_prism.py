@@ -147,7 +147,7 @@ def test_sides_that_are_missing(
 
 
 USUAL = BoxOptions(roll_deg=5.0)
-WHITE = replace(USUAL, box_noise_rel=0.0, image_rate_hz=30.0)
+WHITE = replace(USUAL, box_noise_rel=0.0, image_rate_hz=60.0)
 
 
 @BOTH_AT_RELEASES
@@ -168,7 +168,7 @@ WHITE = replace(USUAL, box_noise_rel=0.0, image_rate_hz=30.0)
     ids=[
         "altimeter noise", "configured altimeter noise", "no altimeter", "disc without altimeter", "position noise",
         "drift", "no correlation",
-        "30 images/s", "clipped soon", "from above, few sides at the border",
+        "60 images/s", "clipped soon", "from above, few sides at the border",
     ],
 )  # fmt: skip
 def test_other_flights_and_noise(
@@ -197,7 +197,7 @@ def test_residuals_that_are_doubted(built: None, double: bool) -> None:
     """With too small noise settings, rows get a low weight or none, but not so often that the library restarts the
     track."""
     flight = box_flight(BUILDING, BoxOptions(roll_deg=25.0), 1)
-    reference, track = both(flight, ErrorModel(box_noise_px=0.3, box_noise_rel=0.012), double)
+    reference, track = both(flight, ErrorModel(box_noise_px=0.3, box_noise_rel=0.01), double)
     assert reference.doubted.sum() >= 10 and reference.refused.sum() >= 3
     assert_same(reference, track, double)
 

@@ -258,9 +258,9 @@ def test_the_example_prints_the_readme_s_figures(built: Path) -> None:
     """[D4]"""
     lines = output_of(built / "tests" / "readme_example").splitlines()
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    said = " ".join(readme.split("The first estimate comes with the seventh image: ")[1].split("\n## ")[0].split())
+    said = " ".join(readme.split("The first estimate comes with the second image: ")[1].split("\n## ")[0].split())
     first = re.fullmatch(r"ok +(.* m ahead), +(.* to the left), +(.* m) wide, +(.* m) high", lines[0])
-    assert first is not None and len(lines) == 4
+    assert first is not None and len(lines) == 9
     assert said.startswith("{}, {}, {} wide and {} high, and with the tenth ".format(*first.groups()))
     assert f"tenth {lines[-1].split(', ')[0].split(maxsplit=1)[1]}" in said
 

@@ -1,8 +1,8 @@
 """Thin and small obstacles of real drives and flights, with the default settings: bollards, cones, signs and cars of
 Argoverse 2, whose boxes are projected with a detector's noise, and the poles of the ODA data set.
 
-The folders av2 and oda are in the folder of ``box_logs``. A track counts once, with its last answer; a track without one
-counts as infinitely wrong."""
+The folders av2 and oda are in the folder of ``box_logs``. A track counts once, with its last answer; a track without
+one counts as infinitely wrong."""
 
 from __future__ import annotations
 
