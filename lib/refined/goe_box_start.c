@@ -298,7 +298,7 @@ static void start_box(goe_filter_t *filter, const goe_observation_t *obs, const 
 
 bool goe_box_start(goe_filter_t *filter, const goe_observation_t *obs) {
     goe_first_box_t box;
-    if (!obs->base || obs->round || !find_box(filter, obs, &box)) {
+    if (!obs->base || obs->is_round || !find_box(filter, obs, &box)) {
         return false;
     }
     start_box(filter, obs, &box, obs->point[GOE_POINT_BASE_NEAR].usable);

@@ -130,7 +130,7 @@ static void add_rim(const goe_observation_t *obs, const goe_solid_t *o, float mo
     if (by == NULL) {
         return;
     }
-    *goe_rows_last_variance(rows) += obs->round ? 0.0f : goe_square(2.0f * RIM_SHAPE * o->ellipse.half * g.z);
+    *goe_rows_last_variance(rows) += obs->is_round ? 0.0f : goe_square(2.0f * RIM_SHAPE * o->ellipse.half * g.z);
     const goe_xz_t gradient = {g.x, g.z};
     const goe_slide_t slide = goe_ellipse_slide(&o->ellipse, &contact, outward, gradient);
     const float along = goe_xz_dot(slide.by_outward, outward);
@@ -203,7 +203,7 @@ void goe_footprint_rows(const goe_observation_t *obs, goe_rows_t *rows) {
 static void fade(goe_filter_t *filter, const goe_observation_t *obs, const goe_rows_t *rows) {
     const float kept =
         goe_exp(-goe_absolute(turn_between(filter, goe_filter_measured(filter), obs->camera_m)) / SHAPE_TURN);
-    const float shape2 = obs->round ? 0.0f : goe_square(SIDE_SHAPE * size_of(obs, GOE_BOX_LEFT));
+    const float shape2 = obs->is_round ? 0.0f : goe_square(SIDE_SHAPE * size_of(obs, GOE_BOX_LEFT));
     for (size_t side = 0; side < GOE_BOX_SIDES; side++) {
         const float share = obs->settings->detector.box_noise_rel;
         goe_side_memory_fade(&filter->side[side], obs->fade, goe_square(share * size_of(obs, side)));

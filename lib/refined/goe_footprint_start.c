@@ -169,9 +169,9 @@ static void set_root(const goe_observation_t *obs, const float state[GOE_STATES]
     goe_observation_prior(obs, state, width, sd);
     sd[GOE_GROUND] =
         goe_larger(sqrtf(goe_ground_variance(obs, state[GOE_INVERSE_RANGE])) * state[GOE_INVERSE_RANGE], GROUND_MIN);
-    sd[GOE_SHEAR] = (obs->round ? ROUND_SHEAR : SHEAR_FREEDOM) * state[GOE_HALF];
+    sd[GOE_SHEAR] = (obs->is_round ? ROUND_SHEAR : SHEAR_FREEDOM) * state[GOE_HALF];
     sd[GOE_HALF] = HALF_FREEDOM * width;
-    sd[GOE_LOG_DEPTH] = obs->round ? ROUND_FREEDOM : DEPTH_FREEDOM;
+    sd[GOE_LOG_DEPTH] = obs->is_round ? ROUND_FREEDOM : DEPTH_FREEDOM;
     goe_srif_from_sigmas(sd, root);
 }
 

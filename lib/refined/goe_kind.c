@@ -15,9 +15,9 @@
 #define WIDER 1.2f          /* of a size's sigma: a silhouette is no box's width and height */
 #define ANGLE_MIN 1.0e-6f   /* of a size that gives a range */
 
-enum { WIDTH, HEIGHT, SIZES };
+enum { KIND_WIDTH, KIND_HEIGHT, KIND_SIZES };
 
-GOE_STATIC_ASSERT(SIZES == GOE_KIND_SIZES, width_and_height);
+GOE_STATIC_ASSERT(KIND_SIZES == GOE_KIND_SIZES, width_and_height);
 
 float goe_kind_range_m(const goe_kind_t *kind, float across, float up) {
     const bool wide = kind->width_m > 0.0f && across > ANGLE_MIN;
@@ -32,7 +32,7 @@ void goe_kind_start(goe_filter_t *filter, const goe_observation_t *obs) {
     filter->kind.known = 0;
     filter->kind.usable = 0;
     filter->kind.contradicted = 0;
-    filter->kind.round = obs->round;
+    filter->kind.is_round = obs->is_round;
 }
 
 /* Of the silhouette, units of Z0. */
@@ -52,7 +52,7 @@ static float excess_of(const goe_filter_t *filter, size_t size, float size_m, fl
     const float *x = filter->state;
     memset(by, 0, GOE_STATES * sizeof by[0]);
     by[GOE_INVERSE_RANGE] = -size_m;
-    if (size == WIDTH) {
+    if (size == KIND_WIDTH) {
         return width_of(filter, by) - size_m * x[GOE_INVERSE_RANGE];
     }
     by[GOE_TOP] = 1.0f;
@@ -70,9 +70,9 @@ static float sd_of(const goe_filter_t *filter, size_t size) {
 }
 
 static void take(goe_filter_t *filter, const goe_kind_t *kind) {
-    const float size_m[SIZES] = {kind->width_m, kind->height_m};
-    const float sd_m[SIZES] = {kind->width_sd_m, kind->height_sd_m};
-    for (size_t i = 0; i < SIZES; i++) {
+    const float size_m[KIND_SIZES] = {kind->width_m, kind->height_m};
+    const float sd_m[KIND_SIZES] = {kind->width_sd_m, kind->height_sd_m};
+    for (size_t i = 0; i < KIND_SIZES; i++) {
         if (size_m[i] > 0.0f) {
             filter->kind.size_m[i] = size_m[i];
             filter->kind.sd_m[i] = sd_m[i];
@@ -103,11 +103,11 @@ void goe_kind_test(goe_filter_t *filter, const goe_observation_t *obs) {
     bool off = false;
     take(filter, obs->kind);
     filter->kind.usable = 0;
-    if (!(filter->kind.size_m[WIDTH] > 0.0f) && !(filter->kind.size_m[HEIGHT] > 0.0f)) {
+    if (!(filter->kind.size_m[KIND_WIDTH] > 0.0f) && !(filter->kind.size_m[KIND_HEIGHT] > 0.0f)) {
         return; /* no class, which is usual */
     }
     goe_srif_reciprocals(&filter->root, reciprocal);
-    for (size_t i = 0; i < SIZES; i++) {
+    for (size_t i = 0; i < KIND_SIZES; i++) {
         if (filter->kind.size_m[i] > 0.0f) {
             const float squared = difference2(filter, reciprocal, i);
             filter->kind.usable |= squared < DOUBT_SIGMAS2 ? (uint8_t)(1u << i) : (uint8_t)0u;
@@ -146,7 +146,7 @@ bool goe_kind_lend(goe_filter_t *filter, float range_share, goe_kind_loan_t *loa
     }
     memcpy(loan->state, filter->state, sizeof loan->state);
     memcpy(&loan->root, &filter->root, sizeof loan->root);
-    for (size_t i = 0; i < SIZES; i++) {
+    for (size_t i = 0; i < KIND_SIZES; i++) {
         if ((sizes & (1u << i)) != 0u) {
             add_size(filter, i, change);
         }

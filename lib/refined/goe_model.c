@@ -47,7 +47,7 @@ bool goe_model_change(goe_filter_t *filter, const goe_observation_t *obs) {
     if (goe_filter_traits(filter)->is_ellipse && obs->sides->usable != 0) {
         goe_ground_meet_box(filter);
     }
-    filter->candidate.stand_in = filter->candidate.stand_in || (obs->base && !obs->round);
+    filter->candidate.stand_in = filter->candidate.stand_in || (obs->base && !obs->is_round);
     if (goe_filter_is_box(filter)) {
         return goe_box_change(filter, obs);
     }

@@ -150,7 +150,7 @@ unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *sett
     obs->camera_m = goe_filter_camera(filter, view->motion);
     obs->sides = &view->sides;
     obs->kind = filter->kind.wrong ? &UNKNOWN : &view->image->kind;
-    obs->round = goe_filter_has_started(filter) ? filter->kind.round : starts_round(settings->model, obs->kind);
+    obs->is_round = goe_filter_has_started(filter) ? filter->kind.is_round : starts_round(settings->model, obs->kind);
     obs->height_m = filter->datum.height_m;
     obs->fade = 0.0f;
     obs->position_sd = 0.0f;

@@ -28,7 +28,7 @@ typedef struct {
     float depth_variance;    /* box: of GOE_DEPTH_DIFFERENCE */
     bool two_faces;          /* box: both were visible, its length is estimated */
     bool stand_in;           /* footprint: it substitutes for a box */
-    bool round;              /* by its class, or by the settings */
+    bool is_round;           /* by its class, or by the settings */
     bool base;               /* both outer base corners are visible */
     bool edge;               /* an edge of the base is visible */
     uint8_t number;          /* of the camera */

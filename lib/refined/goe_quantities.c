@@ -355,7 +355,7 @@ static void doubt_far_roof(const goe_filter_t *filter, bool highest, goe_shape_t
 
 /* Points of a silhouette do not show that the footprint is no ellipse. */
 static void doubt_shape(const goe_filter_t *filter, goe_shape_t *shape) {
-    if (goe_filter_traits(filter)->is_ellipse && !goe_filter_by_boxes(filter) && !filter->kind.round) {
+    if (goe_filter_traits(filter)->is_ellipse && !goe_filter_by_boxes(filter) && !filter->kind.is_round) {
         shape->place_m2 += goe_square(SHAPE_SHARE * shape->quantity[GOE_WIDTH].value);
     }
 }
@@ -395,7 +395,7 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
     wider.bend = bend_of(filter, false);
     q->before_m2 = variance_before(filter, &settings->navigation, motion);
     q->box = goe_filter_is_box(filter);
-    q->model = q->box ? GOE_MODEL_BOX : (filter->kind.round ? GOE_MODEL_DISC : GOE_MODEL_PRISM);
+    q->model = q->box ? GOE_MODEL_BOX : (filter->kind.is_round ? GOE_MODEL_DISC : GOE_MODEL_PRISM);
     q->length_axis = shape.length_axis;
     set_quantities(filter, motion, &shape, drift, &wider, q, place);
     const goe_xz_t gone = goe_filter_moved(filter, motion);

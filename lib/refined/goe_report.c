@@ -97,7 +97,7 @@ static bool is_misfit(const goe_health_t *health, float most) {
 /* It was said to be round, or to have a size, and has not. */
 static bool is_forced(const goe_filter_t *filter) {
     return filter->kind.wrong ||
-           (filter->kind.round && goe_filter_traits(filter)->is_ellipse && goe_footprint_is_forced(filter));
+           (filter->kind.is_round && goe_filter_traits(filter)->is_ellipse && goe_footprint_is_forced(filter));
 }
 
 static bool moves(const goe_filter_t *filter) {

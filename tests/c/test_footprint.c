@@ -297,7 +297,7 @@ static void a_start_matches_one_box(void) {
     for (size_t i = 0; i < GOE_STATES; i++) {
         CHECK_CLOSE(1.0e-4, 1.0, sigma[i] * (double)*goe_srif_at(&root, i, i));
     }
-    sighting.sight.round = true; /* as deep as wide */
+    sighting.sight.is_round = true; /* as deep as wide */
     TEST_ASSERT_TRUE(goe_footprint_start(&sighting.sight, x, &root));
     CHECK_CLOSE(1.0, 1000.0, *goe_srif_at(&root, GOE_LOG_DEPTH, GOE_LOG_DEPTH));
     CHECK_CLOSE(1.0, 50.0 / 0.05, *goe_srif_at(&root, GOE_SHEAR, GOE_SHEAR)); /* which shows that it is none */

@@ -432,7 +432,7 @@ static void a_start_is_as_uncertain_as_one_image(void) {
     double sigma[GOE_STATES] = {
         bias, bias, hypot(bias, 0.008), hypot(0.7 * q, 0.03), 1.0, 4.0 * q, 10.0 * top, 0.6 * 0.05, 2.5 * 0.1, 1.0};
     check_root(sigma);
-    sighting.sight.round = true;
+    sighting.sight.is_round = true;
     sigma[GOE_SHEAR] = 0.02 * 0.05; /* enough to show that it is none */
     sigma[GOE_LOG_DEPTH] = 1.0e-3;
     TEST_ASSERT_TRUE(starts());

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "check.h"
+#include "image/goe_intake.h"
 #include "inverse.h"
 #include "refined/goe_kind.h"
 #include "refined/goe_srif.h"
@@ -133,6 +134,51 @@ static void the_silhouette_of_a_box_is_tested(void) {
     TEST_ASSERT_TRUE(filter.kind.wrong);
 }
 
+/* [goe_kind_t] GIVEN a number that is not finite, a size that is negative or too large, a sigma below a hundredth of its size or too large, or
+ * an unknown shape THEN the image is refused. */
+static void what_is_no_class_is_refused(void) {
+    TEST_ASSERT_EQUAL_INT(GOE_OK, goe_intake_check_kind(&kind));
+    state(4.0f, 0.04f, 1000.0f, 1000.0f);
+    TEST_ASSERT_EQUAL_INT(GOE_OK, goe_intake_check_kind(&kind));
+    kind.shape = 3;
+    TEST_ASSERT_EQUAL_INT(GOE_OUT_OF_RANGE, goe_intake_check_kind(&kind));
+    kind.shape = GOE_KIND_OTHER;
+    TEST_ASSERT_EQUAL_INT(GOE_OK, goe_intake_check_kind(&kind));
+    static const float REFUSED[][2] = {{-1.0f, 1.0f}, {1001.0f, 100.0f}, {4.0f, 0.03f},
+                                       {4.0f, 0.0f},  {4.0f, 1001.0f},   {4.0f, -1.0f}};
+    for (size_t i = 0; i < sizeof REFUSED / sizeof REFUSED[0]; i++) {
+        state(REFUSED[i][0], REFUSED[i][1], 0.0f, 0.0f);
+        TEST_ASSERT_EQUAL_INT(GOE_OUT_OF_RANGE, goe_intake_check_kind(&kind));
+        state(0.0f, 0.0f, REFUSED[i][0], REFUSED[i][1]);
+        TEST_ASSERT_EQUAL_INT(GOE_OUT_OF_RANGE, goe_intake_check_kind(&kind));
+    }
+    state(NAN, 1.0f, 0.0f, 0.0f);
+    TEST_ASSERT_EQUAL_INT(GOE_NOT_FINITE, goe_intake_check_kind(&kind));
+    state(0.0f, 0.0f, 4.0f, INFINITY);
+    TEST_ASSERT_EQUAL_INT(GOE_NOT_FINITE, goe_intake_check_kind(&kind));
+}
+
+/* [goe_kind.c] GIVEN two sizes of which only the first contradicts the images THEN the class is wrong all the same. WHEN an image contradicted a
+ * size, or the filter has not started THEN nothing is lent. */
+static void one_wrong_size_is_enough(void) {
+    goe_kind_loan_t loan;
+    const goe_phase_t phase = filter.phase;
+    state(4.0f, 0.5f, 10.0f, 1.0f);
+    goe_kind_test(&filter, &sighting.sight);
+    filter.phase = GOE_PHASE_NONE;
+    TEST_ASSERT_FALSE(goe_kind_lend(&filter, SHARE, &loan));
+    filter.phase = phase;
+    *goe_srif_at(&filter.root, GOE_INVERSE_RANGE, GOE_INVERSE_RANGE) = 1.0e4f;
+    state(12.0f, 0.5f, 10.0f, 1.0f);
+    goe_kind_test(&filter, &sighting.sight);
+    *goe_srif_at(&filter.root, GOE_INVERSE_RANGE, GOE_INVERSE_RANGE) = 300.0f;
+    TEST_ASSERT_FALSE(goe_kind_lend(&filter, SHARE, &loan));
+    *goe_srif_at(&filter.root, GOE_INVERSE_RANGE, GOE_INVERSE_RANGE) = 1.0e4f;
+    goe_kind_test(&filter, &sighting.sight);
+    goe_kind_test(&filter, &sighting.sight);
+    TEST_ASSERT_TRUE(filter.kind.wrong);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_better_size_gives_the_range);
@@ -140,5 +186,7 @@ int main(void) {
     RUN_TEST(a_loan_is_an_update_and_leaves_nothing);
     RUN_TEST(a_size_is_lent_only_where_it_is_needed);
     RUN_TEST(the_silhouette_of_a_box_is_tested);
+    RUN_TEST(what_is_no_class_is_refused);
+    RUN_TEST(one_wrong_size_is_enough);
     return UNITY_END();
 }

@@ -47,7 +47,7 @@ static void check_reason(goe_reason_t reason, bool suspect) {
 /* A footprint for which a disc was configured, whose shear is beyond chance. */
 static void be_sheared(void) {
     filter.phase = GOE_PHASE_FOOTPRINT;
-    filter.kind.round = true;
+    filter.kind.is_round = true;
     filter.state[GOE_SHEAR] = 1.0f;
     inverse_start(&filter.root, 0.1);
     know_latency();
@@ -92,7 +92,7 @@ static void few_images_make_nothing_suspect(void) {
 static void a_shear_matters_where_a_disc_was_requested(void) {
     be_sheared();
     check_reason(GOE_REASON_SHAPE, true);
-    filter.kind.round = false;
+    filter.kind.is_round = false;
     check_reason(GOE_REASON_NONE, false);
     be_sheared();
     filter.phase = GOE_PHASE_BOX;

@@ -40,7 +40,7 @@ static double coordinate(const upright_t *solid, const double state[GOE_STATES],
 
 /* The farthest of the corners; of a rim, the best of some points and two parabolas about it, each with a smaller step. */
 static double farthest(const upright_t *solid, const double state[GOE_STATES], size_t side, double sign, bool foot) {
-    const double scale = solid->round ? TWO_PI / solid->points : 1.0;
+    const double scale = solid->is_round ? TWO_PI / solid->points : 1.0;
     double best = -1.0e9;
     double at = 0.0;
     for (int i = 0; i < solid->points; i++) {
@@ -48,7 +48,7 @@ static double farthest(const upright_t *solid, const double state[GOE_STATES], s
         at = seen > best ? i * scale : at;
         best = seen > best ? seen : best;
     }
-    for (double step = scale; solid->round && step > 1.0e-4; step *= 0.03) {
+    for (double step = scale; solid->is_round && step > 1.0e-4; step *= 0.03) {
         const double a = sign * coordinate(solid, state, side, at - step, foot);
         const double b = sign * coordinate(solid, state, side, at, foot);
         const double c = sign * coordinate(solid, state, side, at + step, foot);

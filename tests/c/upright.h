@@ -11,9 +11,9 @@ typedef void (*upright_point_t)(const double state[GOE_STATES], size_t side, dou
 typedef struct {
     const sighting_t *sighting;
     upright_point_t point;
-    int points;  /* corners of the footprint; of a rim, how many are tried before it is searched */
-    bool round;  /* a rim */
-    double step; /* of a state, for the derivatives */
+    int points;    /* corners of the footprint; of a rim, how many are tried before it is searched */
+    bool is_round; /* a rim */
+    double step;   /* of a state, for the derivatives */
 } upright_t;
 
 /* Turns the camera about its optical axis. */
