@@ -56,8 +56,6 @@ static float size_of(const goe_observation_t *obs, size_t side) {
     return goe_touch_size(obs, side, goe_touch_is_level(side) ? x[GOE_TOP] + x[GOE_GROUND] : 2.0f * x[GOE_HALF]);
 }
 
-/* The settings say that the obstacle is a disc. */
-
 /* Derivatives of a row by the place that it touches, by the reference point as by the footprint. */
 /*@ requires \valid(by + (0 .. GOE_UNKNOWNS - 1)) && goe_observation_is_open(obs) && \valid_read(o) && \valid_read(g); */
 static void set_place(const goe_observation_t *obs, const goe_solid_t *o, const goe_contact_t *contact,

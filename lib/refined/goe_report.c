@@ -94,7 +94,7 @@ static bool is_misfit(const goe_health_t *health, float most) {
     return health->images >= SUSPECT_IMAGES && health->mean_nis > most;
 }
 
-/* It was said to be round, or to have a size, and has not. */
+/* Images contradict the size or the shape that the class or the settings state. */
 static bool is_forced(const goe_filter_t *filter) {
     return filter->kind.wrong ||
            (filter->kind.is_round && goe_filter_traits(filter)->is_ellipse && goe_footprint_is_forced(filter));

@@ -88,7 +88,7 @@ typedef struct {
     int16_t u[GOE_MAVLINK_POINTS], v[GOE_MAVLINK_POINTS]; /* extension: points, 0.1 px */
     /* Extension: what the detector's class says of the obstacle, as goe_kind_t; 0: not known */
     uint16_t kind_width, kind_width_sd, kind_height, kind_height_sd; /* cm */
-    uint8_t kind_shape; /* GOE_SHAPE_... */
+    uint8_t kind_shape; /* GOE_KIND_... */
 } goe_mavlink_features_t;
 
 #define GOE_MAVLINK_SUSPECT 0x01u /* the estimate contradicts the images; the margins are wider */

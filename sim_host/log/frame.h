@@ -59,7 +59,7 @@ typedef struct {
     int64_t id;
     int64_t reset_count;        /* 0: the field is empty or the column absent */
     int64_t camera;             /* the number of that which took the image; 0: likewise */
-    int64_t kind_shape;         /* GOE_SHAPE_...; 0: likewise */
+    int64_t kind_shape;         /* GOE_KIND_...; 0: likewise */
     double value[FRAME_VALUES]; /* units as the column's name says; not finite if the log says so */
     bool given[FRAME_VALUES];   /* false: the field is empty or the column absent; value means nothing */
 } frame_t;
@@ -67,8 +67,8 @@ typedef struct {
 /* The library's input. An image point is visible if both coordinates are given, a side of the box if its number is. A
  * missing pose value becomes NaN and a time that is not finite or does not fit microseconds GOE_TIME_UNKNOWN, both of which
  * the library refuses. agl_m not given: -d_m. The jump of a reset is known if all three of its numbers are given; of the
- * count only the lowest 8 bits are used, as counters wrap at any width. A size of the kind that is not given is unknown, with its sigma. A camera's number that does not fit becomes one that no camera
- * has. */
+ * count only the lowest 8 bits are used, as counters wrap at any width. A size of the kind that is
+ * not given is unknown, with its sigma. A camera's number that does not fit becomes one that no camera has. */
 void frame_to_image(const frame_t *frame, goe_image_t *image);
 
 #endif

@@ -51,7 +51,8 @@ static bool has_value(const frame_reader_t *reader, int name) {
     return table_reader_has(reader->table, VALUE_COLUMN(name));
 }
 
-/* An image point needs both its columns, the size of a kind its sigma, and the jump of a reset the count, without which it would be taken for motion. */
+/* An image point needs both its columns, the size of a kind its sigma, and the jump of a reset the count, without which it would be
+ * taken for motion. */
 static void check_header(frame_reader_t *reader) {
     const unsigned long line = table_reader_header_line(reader->table);
     for (int u = FRAME_LEFT_U; u < FRAME_BOX_LEFT_PX; u += 2) {
