@@ -87,7 +87,8 @@ typedef enum {
                                * sigma could violate both distances; or the probability is reached, and only the
                                * linear bound tcpa_s - 2 tcpa_sd_s is within act_within_s; or two seconds of detections
                                * gave no new estimate; or the obstacle moves (GOE_REASON_MOVES) without a valid
-                               * velocity, so the position is wrong */
+                               * velocity, so the position is wrong; or the range is that of a detector's class, which no
+                               * image confirms yet */
     GOE_DECISION_CLEAR = 1,   /* no reason to act now */
     GOE_DECISION_ACT = 2,     /* go around, or avoid */
     GOE_DECISION_KEEP = 3     /* the call failed: keep the previous decision */

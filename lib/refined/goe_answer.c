@@ -91,7 +91,7 @@ static bool update(goe_filter_t *filter, const goe_settings_t *settings, const g
     filter->known = (uint8_t)quantities.now;
     const bool placed = (quantities.now & GOE_HAS_POSITION) != 0u; /* otherwise nothing else of them need be set */
     if (placed && lies_behind(filter, &quantities, motion)) {
-        goe_filter_enter(filter, GOE_PHASE_NONE);
+        goe_kind_start_farther(filter);
         return false;
     }
     if (placed && keeps_previous(filter, motion, &quantities, estimate)) {
@@ -104,7 +104,8 @@ static bool update(goe_filter_t *filter, const goe_settings_t *settings, const g
     return fresh;
 }
 
-/* What the images know without the sizes is left as it is: with them, `known` is another. The covariance of a loan does not outlive it. */
+/* What the images know without the sizes is left as it is: with them, `known` is another. The covariance that they give does not outlive
+ * this answer. */
 static bool update_with_sizes(goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
                               goe_estimate_t *estimate) {
     filter->known = filter->kind.known;
@@ -118,14 +119,14 @@ static bool update_with_sizes(goe_filter_t *filter, const goe_settings_t *settin
 
 bool goe_answer_update(goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
                        goe_estimate_t *estimate) {
-    goe_kind_loan_t loan;
+    goe_kind_saved_t saved;
     const bool own = (estimate->valid & GOE_HAS_POSITION) != 0u && !filter->answer.by_kind; /* no class replaces it */
-    if (own || !goe_kind_lend(filter, settings->filter.range_sd_rel_max, &loan)) {
+    if (own || !goe_kind_apply(filter, settings->filter.range_sd_rel_max, &saved)) {
         return update(filter, settings, motion, estimate);
     }
     const bool fresh = update_with_sizes(filter, settings, motion, estimate);
     if (goe_filter_has_started(filter)) {
-        goe_kind_return(filter, &loan);
+        goe_kind_restore(filter, &saved);
     }
     return fresh;
 }

@@ -156,7 +156,7 @@ static float range_by_ground_m(const goe_observation_t *obs, const sight_t *sigh
  * where the sigma of the guess does not reach back. */
 static float first_range_m(const goe_observation_t *obs, const sight_t *sight) {
     const float ground_m = range_by_ground_m(obs, sight);
-    const float prior_m = obs->settings->filter.prior_width_m / goe_larger(sight->size, BOX_SIZE_MIN);
+    const float prior_m = goe_kind_prior_width_m(obs->settings, obs->passed) / goe_larger(sight->size, BOX_SIZE_MIN);
     const float kind_m = goe_kind_range_m(obs->kind, sight->size, up_of(sight));
     if (ground_m > 0.0f) {
         return ground_m;

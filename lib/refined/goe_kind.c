@@ -14,6 +14,8 @@
 #define KNOWN_SHARE 0.7f    /* of range_share: images that know the range better need no size */
 #define WIDER 1.2f          /* of a size's sigma: a silhouette is no box's width and height */
 #define ANGLE_MIN 1.0e-6f   /* of a size that gives a range */
+#define FARTHER 5.0f        /* times the first guess before: as far as its sigma reaches */
+#define PASSED_MAX 4u       /* such guesses */
 
 enum { KIND_WIDTH, KIND_HEIGHT, KIND_SIZES };
 
@@ -89,13 +91,38 @@ static float difference2(const goe_filter_t *filter, const float reciprocal[GOE_
     return goe_square(excess) / (goe_square(sd) + variance);
 }
 
+static bool has_size(const goe_kind_use_t *kind) {
+    return kind->size_m[KIND_WIDTH] > 0.0f || kind->size_m[KIND_HEIGHT] > 0.0f;
+}
+
+static void reject(goe_kind_use_t *kind) {
+    kind->wrong = true;
+    memset(kind->size_m, 0, sizeof kind->size_m);
+}
+
 static void count(goe_kind_use_t *kind, bool off) {
     if (!off) {
         kind->contradicted = 0;
     } else if (goe_count_image(&kind->contradicted) >= WRONG_IMAGES) {
-        kind->wrong = true;
-        memset(kind->size_m, 0, sizeof kind->size_m);
+        reject(kind);
     }
+}
+
+void goe_kind_start_farther(goe_filter_t *filter) {
+    if (has_size(&filter->kind)) {
+        reject(&filter->kind);
+    } else if (filter->kind.passed < PASSED_MAX) {
+        filter->kind.passed++;
+    }
+    goe_filter_enter(filter, GOE_PHASE_NONE);
+}
+
+float goe_kind_prior_width_m(const goe_settings_t *settings, unsigned passed) {
+    float width_m = settings->filter.prior_width_m;
+    for (unsigned i = 0; i < PASSED_MAX && i < passed; i++) {
+        width_m *= FARTHER;
+    }
+    return width_m;
 }
 
 void goe_kind_test(goe_filter_t *filter, const goe_observation_t *obs) {
@@ -103,7 +130,7 @@ void goe_kind_test(goe_filter_t *filter, const goe_observation_t *obs) {
     bool off = false;
     take(filter, obs->kind);
     filter->kind.usable = 0;
-    if (!(filter->kind.size_m[KIND_WIDTH] > 0.0f) && !(filter->kind.size_m[KIND_HEIGHT] > 0.0f)) {
+    if (!has_size(&filter->kind)) {
         return; /* no class, which is usual */
     }
     goe_srif_reciprocals(&filter->root, reciprocal);
@@ -132,20 +159,20 @@ static bool is_range_known(const goe_filter_t *filter, float share) {
            goe_square(KNOWN_SHARE * share * filter->state[GOE_INVERSE_RANGE]);
 }
 
-void goe_kind_return(goe_filter_t *filter, const goe_kind_loan_t *loan) {
-    memcpy(filter->state, loan->state, sizeof loan->state);
-    memcpy(&filter->root, &loan->root, sizeof loan->root);
+void goe_kind_restore(goe_filter_t *filter, const goe_kind_saved_t *saved) {
+    memcpy(filter->state, saved->state, sizeof saved->state);
+    memcpy(&filter->root, &saved->root, sizeof saved->root);
 }
 
-bool goe_kind_lend(goe_filter_t *filter, float range_share, goe_kind_loan_t *loan) {
+bool goe_kind_apply(goe_filter_t *filter, float range_share, goe_kind_saved_t *saved) {
     float change[GOE_UNKNOWNS] = {0.0f};
     const unsigned sizes = filter->kind.usable;
     if (sizes == 0 || filter->kind.contradicted > 0 || !goe_filter_has_started(filter) ||
         is_range_known(filter, range_share)) {
         return false;
     }
-    memcpy(loan->state, filter->state, sizeof loan->state);
-    memcpy(&loan->root, &filter->root, sizeof loan->root);
+    memcpy(saved->state, filter->state, sizeof saved->state);
+    memcpy(&saved->root, &filter->root, sizeof saved->root);
     for (size_t i = 0; i < KIND_SIZES; i++) {
         if ((sizes & (1u << i)) != 0u) {
             add_size(filter, i, change);

@@ -14,6 +14,13 @@ float goe_kind_range_m(const goe_kind_t *kind, float across, float up);
 /* The filter starts. */
 void goe_kind_start(goe_filter_t *filter, const goe_observation_t *obs);
 
+/* An image shows the obstacle ahead, and the state has it behind the camera, where no image corrects it: the first guess of the range was
+ * too near. The filter starts again, without the class; if there is none, from a farther guess. */
+void goe_kind_start_farther(goe_filter_t *filter);
+
+/* Width that a first guess without a class assumes, m, when so many were too near. */
+float goe_kind_prior_width_m(const goe_settings_t *settings, unsigned passed);
+
 /* After the rows of an image: takes its sizes, and compares them with what the images know without them. */
 void goe_kind_test(goe_filter_t *filter, const goe_observation_t *obs);
 
@@ -21,10 +28,10 @@ void goe_kind_test(goe_filter_t *filter, const goe_observation_t *obs);
 typedef struct {
     float state[GOE_STATES];
     goe_triangle_t root;
-} goe_kind_loan_t;
+} goe_kind_saved_t;
 
 /* For one answer the sizes enter the state, if the images do not know the range to range_share. False: nothing was done. */
-bool goe_kind_lend(goe_filter_t *filter, float range_share, goe_kind_loan_t *loan);
-void goe_kind_return(goe_filter_t *filter, const goe_kind_loan_t *loan);
+bool goe_kind_apply(goe_filter_t *filter, float range_share, goe_kind_saved_t *saved);
+void goe_kind_restore(goe_filter_t *filter, const goe_kind_saved_t *saved);
 
 #endif

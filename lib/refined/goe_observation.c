@@ -143,6 +143,7 @@ unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *sett
     obs->settings = settings;
     obs->camera = view->camera;
     obs->number = view->image->camera;
+    obs->passed = filter->kind.passed;
     obs->state = filter->state;
     turn_points(obs, filter, view);
     turn_rotation(view->camera_to_trajectory, filter->axes.turn_cos, filter->axes.turn_sin, obs->camera_to_axes);

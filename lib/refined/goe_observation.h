@@ -32,6 +32,7 @@ typedef struct {
     bool base;               /* both outer base corners are visible */
     bool edge;               /* an edge of the base is visible */
     uint8_t number;          /* of the camera */
+    uint8_t passed;          /* first guesses that were too near */
 #if GOE_AUGMENTED
     float turn_cos, turn_sin;   /* of the state's axes from T */
     float elapsed_s;            /* since the filter's start */

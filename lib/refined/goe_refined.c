@@ -156,6 +156,19 @@ static bool starts_to_move(goe_filter_t *filter, const goe_observation_t *obs, c
 #endif
 }
 
+/* A state behind the camera gives no rows, so that no image would correct it. One whose range images know may be right, and the image
+ * wrong. */
+static void start_farther(goe_filter_t *filter, const goe_observation_t *obs) {
+    bool seen = obs->sides->usable != 0;
+    for (size_t i = 0; i < GOE_FEATURES; i++) {
+        seen = seen || obs->point[i].usable;
+    }
+    const float known = obs->settings->filter.range_sd_rel_max * filter->state[GOE_INVERSE_RANGE];
+    if (seen && obs->range_variance > goe_square(known) && goe_observation_reference(obs).z < 0.0f) {
+        goe_kind_start_farther(filter);
+    }
+}
+
 /* What the rows bring; its locals are not on the stack while they are made. */
 GOE_NOINLINE static bool use_rows(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
     goe_verdict_t verdict;
@@ -173,6 +186,7 @@ GOE_NOINLINE static bool use_rows(goe_filter_t *filter, const goe_observation_t 
         return false;
     }
     if (!measured) {
+        start_farther(filter, obs);
         return false;
     }
     if (goe_filter_is_box(filter)) {

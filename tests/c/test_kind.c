@@ -79,14 +79,14 @@ static void three_images_show_a_wrong_size(void) {
     CHECK_SAME(0.0f, filter.kind.size_m[1]);
 }
 
-/* [goe_kind.c] GIVEN a range that images do not know WHEN a size is lent THEN range and sigma are those of a Kalman filter's update by it, in
+/* [goe_kind.c] GIVEN a range that images do not know WHEN a size is applied THEN range and sigma are those of a Kalman filter's update by it, in
  * float64; afterwards the state has its bits again. */
-static void a_loan_is_an_update_and_leaves_nothing(void) {
-    goe_kind_loan_t loan;
+static void applied_sizes_are_an_update_and_leave_nothing(void) {
+    goe_kind_saved_t saved;
     const goe_filter_t before = filter;
     state(5.0f, 0.5f, 0.0f, 0.0f);
     goe_kind_test(&filter, &sighting.sight);
-    TEST_ASSERT_TRUE(goe_kind_lend(&filter, SHARE, &loan));
+    TEST_ASSERT_TRUE(goe_kind_apply(&filter, SHARE, &saved));
     /* u = 2 HALF - 5 q, measured as 0 with the sigma 1.2 * 0.5 * q; q is larger than 2 HALF/5 */
     const double prior_q = 1.0 / (300.0 * 300.0);
     const double half2 = 1.0e-8;
@@ -95,25 +95,25 @@ static void a_loan_is_an_update_and_leaves_nothing(void) {
     const double gain = -5.0 * prior_q / (4.0 * half2 + 25.0 * prior_q + noise);
     CHECK_CLOSE(1.0e-7, 0.01 - gain * u, filter.state[GOE_INVERSE_RANGE]);
     CHECK_CLOSE(1.0e-9, prior_q * (1.0 + 5.0 * gain), goe_filter_variance(&filter, GOE_INVERSE_RANGE));
-    goe_kind_return(&filter, &loan);
+    goe_kind_restore(&filter, &saved);
     TEST_ASSERT_EQUAL_MEMORY(before.state, filter.state, sizeof before.state);
     TEST_ASSERT_EQUAL_MEMORY(before.root.element, filter.root.element, sizeof before.root.element);
 }
 
-/* [goe_kind.c] GIVEN images that know the range, or a doubtful size, or none THEN nothing is lent. */
-static void a_size_is_lent_only_where_it_is_needed(void) {
-    goe_kind_loan_t loan;
-    TEST_ASSERT_FALSE(goe_kind_lend(&filter, SHARE, &loan)); /* no size */
+/* [goe_kind.c] GIVEN images that know the range, or a doubtful size, or none THEN no size is applied. */
+static void a_size_is_applied_only_where_it_is_needed(void) {
+    goe_kind_saved_t saved;
+    TEST_ASSERT_FALSE(goe_kind_apply(&filter, SHARE, &saved)); /* no size */
     state(4.0f, 0.5f, 0.0f, 0.0f);
     goe_kind_test(&filter, &sighting.sight);
-    TEST_ASSERT_TRUE(goe_kind_lend(&filter, SHARE, &loan));
-    goe_kind_return(&filter, &loan);
+    TEST_ASSERT_TRUE(goe_kind_apply(&filter, SHARE, &saved));
+    goe_kind_restore(&filter, &saved);
     *goe_srif_at(&filter.root, GOE_INVERSE_RANGE, GOE_INVERSE_RANGE) = 600.0f; /* a sixth */
-    TEST_ASSERT_FALSE(goe_kind_lend(&filter, SHARE, &loan));
+    TEST_ASSERT_FALSE(goe_kind_apply(&filter, SHARE, &saved));
     *goe_srif_at(&filter.root, GOE_INVERSE_RANGE, GOE_INVERSE_RANGE) = 300.0f;
     state(14.0f, 0.5f, 0.0f, 0.0f); /* 2.1 sigma */
     goe_kind_test(&filter, &sighting.sight);
-    TEST_ASSERT_FALSE(goe_kind_lend(&filter, SHARE, &loan));
+    TEST_ASSERT_FALSE(goe_kind_apply(&filter, SHARE, &saved));
 }
 
 /* [goe_kind.c] GIVEN a box by its corners THEN the width of its silhouette is tested, however it is turned. */
@@ -159,20 +159,20 @@ static void what_is_no_class_is_refused(void) {
 }
 
 /* [goe_kind.c] GIVEN two sizes of which only the first contradicts the images THEN the class is wrong all the same. WHEN an image contradicted a
- * size, or the filter has not started THEN nothing is lent. */
+ * size, or the filter has not started THEN no size is applied. */
 static void one_wrong_size_is_enough(void) {
-    goe_kind_loan_t loan;
+    goe_kind_saved_t saved;
     const goe_phase_t phase = filter.phase;
     state(4.0f, 0.5f, 10.0f, 1.0f);
     goe_kind_test(&filter, &sighting.sight);
     filter.phase = GOE_PHASE_NONE;
-    TEST_ASSERT_FALSE(goe_kind_lend(&filter, SHARE, &loan));
+    TEST_ASSERT_FALSE(goe_kind_apply(&filter, SHARE, &saved));
     filter.phase = phase;
     *goe_srif_at(&filter.root, GOE_INVERSE_RANGE, GOE_INVERSE_RANGE) = 1.0e4f;
     state(12.0f, 0.5f, 10.0f, 1.0f);
     goe_kind_test(&filter, &sighting.sight);
     *goe_srif_at(&filter.root, GOE_INVERSE_RANGE, GOE_INVERSE_RANGE) = 300.0f;
-    TEST_ASSERT_FALSE(goe_kind_lend(&filter, SHARE, &loan));
+    TEST_ASSERT_FALSE(goe_kind_apply(&filter, SHARE, &saved));
     *goe_srif_at(&filter.root, GOE_INVERSE_RANGE, GOE_INVERSE_RANGE) = 1.0e4f;
     goe_kind_test(&filter, &sighting.sight);
     goe_kind_test(&filter, &sighting.sight);
@@ -183,8 +183,8 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_better_size_gives_the_range);
     RUN_TEST(three_images_show_a_wrong_size);
-    RUN_TEST(a_loan_is_an_update_and_leaves_nothing);
-    RUN_TEST(a_size_is_lent_only_where_it_is_needed);
+    RUN_TEST(applied_sizes_are_an_update_and_leave_nothing);
+    RUN_TEST(a_size_is_applied_only_where_it_is_needed);
     RUN_TEST(the_silhouette_of_a_box_is_tested);
     RUN_TEST(what_is_no_class_is_refused);
     RUN_TEST(one_wrong_size_is_enough);

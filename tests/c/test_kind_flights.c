@@ -1,0 +1,148 @@
+/* Flights whose detector states a class, or whose first guess of the range is wrong. SPDX-License-Identifier: MIT */
+/* tests: lib/refined/goe_answer.c lib/refined/goe_kind.c */
+#include <math.h>
+#include <string.h>
+
+#include "check.h"
+#include "goe.h"
+#include "scene.h"
+
+#define IMAGES 40
+#define DIAMETER_M 6.0f
+#define HEIGHT_M 30.0f
+#define PASSED_IMAGES 20 /* until the farthest of the guesses is reached */
+
+typedef struct {
+    int first;         /* image of the first position; IMAGES: none */
+    int clear, act;    /* ... of the first such decision */
+    int wrong;         /* ... that first reports the class as wrong */
+    double off_sigmas; /* largest error of z_m, while no image reports the class as wrong */
+    goe_model_t model; /* of the latest position */
+} flown_t;
+
+static scene_t scene;
+static goe_settings_t settings;
+static goe_kind_t kind;
+
+static const float TIMES[] = {0.01f, 0.02f, 0.05f, 0.1f, 0.2f, 0.3f, 0.5f, 0.7f, 2.0f, 3.0f, 5.0f, 10.0f};
+#define ALL_TIMES (sizeof TIMES / sizeof TIMES[0])
+
+/* A chimney in the way, over a ground of unknown height. */
+void setUp(void) {
+    scene_default(&scene);
+    scene_make_cylinder(&scene);
+    scene.x0_m = 0.0;
+    settings = scene_settings(&scene);
+    settings.navigation.terrain_height_sd_m = 1000.0f;
+    memset(&kind, 0, sizeof kind);
+}
+void tearDown(void) {}
+
+static int earlier(bool now, int k, int before) { return now && k < before ? k : before; }
+
+static void note(flown_t *flown, int k, const goe_estimate_t *estimate, goe_decision_t decision, double z_m) {
+    const bool placed = (estimate->valid & GOE_HAS_POSITION) != 0u;
+    flown->wrong = earlier(estimate->reason == GOE_REASON_SHAPE, k, flown->wrong);
+    flown->first = earlier(placed, k, flown->first);
+    flown->clear = earlier(decision == GOE_DECISION_CLEAR, k, flown->clear);
+    flown->act = earlier(decision == GOE_DECISION_ACT, k, flown->act);
+    if (placed) {
+        flown->model = estimate->model;
+        if (flown->wrong == IMAGES) {
+            flown->off_sigmas =
+                fmax(flown->off_sigmas, fabs((double)estimate->z_m - z_m) / (double)estimate->sigma.z_m);
+        }
+    }
+}
+
+static flown_t fly(void) {
+    flown_t flown = {IMAGES, IMAGES, IMAGES, IMAGES, 0.0, GOE_MODEL_NONE};
+    const goe_intent_t intent = {{(float)scene.speed_mps, 0.0f, 0.0f}, 15.0f, 10.0f, 0.0f, 0.0f};
+    goe_estimator_t estimator;
+    CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+    for (int k = 0; k < IMAGES; k++) {
+        goe_image_t image;
+        goe_estimate_t estimate;
+        scene_truth_t truth;
+        scene_image(&scene, k, &image, &truth);
+        image.kind = kind;
+        (void)goe_update(&estimator, &image, &estimate);
+        note(&flown, k, &estimate, goe_decide(&estimator, &intent, NULL, NULL), truth.z_m);
+    }
+    check_report("image of the first position", flown.first);
+    check_report("image of the first \"act\"", flown.act);
+    check_report("image that finds the class wrong", flown.wrong);
+    return flown;
+}
+
+static void state(float width_m, float height_m, uint8_t shape) {
+    kind.width_m = width_m;
+    kind.width_sd_m = 0.1f * width_m;
+    kind.height_m = height_m;
+    kind.height_sd_m = 0.1f * height_m;
+    kind.shape = shape;
+}
+
+/* [goe_kind_t] GIVEN a class whose width is right THEN the position comes sooner than without, within 3 sigma, and the class is never
+ * reported as wrong. The model is the shape that the class states. */
+static void a_right_class_answers_sooner(void) {
+    const flown_t without = fly();
+    state(DIAMETER_M, 0.0f, GOE_KIND_ROUND);
+    const flown_t with = fly();
+    TEST_ASSERT_TRUE(with.first < without.first && with.act <= with.first);
+    TEST_ASSERT_EQUAL_INT(IMAGES, with.wrong);
+    TEST_ASSERT_TRUE(with.off_sigmas < 3.0);
+    TEST_ASSERT_EQUAL_INT(GOE_MODEL_DISC, with.model);
+    settings.model = GOE_MODEL_DISC;
+    state(DIAMETER_M, 0.0f, GOE_KIND_OTHER);
+    TEST_ASSERT_EQUAL_INT(GOE_MODEL_PRISM, fly().model);
+}
+
+/* [goe_kind_t] GIVEN a width that is wrong by a factor of 0.01 to 10 WHEN the obstacle is in the way THEN the warning still comes, and no
+ * "clear"; WHEN it is beside the way THEN the "clear" comes. A width that is wrong by more than a factor of 1.5 is reported. */
+static void a_wrong_class_loses_no_warning(void) {
+    for (size_t i = 0; i < ALL_TIMES; i++) {
+        const bool right = fabs(log((double)TIMES[i])) < log(1.5);
+        state(TIMES[i] * DIAMETER_M, 0.0f, GOE_KIND_UNKNOWN);
+        check_report("stated width over the true one", (double)TIMES[i]);
+        scene.x0_m = 0.0;
+        const flown_t flown = fly();
+        TEST_ASSERT_TRUE(flown.act < PASSED_IMAGES);
+        TEST_ASSERT_EQUAL_INT(IMAGES, flown.clear);
+        TEST_ASSERT_TRUE(flown.wrong < PASSED_IMAGES || right);
+        scene.x0_m = -60.0;
+        const flown_t beside = fly();
+        TEST_ASSERT_TRUE(beside.clear < PASSED_IMAGES);
+        TEST_ASSERT_TRUE(beside.wrong < PASSED_IMAGES || right);
+    }
+}
+
+/* [GOE_DECISION_UNKNOWN] GIVEN an obstacle beside the way WHEN its class alone gives the range THEN the decision is not "clear"; WHEN the
+ * images give it, too, THEN it is, as without a class. */
+static void a_class_alone_clears_nothing(void) {
+    scene.x0_m = -60.0;
+    const flown_t without = fly();
+    state(DIAMETER_M, 0.0f, GOE_KIND_UNKNOWN);
+    const flown_t with = fly();
+    TEST_ASSERT_TRUE(with.first < without.first);
+    TEST_ASSERT_EQUAL_INT(without.clear, with.clear);
+}
+
+/* [goe_settings_t.filter.prior_width_m] GIVEN an obstacle 60 times as wide as assumed, or a tenth WHEN it is in the way THEN the warning
+ * comes: where the aircraft passes a first guess and still sees the obstacle ahead, the next guess is farther. */
+static void a_wrong_prior_width_loses_no_warning(void) {
+    for (size_t i = 0; i < ALL_TIMES; i++) {
+        settings.filter.prior_width_m = fmaxf(TIMES[i] * DIAMETER_M, 0.1f);
+        check_report("assumed width over the true one", (double)TIMES[i]);
+        TEST_ASSERT_TRUE(fly().act < PASSED_IMAGES);
+    }
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(a_right_class_answers_sooner);
+    RUN_TEST(a_wrong_class_loses_no_warning);
+    RUN_TEST(a_class_alone_clears_nothing);
+    RUN_TEST(a_wrong_prior_width_loses_no_warning);
+    return UNITY_END();
+}
