@@ -111,8 +111,8 @@ static void count(goe_kind_use_t *kind, bool off) {
 void goe_kind_start_farther(goe_filter_t *filter) {
     if (has_size(&filter->kind)) {
         reject(&filter->kind);
-    } else if (filter->kind.passed < PASSED_MAX) {
-        filter->kind.passed++;
+    } else {
+        (void)goe_count_image(&filter->kind.passed);
     }
     goe_filter_enter(filter, GOE_PHASE_NONE);
 }

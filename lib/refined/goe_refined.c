@@ -156,17 +156,11 @@ static bool starts_to_move(goe_filter_t *filter, const goe_observation_t *obs, c
 #endif
 }
 
-/* A state behind the camera gives no rows, so that no image would correct it. One whose range images know may be right, and the image
- * wrong. */
-static void start_farther(goe_filter_t *filter, const goe_observation_t *obs) {
-    bool seen = obs->sides->usable != 0;
-    for (size_t i = 0; i < GOE_FEATURES; i++) {
-        seen = seen || obs->point[i].usable;
-    }
+/* A state behind the camera gives no rows, so that no image corrects it. If images know its range it may be right, and the image wrong. */
+static bool is_passed(const goe_filter_t *filter, const goe_observation_t *obs) {
     const float known = obs->settings->filter.range_sd_rel_max * filter->state[GOE_INVERSE_RANGE];
-    if (seen && obs->range_variance > goe_square(known) && goe_observation_reference(obs).z < 0.0f) {
-        goe_kind_start_farther(filter);
-    }
+    return goe_filter_has_started(filter) && obs->range_variance > goe_square(known) &&
+           goe_observation_reference(obs).z < 0.0f;
 }
 
 /* What the rows bring; its locals are not on the stack while they are made. */
@@ -186,7 +180,6 @@ GOE_NOINLINE static bool use_rows(goe_filter_t *filter, const goe_observation_t 
         return false;
     }
     if (!measured) {
-        start_farther(filter, obs);
         return false;
     }
     if (goe_filter_is_box(filter)) {
@@ -228,7 +221,11 @@ bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, co
         filter->answer.outdated = true;
         return false;
     }
-    return use_image(filter, &obs);
+    const bool used = use_image(filter, &obs);
+    if (!used && view->seen && is_passed(filter, &obs)) {
+        goe_kind_start_farther(filter);
+    }
+    return used;
 }
 
 #endif

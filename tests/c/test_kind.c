@@ -45,6 +45,7 @@ static void the_better_size_gives_the_range(void) {
     state(4.0f, 1.0f, 10.0f, 1.0f);
     CHECK_CLOSE(1.0e-4, 10.0 / 0.2, goe_kind_range_m(&kind, 0.05f, 0.2f));
     CHECK_CLOSE(1.0e-4, 4.0 / 0.05, goe_kind_range_m(&kind, 0.05f, 0.0f));
+    CHECK_CLOSE(1.0e-4, 10.0 / 0.2, goe_kind_range_m(&kind, 0.0f, 0.2f));
     CHECK_SAME(0.0f, goe_kind_range_m(&kind, 0.0f, 0.0f));
     state(4.0f, 0.2f, 10.0f, 1.0f);
     CHECK_CLOSE(1.0e-4, 4.0 / 0.05, goe_kind_range_m(&kind, 0.05f, 0.2f));
@@ -123,8 +124,9 @@ static void the_silhouette_of_a_box_is_tested(void) {
     filter.state[GOE_FRONT_X] = 0.02f;
     *goe_srif_at(&filter.root, GOE_INVERSE_RANGE, GOE_INVERSE_RANGE) = 1.0e4f;
     state(5.0f, 0.2f, 0.0f, 0.0f);
-    for (int k = 0; k < 5; k++) {
+    for (int k = 0; k < 10; k++) {
         goe_kind_test(&filter, &sighting.sight);
+        filter.state[GOE_SIDE_X] = -filter.state[GOE_SIDE_X]; /* turned the other way */
     }
     TEST_ASSERT_FALSE(filter.kind.wrong);
     state(2.0f, 0.2f, 0.0f, 0.0f);
@@ -134,7 +136,7 @@ static void the_silhouette_of_a_box_is_tested(void) {
     TEST_ASSERT_TRUE(filter.kind.wrong);
 }
 
-/* [goe_kind_t] GIVEN a number that is not finite, a size that is negative or too large, a sigma below a hundredth of its size or too large, or
+/* [goe_kind_t.width_m] GIVEN a number that is not finite, a size that is negative or too large, a sigma below a hundredth of its size or too large, or
  * an unknown shape THEN the image is refused. */
 static void what_is_no_class_is_refused(void) {
     TEST_ASSERT_EQUAL_INT(GOE_OK, goe_intake_check_kind(&kind));
@@ -162,7 +164,7 @@ static void what_is_no_class_is_refused(void) {
  * size, or the filter has not started THEN no size is applied. */
 static void one_wrong_size_is_enough(void) {
     goe_kind_saved_t saved;
-    const goe_phase_t phase = filter.phase;
+    const uint8_t phase = filter.phase;
     state(4.0f, 0.5f, 10.0f, 1.0f);
     goe_kind_test(&filter, &sighting.sight);
     filter.phase = GOE_PHASE_NONE;

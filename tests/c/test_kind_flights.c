@@ -83,7 +83,7 @@ static void state(float width_m, float height_m, uint8_t shape) {
     kind.shape = shape;
 }
 
-/* [goe_kind_t] GIVEN a class whose width is right THEN the position comes sooner than without, within 3 sigma, and the class is never
+/* [goe_kind_t.width_m, goe_kind.c] GIVEN a class whose width is right THEN the position comes sooner than without, within 3 sigma, and the class is never
  * reported as wrong. The model is the shape that the class states. */
 static void a_right_class_answers_sooner(void) {
     const flown_t without = fly();
@@ -98,8 +98,8 @@ static void a_right_class_answers_sooner(void) {
     TEST_ASSERT_EQUAL_INT(GOE_MODEL_PRISM, fly().model);
 }
 
-/* [goe_kind_t] GIVEN a width that is wrong by a factor of 0.01 to 10 WHEN the obstacle is in the way THEN the warning still comes, and no
- * "clear"; WHEN it is beside the way THEN the "clear" comes. A width that is wrong by more than a factor of 1.5 is reported. */
+/* [goe_kind_t.width_m, goe_kind.c] GIVEN a width that is wrong by a factor of 0.01 to 10 WHEN the obstacle is in the way THEN the warning still comes, and no
+ * "clear"; WHEN it is off the way THEN the "clear" comes. A width that is wrong by more than a factor of 1.5 is reported. */
 static void a_wrong_class_loses_no_warning(void) {
     for (size_t i = 0; i < ALL_TIMES; i++) {
         const bool right = fabs(log((double)TIMES[i])) < log(1.5);
@@ -111,13 +111,13 @@ static void a_wrong_class_loses_no_warning(void) {
         TEST_ASSERT_EQUAL_INT(IMAGES, flown.clear);
         TEST_ASSERT_TRUE(flown.wrong < PASSED_IMAGES || right);
         scene.x0_m = -60.0;
-        const flown_t beside = fly();
-        TEST_ASSERT_TRUE(beside.clear < PASSED_IMAGES);
-        TEST_ASSERT_TRUE(beside.wrong < PASSED_IMAGES || right);
+        const flown_t clear = fly();
+        TEST_ASSERT_TRUE(clear.clear < PASSED_IMAGES);
+        TEST_ASSERT_TRUE(clear.wrong < PASSED_IMAGES || right);
     }
 }
 
-/* [GOE_DECISION_UNKNOWN] GIVEN an obstacle beside the way WHEN its class alone gives the range THEN the decision is not "clear"; WHEN the
+/* [GOE_DECISION_UNKNOWN] GIVEN an obstacle off the way WHEN its class alone gives the range THEN the decision is not "clear"; WHEN the
  * images give it, too, THEN it is, as without a class. */
 static void a_class_alone_clears_nothing(void) {
     scene.x0_m = -60.0;
@@ -128,7 +128,7 @@ static void a_class_alone_clears_nothing(void) {
     TEST_ASSERT_EQUAL_INT(without.clear, with.clear);
 }
 
-/* [goe_settings_t.filter.prior_width_m] GIVEN an obstacle 60 times as wide as assumed, or a tenth WHEN it is in the way THEN the warning
+/* [filter.prior_width_m, goe_kind.c] GIVEN an obstacle 60 times as wide as assumed, or a tenth WHEN it is in the way THEN the warning
  * comes: where the aircraft passes a first guess and still sees the obstacle ahead, the next guess is farther. */
 static void a_wrong_prior_width_loses_no_warning(void) {
     for (size_t i = 0; i < ALL_TIMES; i++) {
