@@ -14,8 +14,8 @@
 #define KNOWN_SHARE 0.7f    /* of range_share: images that know the range better need no size */
 #define WIDER 1.2f          /* of a size's sigma: a silhouette is no box's width and height */
 #define ANGLE_MIN 1.0e-6f   /* of a size that gives a range */
-#define FARTHER 5.0f        /* times the first guess before: as far as its sigma reaches */
-#define PASSED_MAX 4u       /* such guesses */
+#define FARTHER 10.0f       /* times the first guess before: which lies 2.25 sigma from the new one */
+#define PASSED_MAX 3u       /* such guesses */
 
 enum { KIND_WIDTH, KIND_HEIGHT, KIND_SIZES };
 
