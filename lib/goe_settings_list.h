@@ -48,7 +48,7 @@
     X(navigation.position_walk_sd_m, REAL, "m/s^0.5", 0.0f, 100.0f, 0.05f, "random walk of the aircraft's position") \
     X(navigation.position_white_sd_m, REAL, "m", 0.0f, 100.0f, 0.0f, "error of each position axis, new in each image; used with boxes") \
     X(navigation.height_white_sd_m, REAL, "m", 0.0f, 1.0e3f, 0.5f, "error of pose.height_m, new in each image") \
-    X(navigation.terrain_slope_sd, REAL, "", 0.0f, 1.0f, 0.0f, "slope of the ground between aircraft and obstacle at first sight") \
+    X(navigation.terrain_slope_sd, REAL, "", 0.0f, 1.0f, 0.01f, "slope of the ground between aircraft and obstacle at first sight") \
     X(navigation.terrain_height_sd_m, REAL, "m", 0.0f, 1.0e3f, 2.0f, "height error of the obstacle's ground") \
     X(detector.point_noise_px, REAL, "px", 0.05f, 100.0f, 0.5f, "error of an image point, new in each image") \
     X(detector.point_noise_rel, REAL, "", 0.0f, 1.0f, 0.0f, "error of points left, right, top, as a fraction of the obstacle's width in px") \

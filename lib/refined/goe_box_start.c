@@ -6,6 +6,7 @@
 #include "maths/goe_angle.h"
 #include "maths/goe_scalar.h"
 #include "refined/goe_box.h"
+#include "refined/goe_ground.h"
 
 #if GOE_WITH_FILTER
 
@@ -195,9 +196,16 @@ static bool one_face_agrees(goe_filter_t *filter, const goe_first_box_t *box) {
 }
 
 /* Of 1/Z0, without the part of the footprint's depth, which a box does not take over. */
-static float range_variance(const goe_filter_t *filter) {
+static float range_variance(const goe_filter_t *filter, const goe_navigation_t *navigation) {
     float part[GOE_UNKNOWNS];
-    return goe_srif_part(&filter->root, GOE_INVERSE_RANGE, part) - goe_srif_last_variance(part);
+    float ground[GOE_UNKNOWNS];
+    const float variance = goe_srif_part(&filter->root, GOE_INVERSE_RANGE, part) - goe_srif_last_variance(part);
+    const float if_level = goe_ground_if_level(filter, navigation, goe_srif_part(&filter->root, GOE_GROUND, ground));
+    float both = 0.0f;
+    for (size_t i = GOE_INVERSE_RANGE; i < GOE_STATES; i++) {
+        both += part[i] * ground[i];
+    }
+    return variance - if_level * goe_square(both);
 }
 
 /* An outlier must not become the start, and range and depth multiply in the image: the range must be known. */
@@ -211,7 +219,7 @@ static bool two_faces_agree(goe_filter_t *filter, const goe_observation_t *obs, 
     filter->candidate.agreeing = (uint8_t)(agree ? filter->candidate.agreeing + 1 : 1);
     filter->candidate.extent[0] = box->left;
     filter->candidate.extent[1] = box->right;
-    if (range_variance(filter) > most * most) {
+    if (range_variance(filter, &obs->settings->navigation) > most * most) {
         filter->candidate.agreeing = 0;
     }
     return filter->candidate.agreeing >= TWO_FACES_IMAGES;

@@ -11,6 +11,7 @@
 #include "refined/goe_ellipse.h"
 #include "refined/goe_footprint.h"
 #include "refined/goe_gate.h"
+#include "refined/goe_ground.h"
 #include "refined/goe_model.h"
 #include "refined/goe_mover.h"
 #include "refined/goe_scatter.h"
@@ -20,7 +21,9 @@
 #define EXTENT_SHARE 0.3f /* ... width, length and height */
 #define HEIGHT_MIN_M 2.0f /* a lower obstacle's height may be off by the share of this */
 #define SHAPE_SHARE 0.05f /* of the width, by which the place is off if points show another shape: one sigma */
-#define FAR_ROOF 2.0f     /* of the width: one sigma of the position of the farthest corner of the roof */
+#define HIDDEN_SHARE                                                                                                   \
+    1.0f              /* one sigma of the hidden part of a height, of what the foot lies above the altimeter's zero */
+#define FAR_ROOF 2.0f /* of the width: one sigma of the position of the farthest corner of the roof */
 #define ORIENTATION_MAX_RAD 0.174532925f
 #define PATH_MIN_M 0.1f
 #define RANGE_MIN_M 1.0f
@@ -239,35 +242,55 @@ static bool has(const goe_quantities_t *q, int quantity) {
 
 GOE_STATIC_ASSERT(GOE_X0 == 0 && GOE_Z0 == 1, the_place_comes_first);
 
-/* Of the top above the altimeter's zero, which a clearance counts from: the obstacle's own ground may lie off, and has no part in it. */
-static float top_variance_above_zero(const goe_filter_t *filter, const widening_t *wider, float scale_m) {
-    float by[GOE_STATES] = {0.0f};
-    by[GOE_INVERSE_RANGE] = -scale_m * scale_m * filter->state[GOE_TOP];
-    by[GOE_TOP] = scale_m;
-    return goe_srif_project(&filter->root, wider->reciprocal, GOE_UNWEIGHTED, by);
+/* The error of the ground, and by how much a variance shrinks per square of its covariance with it, if the ground is level, and if it
+ * is known. */
+typedef struct {
+    float by[GOE_STATES];
+    float if_level, if_known;
+} ground_t;
+
+static void ground_of(const goe_filter_t *filter, const goe_navigation_t *navigation, const widening_t *wider,
+                      ground_t *ground) {
+    memset(ground, 0, sizeof *ground);
+    ground->by[GOE_GROUND] = 1.0f;
+    float variance = goe_srif_project(&filter->root, wider->reciprocal, GOE_UNWEIGHTED, ground->by);
+    if (goe_filter_traits(filter)->is_ellipse) { /* the depth silences nothing either: as if it were known */
+        variance -= goe_srif_last_variance(ground->by);
+        ground->by[GOE_STATES - 1] = 0.0f;
+    }
+    ground->if_level = goe_ground_if_level(filter, navigation, variance);
+    ground->if_known = 1.0f / variance;
+}
+
+/* A foot above the altimeter's zero stands on higher ground, or what hides the lowest part of the obstacle ends there. No image shows
+ * which. */
+static float hidden_variance(const goe_filter_t *filter, float scale_m) {
+    const float above_m = -filter->state[GOE_GROUND] * scale_m;
+    return above_m > 0.0f ? goe_square(HIDDEN_SHARE * above_m) : 0.0f;
 }
 
 /* The scatter widens the sigmas; validity is decided without it, as doubt must
  * not silence an answer. The errors are those of the derivatives in shape, which are used up; place: of X0 and Z0. */
-static void set_quantities(const goe_filter_t *filter, const goe_motion_t *motion, goe_shape_t *shape, drift_t drift,
-                           const widening_t *wider, goe_quantities_t *q, deviation_t place[2]) {
+static void set_quantities(const goe_filter_t *filter, const goe_motion_t *motion, const ground_t *ground,
+                           goe_shape_t *shape, drift_t drift, const widening_t *wider, goe_quantities_t *q,
+                           deviation_t place[2]) {
     const float elapsed_s = goe_filter_elapsed_s(filter, motion);
     deviation_t other;
     memset(&other, 0, sizeof other);
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         deviation_t *error = i <= GOE_Z0 ? &place[i] : &other;
         error->by = shape->quantity[i].by;
-        float found = has(q, i) ? project(filter, wider, counted_of(i, elapsed_s), error) : 0.0f;
-        found *= depends_on_corner(i) ? shape->corner_growth : 1.0f;
+        const float growth = depends_on_corner(i) ? shape->corner_growth : 1.0f;
+        const float found = has(q, i) ? project(filter, wider, counted_of(i, elapsed_s), error) : 0.0f;
+        const float by_ground = goe_square(dot(error->by, ground->by, 0.0f));
+        const float doubted = by_ground * (i == GOE_HEIGHT ? ground->if_known : ground->if_level);
         const float excluded = goe_filter_traits(filter)->is_ellipse ? goe_srif_last_variance(error->by) : 0.0f;
+        const float hidden = i == GOE_HEIGHT ? hidden_variance(filter, shape->scale_m) : 0.0f;
         const float given = drift_variance(motion, drift, shape, q->box, i);
         q->value[i] = shape->quantity[i].value;
-        q->sigma[i] = sqrtf(wider->scatter * found + given);
-        q->worked_out[i] = sqrtf(goe_larger(found + given - excluded, 0.0f));
+        q->sigma[i] = sqrtf(wider->scatter * growth * found + given + hidden);
+        q->worked_out[i] = sqrtf(goe_larger(growth * (found - doubted) + given - excluded, 0.0f));
     }
-    const float top = top_variance_above_zero(filter, wider, shape->scale_m);
-    const float known = sqrtf(top + drift_variance(motion, drift, shape, q->box, GOE_HEIGHT));
-    q->worked_out[GOE_HEIGHT] = known < q->worked_out[GOE_HEIGHT] ? known : q->worked_out[GOE_HEIGHT];
 }
 
 /* Of the middle of the base along a direction, T axes; error->by: where the part of the state goes. But of a box it is the reference
@@ -381,6 +404,7 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
     goe_quantities_t *q = quantities;
     goe_shape_t shape;
     widening_t wider;
+    ground_t ground;
     deviation_t place[2];
     q->now = 0;
     q->known = 0;
@@ -397,7 +421,8 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
     q->box = goe_filter_is_box(filter);
     q->model = q->box ? GOE_MODEL_BOX : (filter->kind.is_round ? GOE_MODEL_DISC : GOE_MODEL_PRISM);
     q->length_axis = shape.length_axis;
-    set_quantities(filter, motion, &shape, drift, &wider, q, place);
+    ground_of(filter, &settings->navigation, &wider, &ground);
+    set_quantities(filter, motion, &ground, &shape, drift, &wider, q, place);
     const goe_xz_t gone = goe_filter_moved(filter, motion);
     const goe_xz_t from = {filter->axes.start_dx_m + gone.x, filter->axes.start_dz_m + gone.z};
     q->now = known_now(filter, q, from, settings->filter.range_sd_rel_max);
@@ -482,6 +507,7 @@ void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t 
         const float before = variance_before(filter, &settings->navigation, motion);
         covariance[GOE_X0][GOE_X0] += before;
         covariance[GOE_Z0][GOE_Z0] += before;
+        covariance[GOE_HEIGHT][GOE_HEIGHT] += hidden_variance(filter, shape.scale_m);
     }
 }
 

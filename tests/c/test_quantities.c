@@ -237,6 +237,11 @@ static double beyond_of(int value) {
     return filter.phase == GOE_PHASE_BOX_FACE ? beyond_face(value) : 0.0;
 }
 
+/* On purpose: what the foot lies above the altimeter's zero may be hidden. */
+static double hidden2(void) {
+    return squared(fmin((double)filter.state[GOE_GROUND] / (double)filter.state[GOE_INVERSE_RANGE], 0.0));
+}
+
 static bool is_of_corner(int quantity) { return quantity >= GOE_ORIENTATION && quantity <= GOE_LENGTH; }
 
 /* -------------------------------------------------------------------------------------------------------------- tests -- */
@@ -257,6 +262,7 @@ static void sigmas_are_those_of_the_state(void) {
         for (int i = 0; i < VALUES; i++) {
             expected[i][i] = expected[i][i] * (is_of_corner(i) ? corner_growth_of() : 1.0) + beyond_of(i);
         }
+        expected[GOE_HEIGHT][GOE_HEIGHT] += hidden2();
         for (int i = 0; i < GOE_QUANTITIES; i++) {
             if (expected[i][i] > 0.0) {
                 CHECK_CLOSE(SHARE, 1.0, (double)quantities.sigma[i] / sqrt(expected[i][i]));
@@ -272,20 +278,20 @@ static void sigmas_are_those_of_the_state(void) {
     }
 }
 
-/* Of the top above the altimeter's zero. */
-static double top_sd_m(void) {
+/* What a known ground leaves of the height's variance. */
+static double height2_if_ground_known(double variance) {
     double c[GOE_STATES][GOE_STATES];
-    const double range_m = 1.0 / (double)filter.state[GOE_INVERSE_RANGE];
-    const double by_range = -range_m * range_m * (double)filter.state[GOE_TOP];
+    double both = 0.0;
     covariance_of(c);
-    return sqrt(range_m * range_m * c[GOE_TOP][GOE_TOP] +
-                by_range * by_range * c[GOE_INVERSE_RANGE][GOE_INVERSE_RANGE] +
-                2.0 * range_m * by_range * c[GOE_INVERSE_RANGE][GOE_TOP]);
+    differentiate(values_of, 0.1, by);
+    for (size_t k = 0; k < GOE_STATES; k++) {
+        both += by[GOE_HEIGHT][k] * c[k][GOE_GROUND];
+    }
+    return variance - both * both / c[GOE_GROUND][GOE_GROUND];
 }
 
 /* GIVEN a footprint, of unobservable depth THEN that widens its sigmas, and silences nothing: validity is decided without
- * it. For all others the contribution of the last state is as good as the rest. Nor does the obstacle's own ground silence its height: the
- * top above the altimeter's zero decides, if that is known better. */
+ * it. For all others the contribution of the last state is as good as the rest. Nor does the obstacle's own ground silence its height. */
 static void unobserved_depth_silences_nothing(void) {
     any = check_random_start("unseen");
     for (int n = 0; n < CASES; n++) {
@@ -294,16 +300,43 @@ static void unobserved_depth_silences_nothing(void) {
         be_uncertain(1.0);
         goe_quantities_find(&filter, &settings, &motion, &quantities);
         const goe_quantities_t with = quantities;
-        const double top_m = top_sd_m();
-        for (size_t i = 0; i < GOE_STATES; i++) { /* as if it were known */
+        for (size_t i = 0; i < GOE_STATES && phase == GOE_PHASE_FOOTPRINT; i++) { /* as if it were known */
             inverse_set(&filter.root, i, GOE_STATES - 1, i < GOE_STATES - 1 ? 0.0 : 1.0e-9);
         }
         goe_quantities_find(&filter, &settings, &motion, &quantities);
         for (int i = 0; i < GOE_QUANTITIES; i++) {
             const bool ellipse = phase == GOE_PHASE_FOOTPRINT;
             const double seen = (double)(ellipse ? quantities.sigma[i] : with.sigma[i]);
-            const double sigma = i == GOE_HEIGHT ? fmin(seen, sqrt(top_m * top_m + beyond_of(i))) : seen;
+            const double sigma = i == GOE_HEIGHT ? sqrt(height2_if_ground_known(seen * seen - hidden2())) : seen;
             CHECK_CLOSE(2.0e-3 * sigma + 1.0e-6, sigma, with.worked_out[i]);
+        }
+    }
+}
+
+/* [navigation.terrain_slope_sd]
+ * GIVEN a ground that may slope THEN that widens the sigmas, and silences nothing: validity is decided as if it were level. */
+static void a_slope_silences_nothing(void) {
+    any = check_random_start("slope");
+    for (int n = 0; n < CASES; n++) {
+        float row[GOE_UNKNOWNS] = {0.0f};
+        float right[GOE_UNKNOWNS] = {0.0f};
+        make_any(phases[n % 3]);
+        be_uncertain(1.0);
+        const float q = filter.state[GOE_INVERSE_RANGE];
+        const float sloping_m2 = 0.25f + (0.02f / q) * (0.02f / q);
+        settings.navigation.terrain_slope_sd = 0.02f;
+        filter.datum.information = 1.0f / sloping_m2;
+        goe_quantities_find(&filter, &settings, &motion, &quantities);
+        const goe_quantities_t sloping = quantities;
+        row[GOE_GROUND] = sqrtf(4.0f - 1.0f / sloping_m2) / q;
+        goe_srif_add(&filter.root, row, 0.0f, right);
+        settings.navigation.terrain_slope_sd = 0.0f;
+        filter.datum.information = 4.0f;
+        goe_quantities_find(&filter, &settings, &motion, &quantities);
+        for (int i = 0; i < GOE_QUANTITIES; i++) {
+            const double level = (double)quantities.worked_out[i];
+            CHECK_CLOSE(2.0e-3 * level + 1.0e-6, level, sloping.worked_out[i]);
+            TEST_ASSERT_TRUE(sloping.sigma[i] >= quantities.sigma[i] * 0.999f);
         }
     }
 }
@@ -402,7 +435,8 @@ static void covariances_are_those_of_the_state(void) {
             for (int j = 0; j < GOE_QUANTITIES; j++) {
                 const double factor =
                     sqrt((is_of_corner(i) ? corner_growth_of() : 1.0) * (is_of_corner(j) ? corner_growth_of() : 1.0));
-                const double more = i == j ? beyond_of(i) : 0.0;
+                const double hidden = i == GOE_HEIGHT ? hidden2() : 0.0;
+                const double more = i == j ? beyond_of(i) + hidden : 0.0;
                 const double size = sqrt(expected[i][i] * expected[j][j]);
                 CHECK_CLOSE(2.0 * SHARE * (factor * size + more), factor * expected[i][j] + more, covariance[i][j]);
             }
@@ -434,7 +468,7 @@ static void errors_of_own_motion_are_in_the_sigmas(void) {
         CHECK_CLOSE(SHARE * moved, moved, quantities.sigma[GOE_X0]);
         CHECK_CLOSE(SHARE * moved, moved, quantities.sigma[GOE_Z0]);
         const double wide = hypot(share * (double)quantities.value[GOE_WIDTH], sqrt(beyond_of(GOE_WIDTH)));
-        const double high = hypot(share * fmax(height, fabs(height - 15.0)), sqrt(beyond_of(GOE_HEIGHT)));
+        const double high = hypot(share * fmax(height, fabs(height - 15.0)), sqrt(beyond_of(GOE_HEIGHT) + hidden2()));
         CHECK_CLOSE(SHARE, wide, quantities.sigma[GOE_WIDTH]);
         CHECK_CLOSE(SHARE, high, quantities.sigma[GOE_HEIGHT]);
         if (quantities.box) {
@@ -480,7 +514,8 @@ static void errors_of_own_motion_are_on_the_diagonal(void) {
             const double variance = (double)quantities.sigma[i] * (double)quantities.sigma[i];
             const double early = i <= GOE_Z0 ? (double)quantities.before_m2 : 0.0;
             CHECK_CLOSE(SHARE * (variance + 1.0e-6), variance + early, now[i][i]);
-            const double met = i == GOE_WIDTH ? variance * squared(met_share()) : variance;
+            const double hidden = i == GOE_HEIGHT ? hidden2() : 0.0;
+            const double met = i == GOE_WIDTH ? variance * squared(met_share()) : variance - hidden;
             CHECK_CLOSE(SHARE * (met + 1.0e-6), met, ahead[i][i]);
             CHECK_CLOSE(SHARE * variance + 1.0e-4, 0.0, i > 0 ? now[i][i - 1] : 0.0f);
         }
@@ -500,7 +535,7 @@ static void the_altimeters_error_is_not_between_camera_and_top(void) {
         inverse_set(&filter.root, GOE_GROUND, GOE_GROUND, 0.5 * (double)filter.state[GOE_INVERSE_RANGE]);
         goe_quantities_covariance(&filter, &settings, &motion, false, 0.0f, now);
         goe_quantities_covariance(&filter, &settings, &motion, true, 0.0f, ahead);
-        CHECK_CLOSE(2.0e-2, 0.25, (double)now[GOE_HEIGHT][GOE_HEIGHT] - beyond_of(GOE_HEIGHT));
+        CHECK_CLOSE(2.0e-2, 0.25, (double)now[GOE_HEIGHT][GOE_HEIGHT] - beyond_of(GOE_HEIGHT) - hidden2());
         CHECK_CLOSE(1.0e-3, 0.0, (double)ahead[GOE_HEIGHT][GOE_HEIGHT] - beyond_of(GOE_HEIGHT));
         /* and the range moves the height over the altimeter's zero, which is the height less the ground's offset */
         make_any(phases[n]);
@@ -625,6 +660,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(sigmas_are_those_of_the_state);
     RUN_TEST(unobserved_depth_silences_nothing);
+    RUN_TEST(a_slope_silences_nothing);
     RUN_TEST(a_hazard_meets_the_near_side_of_a_footprint);
     RUN_TEST(augmented_states_widen_the_sigmas);
     RUN_TEST(covariances_are_those_of_the_state);

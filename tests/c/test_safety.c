@@ -170,6 +170,22 @@ static double ground_sd_m(void) {
     return sqrt((double)goe_filter_variance(filter, GOE_GROUND)) / (double)filter->state[GOE_INVERSE_RANGE];
 }
 
+/* What the foot lies above the altimeter's zero may be hidden. */
+static double hidden_m(void) {
+    const goe_filter_t *filter = &memory.estimator.filter;
+    return fmax(-(double)filter->state[GOE_GROUND] / (double)filter->state[GOE_INVERSE_RANGE], 0.0);
+}
+
+/* By how much a slope of the ground, which silences nothing, widens a sigma at most. */
+static double sloping(void) {
+    const goe_filter_t *filter = &memory.estimator.filter;
+    const double range_m = 1.0 / (double)filter->state[GOE_INVERSE_RANGE];
+    const double rise_m = (double)memory.estimator.settings.navigation.terrain_slope_sd * range_m;
+    const double variance = 1.0 / (double)filter->datum.information;
+    const double level = fmax(variance - rise_m * rise_m, 1.0e-3 * variance);
+    return sqrt(1.0 + ground_sd_m() * ground_sd_m() * fmax(1.0 / level - 1.0 / variance, 0.0));
+}
+
 /* What goe_sigma_t says of the filter method. */
 static void check_refined(const goe_estimate_t *e) {
     static const float two_meters = 2.0f;
@@ -191,13 +207,13 @@ static void check_refined(const goe_estimate_t *e) {
         TEST_ASSERT_FALSE(e->valid & (GOE_HAS_ORIENTATION | GOE_HAS_LENGTH));
         return;
     }
-    const double wider = widening(); /* scatter widens a sigma, and silences none */
+    const double wider = widening() * sloping(); /* scatter and slope widen a sigma, and silence none */
     const double share = (double)memory.estimator.settings.filter.range_sd_rel_max;
     TEST_ASSERT_TRUE(within_share(&s->z_m, share * wider, &range_m));
     TEST_ASSERT_TRUE(within_share(&s->width_m, 0.3 * wider, &e->width_m));
     TEST_ASSERT_TRUE(within_share(&s->length_m, 0.3 * wider, &e->length_m));
     const double size_m = within(&e->height_m, two_meters) ? (double)two_meters : (double)e->height_m;
-    TEST_ASSERT_TRUE(within(&s->height_m, (float)(1.001 * wider * (0.3 * size_m + ground_sd_m()))));
+    TEST_ASSERT_TRUE(within(&s->height_m, (float)(1.001 * wider * (0.3 * size_m + ground_sd_m()) + hidden_m())));
     TEST_ASSERT_TRUE(within(&s->orientation_deg, (float)(10.001 * wider)));
 }
 

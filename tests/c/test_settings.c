@@ -76,7 +76,7 @@ static const number_t numbers[] = {
     NUMBER(navigation.position_walk_sd_m, 0.0f, 100.0f, 0.05f),
     NUMBER(navigation.position_white_sd_m, 0.0f, 100.0f, 0.0f),
     NUMBER(navigation.height_white_sd_m, 0.0f, 1.0e3f, 0.5f),
-    NUMBER(navigation.terrain_slope_sd, 0.0f, 1.0f, 0.0f),
+    NUMBER(navigation.terrain_slope_sd, 0.0f, 1.0f, 0.01f),
     NUMBER(navigation.terrain_height_sd_m, 0.0f, 1.0e3f, 2.0f),
     NUMBER(filter.prior_width_m, 0.1f, 1.0e3f, 6.0f),
     NUMBER(filter.gate_sigma, 1.0f, 100.0f, 5.0f),
