@@ -222,7 +222,7 @@ typedef struct {         /* refined/goe_refined.c: what of the latest answer out
 typedef struct {         /* refined/goe_kind.c: what the filter uses of the detector's class */
     float size_m[GOE_KIND_SIZES], sd_m[GOE_KIND_SIZES];
     uint8_t known;        /* GOE_HAS_...: what the image before knew well enough with the sizes */
-    uint8_t usable;       /* bit i: the size does not differ from what images know */
+    uint8_t usable;       /* bit i: the size does not differ from what images know, which is not the range */
     uint8_t contradicted; /* images in a row that contradict it */
     goe_flag_t wrong;     /* they did: to the end of the track it is not used */
     uint8_t passed;       /* first guesses of the range, by the prior width, that proved too near; saturating */

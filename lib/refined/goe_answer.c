@@ -121,7 +121,7 @@ bool goe_answer_update(goe_filter_t *filter, const goe_settings_t *settings, con
                        goe_estimate_t *estimate) {
     goe_kind_saved_t saved;
     const bool own = (estimate->valid & GOE_HAS_POSITION) != 0u && !filter->answer.by_kind; /* no class replaces it */
-    if (own || !goe_kind_apply(filter, settings->filter.range_sd_rel_max, &saved)) {
+    if (own || !goe_kind_apply(filter, &saved)) {
         return update(filter, settings, motion, estimate);
     }
     const bool fresh = update_with_sizes(filter, settings, motion, estimate);

@@ -197,15 +197,9 @@ static bool one_face_agrees(goe_filter_t *filter, const goe_first_box_t *box) {
 
 /* Of 1/Z0, without the part of the footprint's depth, which a box does not take over. */
 static float range_variance(const goe_filter_t *filter, const goe_navigation_t *navigation) {
-    float part[GOE_UNKNOWNS];
-    float ground[GOE_UNKNOWNS];
-    const float variance = goe_srif_part(&filter->root, GOE_INVERSE_RANGE, part) - goe_srif_last_variance(part);
-    const float if_level = goe_ground_if_level(filter, navigation, goe_srif_part(&filter->root, GOE_GROUND, ground));
-    float both = 0.0f;
-    for (size_t i = GOE_INVERSE_RANGE; i < GOE_STATES; i++) {
-        both += part[i] * ground[i];
-    }
-    return variance - if_level * goe_square(both);
+    float range[GOE_STATES];
+    const float variance = goe_filter_error(filter, GOE_INVERSE_RANGE, range) - goe_srif_last_variance(range);
+    return goe_ground_level_share(filter, navigation) * variance; /* the corners are on the ground */
 }
 
 /* An outlier must not become the start, and range and depth multiply in the image: the range must be known. */

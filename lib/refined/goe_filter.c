@@ -17,14 +17,10 @@ GOE_STATIC_ASSERT((GOE_HAS_POSITION | GOE_HAS_LENGTH | GOE_HAS_HEIGHT | GOE_HAS_
                   known_mask_fits_its_byte);
 GOE_STATIC_ASSERT(GOE_BIAS_Y == GOE_BIAS_X + 1 && GOE_BIAS_Z == GOE_BIAS_X + 2, the_biases_follow_each_other);
 
-static const goe_traits_t traits_of[GOE_PHASES] = {[GOE_PHASE_NONE] = {.is_box = false},
-                                                   [GOE_PHASE_FOOTPRINT] = {.is_ellipse = true},
-                                                   [GOE_PHASE_BOX_FACE] = {.is_box = true, .one_face = true},
-                                                   [GOE_PHASE_BOX] = {.is_box = true}};
-
-const goe_traits_t *goe_filter_traits(const goe_filter_t *filter) {
-    return &traits_of[filter->phase < GOE_PHASES ? filter->phase : GOE_PHASE_NONE];
-}
+const goe_traits_t goe_traits_of[GOE_PHASES] = {[GOE_PHASE_NONE] = {.is_box = false},
+                                                [GOE_PHASE_FOOTPRINT] = {.is_ellipse = true},
+                                                [GOE_PHASE_BOX_FACE] = {.is_box = true, .one_face = true},
+                                                [GOE_PHASE_BOX] = {.is_box = true}};
 
 bool goe_filter_reports(const goe_filter_t *filter, goe_model_t asked) {
     return asked == GOE_MODEL_LINE ? goe_filter_is_box(filter) : goe_filter_has_started(filter);
@@ -55,9 +51,25 @@ void goe_filter_enter(goe_filter_t *filter, goe_phase_t phase) {
 
 void goe_filter_forgive(goe_filter_t *filter) { memset(filter->health.refused, 0, sizeof filter->health.refused); }
 
+float goe_filter_error(const goe_filter_t *filter, goe_state_index_t state, float error[GOE_STATES]) {
+    const size_t first = state < GOE_UNWEIGHTED ? 0u : GOE_UNWEIGHTED;
+    float reciprocal[GOE_STATES];
+    memset(error, 0, GOE_STATES * sizeof error[0]);
+    error[state] = 1.0f;
+    goe_srif_reciprocals(&filter->root, reciprocal);
+    const float variance = goe_srif_project(&filter->root, reciprocal, first, error);
+#if GOE_AUGMENTED
+    float part[GOE_AUGMENTED];
+    goe_srif_augmented(&filter->root, error, first, NULL, part);
+    return variance + goe_srif_augmented_dot(part, part);
+#else
+    return variance;
+#endif
+}
+
 float goe_filter_variance(const goe_filter_t *filter, goe_state_index_t state) {
-    float part[GOE_UNKNOWNS];
-    return goe_srif_part(&filter->root, state, part);
+    float error[GOE_STATES];
+    return goe_filter_error(filter, state, error);
 }
 
 void goe_filter_inflate(goe_filter_t *filter, goe_state_index_t state, float sigma) {

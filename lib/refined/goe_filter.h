@@ -71,7 +71,11 @@ typedef struct {
     bool one_face;   /* ... of which one face is visible: its length is held, not estimated */
 } goe_traits_t;
 
-const goe_traits_t *goe_filter_traits(const goe_filter_t *filter);
+extern const goe_traits_t goe_traits_of[GOE_PHASES];
+
+static inline const goe_traits_t *goe_filter_traits(const goe_filter_t *filter) {
+    return &goe_traits_of[filter->phase < GOE_PHASES ? filter->phase : GOE_PHASE_NONE];
+}
 
 static inline goe_phase_t goe_filter_phase(const goe_filter_t *filter) { return (goe_phase_t)filter->phase; }
 static inline bool goe_filter_has_started(const goe_filter_t *filter) { return filter->phase != GOE_PHASE_NONE; }
@@ -109,6 +113,10 @@ static inline unsigned goe_count_image(uint8_t *count) {
 /* Adds the variance sigma^2 to a state; sigma > 0. */
 /*@ requires \valid(filter) && state < GOE_STATES; */
 void goe_filter_inflate(goe_filter_t *filter, goe_state_index_t state, float sigma);
+
+/* A state's error in terms of independent unit errors, as goe_srif_project() has it. Returns its variance. */
+/*@ requires \valid_read(filter) && state < GOE_STATES && \valid(error + (0 .. GOE_STATES - 1)); */
+float goe_filter_error(const goe_filter_t *filter, goe_state_index_t state, float error[GOE_STATES]);
 
 /*@ requires \valid_read(filter) && state < GOE_STATES; */
 float goe_filter_variance(const goe_filter_t *filter, goe_state_index_t state);

@@ -15,7 +15,7 @@
 #define SCATTER_SEEDS 8      /* readings as configured, that their scatter is begun with */
 #define SCATTER_MEMORY 64.0f /* readings that it remembers */
 #define VARIANCE_MIN_M2 1.0e-12f
-#define LEVEL_MIN 1.0e-3f /* of the offset's variance, that a level ground leaves at least */
+#define LEVEL_SHARE 1.0e-3f /* of the offset's variance, that a level ground leaves at least */
 
 /* ----------------------------------------------------------------------------------------------------------- readings -- */
 
@@ -72,12 +72,16 @@ float goe_ground_variance(const goe_observation_t *obs, float inverse_range) {
     return goe_square(obs->height_sd_m) + goe_square(obs->settings->navigation.terrain_slope_sd / inverse_range);
 }
 
+float goe_ground_level_share(const goe_filter_t *filter, const goe_navigation_t *navigation) {
+    const float rise_m = navigation->terrain_slope_sd / filter->state[GOE_INVERSE_RANGE];
+    return goe_larger(1.0f - filter->datum.information * goe_square(rise_m), LEVEL_SHARE);
+}
+
 float goe_ground_if_level(const goe_filter_t *filter, const goe_navigation_t *navigation, float variance) {
-    const float q = filter->state[GOE_INVERSE_RANGE];
-    const float sloping = 1.0f / filter->datum.information;
-    const float level = goe_larger(sloping - goe_square(navigation->terrain_slope_sd / q), LEVEL_MIN * sloping);
-    const float more = (1.0f / level - filter->datum.information) / goe_square(q);
-    return more > 0.0f ? more / (1.0f + variance * more) : 0.0f;
+    const float share = goe_ground_level_share(filter, navigation);
+    const float information = filter->datum.information / goe_square(filter->state[GOE_INVERSE_RANGE]);
+    const float more = information * (1.0f / share - 1.0f);
+    return more / (1.0f + variance * more);
 }
 
 void goe_ground_start(goe_filter_t *filter, const goe_observation_t *obs) {

@@ -125,6 +125,13 @@ float goe_kind_prior_width_m(const goe_settings_t *settings, unsigned passed) {
     return width_m;
 }
 
+static bool is_range_known(const goe_filter_t *filter, const float reciprocal[GOE_STATES], float range_share) {
+    float by[GOE_STATES] = {0.0f};
+    by[GOE_INVERSE_RANGE] = 1.0f;
+    return goe_srif_project(&filter->root, reciprocal, GOE_UNWEIGHTED, by) <
+           goe_square(KNOWN_SHARE * range_share * filter->state[GOE_INVERSE_RANGE]);
+}
+
 void goe_kind_test(goe_filter_t *filter, const goe_observation_t *obs) {
     float reciprocal[GOE_STATES];
     bool off = false;
@@ -142,6 +149,9 @@ void goe_kind_test(goe_filter_t *filter, const goe_observation_t *obs) {
         }
     }
     count(&filter->kind, off);
+    if (filter->kind.contradicted > 0 || is_range_known(filter, reciprocal, obs->settings->filter.range_sd_rel_max)) {
+        filter->kind.usable = 0;
+    }
 }
 
 static void add_size(goe_filter_t *filter, size_t size, float right[GOE_UNKNOWNS]) {
@@ -154,21 +164,15 @@ static void add_size(goe_filter_t *filter, size_t size, float right[GOE_UNKNOWNS
     goe_srif_add(&filter->root, row, -weight * excess, right);
 }
 
-static bool is_range_known(const goe_filter_t *filter, float share) {
-    return goe_filter_variance(filter, GOE_INVERSE_RANGE) <
-           goe_square(KNOWN_SHARE * share * filter->state[GOE_INVERSE_RANGE]);
-}
-
 void goe_kind_restore(goe_filter_t *filter, const goe_kind_saved_t *saved) {
     memcpy(filter->state, saved->state, sizeof saved->state);
     memcpy(&filter->root, &saved->root, sizeof saved->root);
 }
 
-bool goe_kind_apply(goe_filter_t *filter, float range_share, goe_kind_saved_t *saved) {
+bool goe_kind_apply(goe_filter_t *filter, goe_kind_saved_t *saved) {
     float change[GOE_UNKNOWNS] = {0.0f};
     const unsigned sizes = filter->kind.usable;
-    if (sizes == 0 || filter->kind.contradicted > 0 || !goe_filter_has_started(filter) ||
-        is_range_known(filter, range_share)) {
+    if (sizes == 0 || !goe_filter_has_started(filter)) {
         return false;
     }
     memcpy(saved->state, filter->state, sizeof saved->state);

@@ -30,8 +30,8 @@ typedef struct {
     goe_triangle_t root;
 } goe_kind_saved_t;
 
-/* For one answer the sizes enter the state, if the images do not know the range to range_share. False: nothing was done. */
-bool goe_kind_apply(goe_filter_t *filter, float range_share, goe_kind_saved_t *saved);
+/* For one answer the sizes enter the state, if the images do not contradict them, and do not know the range. False: nothing was done. */
+bool goe_kind_apply(goe_filter_t *filter, goe_kind_saved_t *saved);
 void goe_kind_restore(goe_filter_t *filter, const goe_kind_saved_t *saved);
 
 #endif

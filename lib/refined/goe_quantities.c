@@ -21,9 +21,7 @@
 #define EXTENT_SHARE 0.3f /* ... width, length and height */
 #define HEIGHT_MIN_M 2.0f /* a lower obstacle's height may be off by the share of this */
 #define SHAPE_SHARE 0.05f /* of the width, by which the place is off if points show another shape: one sigma */
-#define HIDDEN_SHARE                                                                                                   \
-    1.0f              /* one sigma of the hidden part of a height, of what the foot lies above the altimeter's zero */
-#define FAR_ROOF 2.0f /* of the width: one sigma of the position of the farthest corner of the roof */
+#define FAR_ROOF 2.0f     /* of the width: one sigma of the position of the farthest corner of the roof */
 #define ORIENTATION_MAX_RAD 0.174532925f
 #define PATH_MIN_M 0.1f
 #define RANGE_MIN_M 1.0f
@@ -106,12 +104,17 @@ typedef struct {
     float bend;                   /* factor on a footprint's depth, goe_footprint_bend() */
 } widening_t;
 
+GOE_STATIC_ASSERT(GOE_STATES == 10 && GOE_UNWEIGHTED == 3, the_product_is_written_out_for_ten_states);
+
 /* Of projected derivatives, whose first elements are 0. */
 static float dot(const float a[GOE_STATES], const float b[GOE_STATES], float sum) {
-    for (size_t k = GOE_UNWEIGHTED; k < GOE_STATES; k++) {
-        sum += a[k] * b[k];
-    }
-    return sum;
+    sum += a[3] * b[3];
+    sum += a[4] * b[4];
+    sum += a[5] * b[5];
+    sum += a[6] * b[6];
+    sum += a[7] * b[7];
+    sum += a[8] * b[8];
+    return sum + a[9] * b[9];
 }
 
 /* ------------------------------------------------------------------------------------------------- augmented --------- */
@@ -251,8 +254,9 @@ typedef struct {
 
 static void ground_of(const goe_filter_t *filter, const goe_navigation_t *navigation, const widening_t *wider,
                       ground_t *ground) {
-    memset(ground, 0, sizeof *ground);
-    ground->by[GOE_GROUND] = 1.0f;
+    for (size_t k = GOE_UNWEIGHTED; k < GOE_STATES; k++) {
+        ground->by[k] = k == GOE_GROUND ? 1.0f : 0.0f;
+    }
     float variance = goe_srif_project(&filter->root, wider->reciprocal, GOE_UNWEIGHTED, ground->by);
     if (goe_filter_traits(filter)->is_ellipse) { /* the depth silences nothing either: as if it were known */
         variance -= goe_srif_last_variance(ground->by);
@@ -266,30 +270,43 @@ static void ground_of(const goe_filter_t *filter, const goe_navigation_t *naviga
  * which. */
 static float hidden_variance(const goe_filter_t *filter, float scale_m) {
     const float above_m = -filter->state[GOE_GROUND] * scale_m;
-    return above_m > 0.0f ? goe_square(HIDDEN_SHARE * above_m) : 0.0f;
+    return above_m > 0.0f ? goe_square(above_m) : 0.0f;
 }
 
-/* The scatter widens the sigmas; validity is decided without it, as doubt must
- * not silence an answer. The errors are those of the derivatives in shape, which are used up; place: of X0 and Z0. */
-static void set_quantities(const goe_filter_t *filter, const goe_motion_t *motion, const ground_t *ground,
-                           goe_shape_t *shape, drift_t drift, const widening_t *wider, goe_quantities_t *q,
-                           deviation_t place[2]) {
-    const float elapsed_s = goe_filter_elapsed_s(filter, motion);
+/* What all quantities share. */
+typedef struct {
+    const goe_filter_t *filter;
+    const goe_motion_t *motion;
+    const goe_shape_t *shape;
+    const widening_t *wider;
+    const ground_t *ground;
+    drift_t drift;
+} finding_t;
+
+/* The scatter widens the sigmas; validity is decided without it, as doubt must not silence an answer. Nor must the ground: it is decided as
+ * if that were level, and for the height as if it were known. *error: of the derivatives in shape, which are used up. */
+GOE_NOINLINE static void find_quantity(const finding_t *f, int i, goe_quantities_t *q, deviation_t *error) {
+    const counted_t counted = counted_of(i, goe_filter_elapsed_s(f->filter, f->motion));
+    const float found = has(q, i) ? project(f->filter, f->wider, counted, error) : 0.0f;
+    const float growth = depends_on_corner(i) ? f->shape->corner_growth : 1.0f;
+    const float by_ground = i == GOE_HEIGHT ? f->ground->if_known : f->ground->if_level;
+    const float doubted = by_ground * goe_square(dot(error->by, f->ground->by, 0.0f));
+    const float excluded = goe_filter_traits(f->filter)->is_ellipse ? goe_srif_last_variance(error->by) : 0.0f;
+    const float given = drift_variance(f->motion, f->drift, f->shape, q->box, i);
+    const float hidden = i == GOE_HEIGHT ? hidden_variance(f->filter, f->shape->scale_m) : 0.0f;
+    q->value[i] = f->shape->quantity[i].value;
+    q->sigma[i] = sqrtf(f->wider->scatter * growth * found + given + hidden);
+    q->worked_out[i] = sqrtf(goe_larger(growth * (found - doubted) + given - excluded, 0.0f));
+}
+
+/* place: errors of X0 and Z0. */
+static void set_quantities(const finding_t *finding, goe_shape_t *shape, goe_quantities_t *q, deviation_t place[2]) {
     deviation_t other;
     memset(&other, 0, sizeof other);
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         deviation_t *error = i <= GOE_Z0 ? &place[i] : &other;
         error->by = shape->quantity[i].by;
-        const float growth = depends_on_corner(i) ? shape->corner_growth : 1.0f;
-        const float found = has(q, i) ? project(filter, wider, counted_of(i, elapsed_s), error) : 0.0f;
-        const float by_ground = goe_square(dot(error->by, ground->by, 0.0f));
-        const float doubted = by_ground * (i == GOE_HEIGHT ? ground->if_known : ground->if_level);
-        const float excluded = goe_filter_traits(filter)->is_ellipse ? goe_srif_last_variance(error->by) : 0.0f;
-        const float hidden = i == GOE_HEIGHT ? hidden_variance(filter, shape->scale_m) : 0.0f;
-        const float given = drift_variance(motion, drift, shape, q->box, i);
-        q->value[i] = shape->quantity[i].value;
-        q->sigma[i] = sqrtf(wider->scatter * growth * found + given + hidden);
-        q->worked_out[i] = sqrtf(goe_larger(growth * (found - doubted) + given - excluded, 0.0f));
+        find_quantity(finding, i, q, error);
     }
 }
 
@@ -405,6 +422,8 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
     goe_shape_t shape;
     widening_t wider;
     ground_t ground;
+    const finding_t finding = {filter, motion,  &shape,
+                               &wider, &ground, drift_of(filter, &settings->navigation, motion)};
     deviation_t place[2];
     q->now = 0;
     q->known = 0;
@@ -414,15 +433,14 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
         return;
     }
     goe_model_shape(filter, &shape);
-    const drift_t drift = drift_of(filter, &settings->navigation, motion);
-    widening_of(filter, settings, motion, drift, &shape, &wider);
+    widening_of(filter, settings, motion, finding.drift, &shape, &wider);
     wider.bend = bend_of(filter, false);
+    ground_of(filter, &settings->navigation, &wider, &ground);
     q->before_m2 = variance_before(filter, &settings->navigation, motion);
     q->box = goe_filter_is_box(filter);
     q->model = q->box ? GOE_MODEL_BOX : (filter->kind.is_round ? GOE_MODEL_DISC : GOE_MODEL_PRISM);
     q->length_axis = shape.length_axis;
-    ground_of(filter, &settings->navigation, &wider, &ground);
-    set_quantities(filter, motion, &ground, &shape, drift, &wider, q, place);
+    set_quantities(&finding, &shape, q, place);
     const goe_xz_t gone = goe_filter_moved(filter, motion);
     const goe_xz_t from = {filter->axes.start_dx_m + gone.x, filter->axes.start_dz_m + gone.z};
     q->now = known_now(filter, q, from, settings->filter.range_sd_rel_max);
@@ -431,7 +449,7 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
     q->value[GOE_Z0] += from.z;
     set_velocity(filter, settings, motion, &wider, q);
     if ((q->known & GOE_HAS_POSITION) && (!q->box || (q->known & GOE_HAS_LENGTH))) {
-        set_center(filter, motion, &shape, drift, &wider, place, q);
+        set_center(filter, motion, &shape, finding.drift, &wider, place, q);
     }
 }
 

@@ -291,17 +291,24 @@ float goe_srif_part(const goe_triangle_t *root, size_t unknown, float part[GOE_U
     return variance;
 }
 
-void goe_srif_reciprocals(const goe_triangle_t *root, float reciprocal[GOE_STATES]) {
-    for (size_t i = 0; i < GOE_STATES; i++) {
-        reciprocal[i] = 1.0f / root->element[goe_srif_row(i) + i];
-    }
-}
-
 GOE_STATIC_ASSERT(GOE_STATES == 10 && GOE_UNWEIGHTED == 3, the_projection_is_written_out_for_ten_states);
 
 /*@ requires \valid_read(root) && i <= j < GOE_UNKNOWNS; */
 static GOE_INLINE float r_at(const goe_triangle_t *root, size_t i, size_t j) {
     return root->element[goe_srif_row(i) + j];
+}
+
+void goe_srif_reciprocals(const goe_triangle_t *root, float reciprocal[GOE_STATES]) {
+    reciprocal[0] = 1.0f / r_at(root, 0, 0);
+    reciprocal[1] = 1.0f / r_at(root, 1, 1);
+    reciprocal[2] = 1.0f / r_at(root, 2, 2);
+    reciprocal[3] = 1.0f / r_at(root, 3, 3);
+    reciprocal[4] = 1.0f / r_at(root, 4, 4);
+    reciprocal[5] = 1.0f / r_at(root, 5, 5);
+    reciprocal[6] = 1.0f / r_at(root, 6, 6);
+    reciprocal[7] = 1.0f / r_at(root, 7, 7);
+    reciprocal[8] = 1.0f / r_at(root, 8, 8);
+    reciprocal[9] = 1.0f / r_at(root, 9, 9);
 }
 
 /* What the first GOE_UNWEIGHTED elements, already solved, take out of element j. */

@@ -10,8 +10,6 @@
 #include "refined/goe_srif.h"
 #include "sighting.h"
 
-#define SHARE 0.25f /* of the range: above it a position is not reported */
-
 static sighting_t sighting;
 static goe_kind_t kind;
 static goe_filter_t filter;
@@ -87,7 +85,7 @@ static void applied_sizes_are_an_update_and_leave_nothing(void) {
     const goe_filter_t before = filter;
     state(5.0f, 0.5f, 0.0f, 0.0f);
     goe_kind_test(&filter, &sighting.sight);
-    TEST_ASSERT_TRUE(goe_kind_apply(&filter, SHARE, &saved));
+    TEST_ASSERT_TRUE(goe_kind_apply(&filter, &saved));
     /* u = 2 HALF - 5 q, measured as 0 with the sigma 1.2 * 0.5 * q; q is larger than 2 HALF/5 */
     const double prior_q = 1.0 / (300.0 * 300.0);
     const double half2 = 1.0e-8;
@@ -104,17 +102,18 @@ static void applied_sizes_are_an_update_and_leave_nothing(void) {
 /* [goe_kind.c] GIVEN images that know the range, or a doubtful size, or none THEN no size is applied. */
 static void a_size_is_applied_only_where_it_is_needed(void) {
     goe_kind_saved_t saved;
-    TEST_ASSERT_FALSE(goe_kind_apply(&filter, SHARE, &saved)); /* no size */
+    TEST_ASSERT_FALSE(goe_kind_apply(&filter, &saved)); /* no size */
     state(4.0f, 0.5f, 0.0f, 0.0f);
     goe_kind_test(&filter, &sighting.sight);
-    TEST_ASSERT_TRUE(goe_kind_apply(&filter, SHARE, &saved));
+    TEST_ASSERT_TRUE(goe_kind_apply(&filter, &saved));
     goe_kind_restore(&filter, &saved);
     *goe_srif_at(&filter.root, GOE_INVERSE_RANGE, GOE_INVERSE_RANGE) = 600.0f; /* a sixth */
-    TEST_ASSERT_FALSE(goe_kind_apply(&filter, SHARE, &saved));
+    goe_kind_test(&filter, &sighting.sight);
+    TEST_ASSERT_FALSE(goe_kind_apply(&filter, &saved));
     *goe_srif_at(&filter.root, GOE_INVERSE_RANGE, GOE_INVERSE_RANGE) = 300.0f;
     state(14.0f, 0.5f, 0.0f, 0.0f); /* 2.1 sigma */
     goe_kind_test(&filter, &sighting.sight);
-    TEST_ASSERT_FALSE(goe_kind_apply(&filter, SHARE, &saved));
+    TEST_ASSERT_FALSE(goe_kind_apply(&filter, &saved));
 }
 
 /* [goe_kind.c] GIVEN a box by its corners THEN the width of its silhouette is tested, however it is turned. */
@@ -168,13 +167,13 @@ static void one_wrong_size_is_enough(void) {
     state(4.0f, 0.5f, 10.0f, 1.0f);
     goe_kind_test(&filter, &sighting.sight);
     filter.phase = GOE_PHASE_NONE;
-    TEST_ASSERT_FALSE(goe_kind_apply(&filter, SHARE, &saved));
+    TEST_ASSERT_FALSE(goe_kind_apply(&filter, &saved));
     filter.phase = phase;
     *goe_srif_at(&filter.root, GOE_INVERSE_RANGE, GOE_INVERSE_RANGE) = 1.0e4f;
     state(12.0f, 0.5f, 10.0f, 1.0f);
     goe_kind_test(&filter, &sighting.sight);
     *goe_srif_at(&filter.root, GOE_INVERSE_RANGE, GOE_INVERSE_RANGE) = 300.0f;
-    TEST_ASSERT_FALSE(goe_kind_apply(&filter, SHARE, &saved));
+    TEST_ASSERT_FALSE(goe_kind_apply(&filter, &saved));
     *goe_srif_at(&filter.root, GOE_INVERSE_RANGE, GOE_INVERSE_RANGE) = 1.0e4f;
     goe_kind_test(&filter, &sighting.sight);
     goe_kind_test(&filter, &sighting.sight);
