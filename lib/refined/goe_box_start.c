@@ -6,7 +6,6 @@
 #include "maths/goe_angle.h"
 #include "maths/goe_scalar.h"
 #include "refined/goe_box.h"
-#include "refined/goe_ground.h"
 
 #if GOE_WITH_FILTER
 
@@ -196,10 +195,9 @@ static bool one_face_agrees(goe_filter_t *filter, const goe_first_box_t *box) {
 }
 
 /* Of 1/Z0, without the part of the footprint's depth, which a box does not take over. */
-static float range_variance(const goe_filter_t *filter, const goe_navigation_t *navigation) {
+static float range_variance(const goe_filter_t *filter) {
     float range[GOE_STATES];
-    const float variance = goe_filter_error(filter, GOE_INVERSE_RANGE, range) - goe_srif_last_variance(range);
-    return goe_ground_level_share(filter, navigation) * variance; /* the corners are on the ground */
+    return goe_filter_error(filter, GOE_INVERSE_RANGE, range) - goe_srif_last_variance(range);
 }
 
 /* An outlier must not become the start, and range and depth multiply in the image: the range must be known. */
@@ -213,7 +211,7 @@ static bool two_faces_agree(goe_filter_t *filter, const goe_observation_t *obs, 
     filter->candidate.agreeing = (uint8_t)(agree ? filter->candidate.agreeing + 1 : 1);
     filter->candidate.extent[0] = box->left;
     filter->candidate.extent[1] = box->right;
-    if (range_variance(filter, &obs->settings->navigation) > most * most) {
+    if (range_variance(filter) > most * most) {
         filter->candidate.agreeing = 0;
     }
     return filter->candidate.agreeing >= TWO_FACES_IMAGES;

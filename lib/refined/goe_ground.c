@@ -72,15 +72,11 @@ float goe_ground_variance(const goe_observation_t *obs, float inverse_range) {
     return goe_square(obs->height_sd_m) + goe_square(obs->settings->navigation.terrain_slope_sd / inverse_range);
 }
 
-float goe_ground_level_share(const goe_filter_t *filter, const goe_navigation_t *navigation) {
-    const float rise_m = navigation->terrain_slope_sd / filter->state[GOE_INVERSE_RANGE];
-    return goe_larger(1.0f - filter->datum.information * goe_square(rise_m), LEVEL_SHARE);
-}
-
 float goe_ground_if_level(const goe_filter_t *filter, const goe_navigation_t *navigation, float variance) {
-    const float share = goe_ground_level_share(filter, navigation);
-    const float information = filter->datum.information / goe_square(filter->state[GOE_INVERSE_RANGE]);
-    const float more = information * (1.0f / share - 1.0f);
+    const float q = filter->state[GOE_INVERSE_RANGE];
+    const float rise_m = navigation->terrain_slope_sd / q;
+    const float share = goe_larger(1.0f - filter->datum.information * goe_square(rise_m), LEVEL_SHARE);
+    const float more = filter->datum.information / goe_square(q) * (1.0f / share - 1.0f);
     return more / (1.0f + variance * more);
 }
 

@@ -20,9 +20,6 @@ static inline void goe_ground_move(goe_filter_t *filter, float down_m) { filter-
 /* m2, of the height above the obstacle's own ground, which may slope up or down to it over a range of 1/inverse_range. */
 float goe_ground_variance(const goe_observation_t *obs, float inverse_range);
 
-/* Of the height's variance, what a level ground leaves. */
-float goe_ground_level_share(const goe_filter_t *filter, const goe_navigation_t *navigation);
-
 /* If the ground were known to be level, the variance of an unknown would be smaller by this times the square of its covariance with
  * GOE_GROUND, whose variance is given. */
 float goe_ground_if_level(const goe_filter_t *filter, const goe_navigation_t *navigation, float variance);
