@@ -266,8 +266,8 @@ static void ground_of(const goe_filter_t *filter, const goe_navigation_t *naviga
     ground->if_known = 1.0f / variance;
 }
 
-/* A foot above the altimeter's zero stands on higher ground, or what hides the lowest part of the obstacle ends there. No image shows
- * which. */
+/* If a foot lies above the altimeter's zero, either the ground there is higher, or bushes hide the lowest part of the obstacle. No image
+ * shows which of the two. */
 static float hidden_variance(const goe_filter_t *filter, float scale_m) {
     const float above_m = -filter->state[GOE_GROUND] * scale_m;
     return above_m > 0.0f ? goe_square(above_m) : 0.0f;

@@ -84,7 +84,7 @@ class ErrorModel:
     height_bias_sd_m: float = 0.5
     height_white_sd_m: float = 0.5  # of a reading of the altimeter
     terrain_height_sd_m: float = 2.0  # of the obstacle's terrain height
-    terrain_slope_sd: float = 0.0  # of the ground between aircraft and obstacle at first sight
+    terrain_slope_sd: float = 0.01  # of the ground between aircraft and obstacle at first sight
     velocity_bias_sd_m_s: float = 0.05
     position_walk_sd_m: float = 0.05  # per sqrt(s)
     position_white_sd_m: float = 0.0
