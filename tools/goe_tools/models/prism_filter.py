@@ -464,7 +464,7 @@ class PrismFilter:
         share = errors.velocity_bias_sd_m_s * span_s / path_m
         above_m = max(abs(values[3]), abs(values[3] - in_t.given_height_m))
         variance += (share * np.array([values[1], values[1], values[2], above_m])) ** 2
-        variance[3] += min(self.state[G] / self.state[Q], 0.0) ** 2  # a foot above the zero: hidden, or on higher ground
+        variance[3] += min(self.state[G] / self.state[Q], 0.0) ** 2  # hidden below it, or higher ground
         before_s = self.start_s - self.first_s  # X0 and Z0 count from the track's first image
         way_m = float(np.linalg.norm((in_t.moved_m - self.origin_m)[[0, 2]]))
         straight = way_m / self.flown_m if self.flown_m > way_m else 1.0  # no scaling for a path that leads back
