@@ -641,7 +641,7 @@ def test_each_class_of_the_record_has_a_reason_and_each_reason_a_class() -> None
     assert goals.unexplained(counts) == [("vanished", "base", "invented")]
     for key in [key for key in counts if key[:3] == ("class", "confident", "points")]:
         del counts[key]
-    assert goals.idle(counts) == [("confident", "points", "disc of a cylinder")]
+    assert goals.idle(counts) == [("confident", "points", f"{model} of a cylinder") for model in ("disc", "prism")]
 
 
 def test_the_command_writes_the_table(tmp_path: Path) -> None:
