@@ -95,7 +95,7 @@ typedef struct {
     float gate_sigma;       /* a point with a larger innovation is rejected; 1 to 100 sigma; default 5 */
     float huber_sigma;      /* a point with a larger innovation counts less; 0.5 to 100 sigma; default 2.5 */
     float nis_ratio_max;    /* NIS ratio above which an estimate is suspect; 0.01 to 1e3; default 1.9 */
-    float range_sd_rel_max; /* largest sigma of a reported range, as a fraction of the range; 0.01 to 10; default 0.25 */
+    float range_sd_rel_max; /* largest sigma of a reported range if the ground is level, as a fraction of the range; 0.01 to 10; default 0.25 */
     bool top_is_highest;    /* 1: point top is the roof's highest point in the image; 0: it is the roof's nearest point; default false */
 } goe_filter_settings_t;
 

@@ -62,7 +62,7 @@
     X(filter.gate_sigma, REAL, "sigma", 1.0f, 100.0f, 5.0f, "a point with a larger innovation is rejected") \
     X(filter.huber_sigma, REAL, "sigma", 0.5f, 100.0f, 2.5f, "a point with a larger innovation counts less") \
     X(filter.nis_ratio_max, REAL, "", 0.01f, 1.0e3f, 1.9f, "NIS ratio above which an estimate is suspect") \
-    X(filter.range_sd_rel_max, REAL, "", 0.01f, 10.0f, 0.25f, "largest sigma of a reported range, as a fraction of the range") \
+    X(filter.range_sd_rel_max, REAL, "", 0.01f, 10.0f, 0.25f, "largest sigma of a reported range if the ground is level, as a fraction of the range") \
     X(filter.top_is_highest, TRUTH, "", 0, 1, 0, "1: point top is the roof's highest point in the image; 0: it is the roof's nearest point")
 #else
 #define GOE_SETTINGS_FILTER(X)

@@ -257,11 +257,11 @@ static void ground_of(const goe_filter_t *filter, const goe_navigation_t *naviga
     for (size_t k = GOE_UNWEIGHTED; k < GOE_STATES; k++) {
         ground->by[k] = k == GOE_GROUND ? 1.0f : 0.0f;
     }
-    float variance = goe_srif_project(&filter->root, wider->reciprocal, GOE_UNWEIGHTED, ground->by);
+    (void)goe_srif_project(&filter->root, wider->reciprocal, GOE_UNWEIGHTED, ground->by);
     if (goe_filter_traits(filter)->is_ellipse) { /* the depth silences nothing either: as if it were known */
-        variance -= goe_srif_last_variance(ground->by);
-        ground->by[GOE_STATES - 1] = 0.0f;
+        ground->by[GOE_LOG_DEPTH] = 0.0f;
     }
+    const float variance = dot(ground->by, ground->by, 0.0f); /* no difference, which might cancel to 0 */
     ground->if_level = goe_ground_if_level(filter, navigation, variance);
     ground->if_known = 1.0f / variance;
 }

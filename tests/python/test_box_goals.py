@@ -114,7 +114,8 @@ def test_good_answers_meet_every_goal(
         "detector.box_noise_px": 0.5,
         "detector.box_noise_rel": 0.0,
         "navigation.height_white_sd_m": 0.0,
-        "navigation.terrain_height_sd_m": 0.0, "navigation.terrain_slope_sd": 0.0,
+        "navigation.terrain_height_sd_m": 0.0,
+        "navigation.terrain_slope_sd": 0.0,
     }
     assert others == {"heading_auto", "heading_deg", "navigation.height_bias_sd_m", *of_bound}
     of_both = [settings for settings in configured if "model" in settings]
