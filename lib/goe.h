@@ -108,7 +108,7 @@ typedef enum {
     GOE_EDGE_ON = -4,       /* no length: the camera views the front edge from its end or from behind */
     GOE_NO_EDGE = -5,       /* model line: no edge reaches both window.edge_min_px and orientation_min_px */
     GOE_BAD_HEIGHT = -6,    /* window: no obstacle height, because the camera's height is <= 0. Counted, never returned */
-    /* faults of the window's solution, also before the filter has started; the image is taken */
+    /* faults of the window's solution; the image is taken */
     GOE_NO_BASELINE = -7, /* the camera moved less than window.min_baseline_m */
     GOE_NO_PARALLAX = -8, /* the obstacle does not grow in the images: it moves, is not ahead, or noise prevails */
     GOE_ABEAM = -9,       /* the solution is abeam or behind: Z <= 0 */

@@ -10,8 +10,7 @@
  * 0 needs a sigma of at least 1 % of it, at most 1e3 m.
  * While images do not show the range, the estimate follows from the size; such an estimate never leads to GOE_DECISION_CLEAR. A wrong
  * class therefore gives a wrong range at first, until images show it. If images contradict a size by four sigmas, or show the obstacle
- * ahead after the aircraft passed the place that the size gives, goe reports GOE_REASON_SHAPE and ignores all classes to the end of the
- * track.
+ * where it cannot be by that size, goe reports GOE_REASON_SHAPE and ignores all classes to the end of the track.
  * The shape counts from the first image of the track on, and again after a restart of the filter. */
 typedef struct {
     float width_m, width_sd_m;   /* width of the silhouette, whatever side is visible, and one sigma */

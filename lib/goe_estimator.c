@@ -87,15 +87,6 @@ static void forget_track(goe_estimator_t *estimator) {
 #endif
 }
 
-#if GOE_WITH_WINDOW
-/* For the window, whose answer alone shows whether it solved. */
-static void note_solved(goe_estimator_t *estimator) {
-    if (estimator->estimate.fresh) {
-        estimator->estimate_time_us = estimator->motion.time_us;
-    }
-}
-#endif
-
 /* ------------------------------------------------------------------------------------------------------------- filter -- */
 
 #if GOE_WITH_FILTER
@@ -174,43 +165,12 @@ static void note_swapped(goe_estimator_t *estimator, unsigned swapped, goe_fault
     }
 }
 
-#if GOE_WITH_WINDOW
-/* The window answers until the filter first has: a filter that stops keeps its answer, and one that starts in this image takes over
- * an older answer. */
-static bool window_answers(const goe_estimator_t *estimator, bool reported, bool reports) {
-    const bool known = (estimator->estimate.valid & GOE_HAS_POSITION) != 0u;
-    const bool filter = known && estimator->estimate.method == GOE_METHOD_FILTER;
-    return !reported && !filter && !(reports && known);
-}
-#endif
-
 static goe_status_t update_refined(goe_estimator_t *estimator, const goe_view_t *view, goe_faults_t *faults) {
     const goe_settings_t *settings = &estimator->settings;
     unsigned swapped;
-    const bool reported = goe_filter_reports(&estimator->filter, settings->model);
     const bool measured = goe_refined_update(&estimator->filter, settings, view, &swapped);
-    const bool reports = goe_filter_reports(&estimator->filter, settings->model);
-#if GOE_WITH_WINDOW
-    const bool by_window = window_answers(estimator, reported, reports);
-    if (by_window && estimator->estimate.method == GOE_METHOD_FILTER) { /* a filter that started, and never answered */
-        memset(&estimator->estimate, 0, sizeof estimator->estimate);
-    }
-    const goe_status_t status =
-        goe_window_update(&estimator->window, settings, view, by_window ? GOE_WINDOW_SOLVES : GOE_WINDOW_COLLECTS,
-                          faults, by_window ? &estimator->estimate : NULL);
-    if (by_window) {
-        note_solved(estimator);
-        if (!reports || estimator->estimate.fresh) {
-            return status;
-        }
-    } else {
-        note_swapped(estimator, swapped, faults); /* a window that solves has counted them */
-    }
-#else
-    (void)reported;
     note_swapped(estimator, swapped, faults);
-#endif
-    return report_refined(estimator, view, faults, measured && reports);
+    return report_refined(estimator, view, faults, measured && goe_filter_reports(&estimator->filter, settings->model));
 }
 
 static goe_status_t take_refined(goe_estimator_t *estimator, const goe_view_t *view, goe_faults_t *faults) {
@@ -307,9 +267,11 @@ static goe_status_t take_image(goe_estimator_t *estimator, const goe_image_t *im
     }
 #endif
 #if GOE_WITH_WINDOW
-    const goe_status_t status = goe_window_update(&estimator->window, &estimator->settings, &view, GOE_WINDOW_SOLVES,
-                                                  &faults, &estimator->estimate);
-    note_solved(estimator);
+    const goe_status_t status =
+        goe_window_update(&estimator->window, &estimator->settings, &view, &faults, &estimator->estimate);
+    if (estimator->estimate.fresh) {
+        estimator->estimate_time_us = estimator->motion.time_us;
+    }
     return status;
 #else
     return GOE_CONVERGING; /* not reached: goe_init() admits no other method */

@@ -11,7 +11,7 @@
 
 /* Parts. 1 compiles the part's code and state, 0 leaves both out. At least one method is needed. */
 #ifndef GOE_WITH_WINDOW
-#define GOE_WITH_WINDOW 1 /* the window method; without it there is no estimate until the filter has started */
+#define GOE_WITH_WINDOW 1 /* the window method */
 #endif
 #ifndef GOE_WITH_FILTER
 #define GOE_WITH_FILTER 1 /* the filter method */

@@ -225,6 +225,7 @@ typedef struct {         /* refined/goe_kind.c: what the filter uses of the dete
     uint8_t usable;       /* bit i: the size does not differ from what images know, which is not the range */
     uint8_t contradicted; /* images in a row that contradict it */
     goe_flag_t wrong;     /* they did: to the end of the track it is not used */
+    goe_flag_t first;     /* the first guess of the range was the class's */
     uint8_t passed;       /* first guesses of the range, by the prior width, that proved too near; saturating */
     goe_flag_t is_round;  /* the obstacle is taken to be round */
 } goe_kind_use_t;

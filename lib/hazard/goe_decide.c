@@ -68,8 +68,8 @@ static bool is_outside(const goe_hazard_t *hazard, const goe_intent_t *intent) {
 /* Whether detections came for a while without an answer: the old one may be of something else. Silence is another matter. */
 static bool is_superseded(const goe_estimator_t *estimator) {
 #if GOE_WITH_FILTER
-    const bool left = estimator->filter.answer.outdated != 0u || estimator->estimate.method == GOE_METHOD_WINDOW;
-    return goe_uses_filter(estimator) && left && !goe_is_set(&estimator->estimate.fresh) &&
+    return goe_uses_filter(estimator) && estimator->filter.answer.outdated != 0u &&
+           !goe_is_set(&estimator->estimate.fresh) &&
            goe_latest_since_s(estimator, estimator->motion.time_us) > SUPERSEDED_S;
 #else
     (void)estimator;

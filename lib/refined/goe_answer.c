@@ -84,14 +84,19 @@ static bool lies_behind(const goe_filter_t *filter, const goe_quantities_t *quan
            -(reach_m + (quantities->box ? quantities->value[GOE_LENGTH] : 0.0f));
 }
 
-static bool update(goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
+/* by_kind: with the sizes of the class in the state. */
+static bool update(goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion, bool by_kind,
                    goe_estimate_t *estimate) {
     goe_quantities_t quantities;
     goe_quantities_find(filter, settings, motion, &quantities);
     filter->known = (uint8_t)quantities.now;
     const bool placed = (quantities.now & GOE_HAS_POSITION) != 0u; /* otherwise nothing else of them need be set */
     if (placed && lies_behind(filter, &quantities, motion)) {
-        goe_kind_start_farther(filter);
+        if (by_kind) {
+            goe_kind_reject(filter);
+        } else {
+            goe_kind_start_farther(filter);
+        }
         return false;
     }
     if (placed && keeps_previous(filter, motion, &quantities, estimate)) {
@@ -109,7 +114,7 @@ static bool update(goe_filter_t *filter, const goe_settings_t *settings, const g
 static bool update_with_sizes(goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
                               goe_estimate_t *estimate) {
     filter->known = filter->kind.known;
-    const bool fresh = update(filter, settings, motion, estimate);
+    const bool fresh = update(filter, settings, motion, true, estimate);
     filter->kind.known = filter->known;
     filter->known = 0;
     filter->answer.outdated = true;
@@ -122,12 +127,10 @@ bool goe_answer_update(goe_filter_t *filter, const goe_settings_t *settings, con
     goe_kind_saved_t saved;
     const bool own = (estimate->valid & GOE_HAS_POSITION) != 0u && !filter->answer.by_kind; /* no class replaces it */
     if (own || !goe_kind_apply(filter, &saved)) {
-        return update(filter, settings, motion, estimate);
+        return update(filter, settings, motion, false, estimate);
     }
     const bool fresh = update_with_sizes(filter, settings, motion, estimate);
-    if (goe_filter_has_started(filter)) {
-        goe_kind_restore(filter, &saved);
-    }
+    goe_kind_restore(filter, &saved);
     return fresh;
 }
 

@@ -154,14 +154,15 @@ static float range_by_ground_m(const goe_observation_t *obs, const sight_t *sigh
 
 /* (R16): without ground from the size, by its class or as the settings assume it. A class may be wrong, and must not put the obstacle
  * where the sigma of the guess does not reach back. */
-static float first_range_m(const goe_observation_t *obs, const sight_t *sight) {
+static float first_range_m(const goe_observation_t *obs, const sight_t *sight, bool *by_kind) {
     const float ground_m = range_by_ground_m(obs, sight);
     const float prior_m = goe_kind_prior_width_m(obs->settings, obs->passed) / goe_larger(sight->size, BOX_SIZE_MIN);
     const float kind_m = goe_kind_range_m(obs->kind, sight->size, up_of(sight));
-    if (ground_m > 0.0f) {
-        return ground_m;
+    *by_kind = !(ground_m > 0.0f) && kind_m >= RANGE_MIN_M && kind_m <= FARTHER_MAX * prior_m;
+    if (*by_kind) {
+        return kind_m;
     }
-    return kind_m >= RANGE_MIN_M && kind_m <= FARTHER_MAX * prior_m ? kind_m : prior_m;
+    return goe_larger(ground_m > 0.0f ? ground_m : prior_m, RANGE_MIN_M);
 }
 
 static void set_root(const goe_observation_t *obs, const float state[GOE_STATES], float width, goe_triangle_t *root) {
@@ -175,13 +176,13 @@ static void set_root(const goe_observation_t *obs, const float state[GOE_STATES]
     goe_srif_from_sigmas(sd, root);
 }
 
-bool goe_footprint_start(const goe_observation_t *obs, float state[GOE_STATES], goe_triangle_t *root) {
+bool goe_footprint_start(const goe_observation_t *obs, float state[GOE_STATES], goe_triangle_t *root, bool *by_kind) {
     sight_t sight;
     if (!see(obs, &sight)) {
         return false;
     }
-    const float range_m = first_range_m(obs, &sight);
-    if (!(range_m >= RANGE_MIN_M) || !goe_within(range_m, RANGE_MAX_M)) {
+    const float range_m = first_range_m(obs, &sight, by_kind);
+    if (!goe_within(range_m, RANGE_MAX_M)) {
         return false;
     }
     const float q = 1.0f / range_m;

@@ -116,7 +116,7 @@ static void judge(const goe_settings_t *settings, const known_t *known, const go
         const size_t row = group.row[i];
         const size_t feature = rows->feature[row];
         const float squared = row == group.middle ? alone : innovation(known, rows, row, common ? group.middle : row);
-        if (squared > gate * gate) {
+        if (squared > gate * gate && known->filter->health.adrift == 0u) { /* of a track adrift, nothing is refused */
             belief->verdict.refused |= 1u << feature;
         } else if (squared > huber * huber) {
             const float factor = huber / sqrtf(squared);

@@ -30,11 +30,12 @@ float goe_kind_range_m(const goe_kind_t *kind, float across, float up) {
     return wide ? kind->width_m / across : 0.0f;
 }
 
-void goe_kind_start(goe_filter_t *filter, const goe_observation_t *obs) {
+void goe_kind_start(goe_filter_t *filter, const goe_observation_t *obs, bool by_kind) {
     filter->kind.known = 0;
     filter->kind.usable = 0;
     filter->kind.contradicted = 0;
     filter->kind.is_round = obs->is_round;
+    filter->kind.first = by_kind;
 }
 
 /* Of the silhouette, units of Z0. */
@@ -95,22 +96,22 @@ static bool has_size(const goe_kind_use_t *kind) {
     return kind->size_m[KIND_WIDTH] > 0.0f || kind->size_m[KIND_HEIGHT] > 0.0f;
 }
 
-static void reject(goe_kind_use_t *kind) {
-    kind->wrong = true;
-    memset(kind->size_m, 0, sizeof kind->size_m);
+void goe_kind_reject(goe_filter_t *filter) {
+    filter->kind.wrong = true;
+    memset(filter->kind.size_m, 0, sizeof filter->kind.size_m);
 }
 
-static void count(goe_kind_use_t *kind, bool off) {
+static void count(goe_filter_t *filter, bool off) {
     if (!off) {
-        kind->contradicted = 0;
-    } else if (goe_count_image(&kind->contradicted) >= WRONG_IMAGES) {
-        reject(kind);
+        filter->kind.contradicted = 0;
+    } else if (goe_count_image(&filter->kind.contradicted) >= WRONG_IMAGES) {
+        goe_kind_reject(filter);
     }
 }
 
 void goe_kind_start_farther(goe_filter_t *filter) {
-    if (has_size(&filter->kind)) {
-        reject(&filter->kind);
+    if (filter->kind.first) {
+        goe_kind_reject(filter);
     } else {
         (void)goe_count_image(&filter->kind.passed);
     }
@@ -148,7 +149,7 @@ void goe_kind_test(goe_filter_t *filter, const goe_observation_t *obs) {
             off = squared > WRONG_SIGMAS2 || off;
         }
     }
-    count(&filter->kind, off);
+    count(filter, off);
     if (filter->kind.contradicted > 0 || is_range_known(filter, reciprocal, obs->settings->filter.range_sd_rel_max)) {
         filter->kind.usable = 0;
     }

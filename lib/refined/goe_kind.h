@@ -11,12 +11,15 @@
 /* By the better known size, of the angular sizes across and up, 0: not visible. 0: no size is known. */
 float goe_kind_range_m(const goe_kind_t *kind, float across, float up);
 
-/* The filter starts. */
-void goe_kind_start(goe_filter_t *filter, const goe_observation_t *obs);
+/* The filter starts; by_kind: at the range of the class. */
+void goe_kind_start(goe_filter_t *filter, const goe_observation_t *obs, bool by_kind);
 
-/* An image shows the obstacle ahead, and the state has it behind the camera, where no image corrects it: the first guess of the range was
- * too near. The filter starts again, without the class; if there is none, from a farther guess. */
+/* An image shows the obstacle where the state cannot have it, and no image corrects that: the first guess of the range was too near. The
+ * filter starts again, without the class if the guess was that of the class, otherwise from a farther guess. */
 void goe_kind_start_farther(goe_filter_t *filter);
+
+/* The class is wrong: the filter ignores it to the end of the track. */
+void goe_kind_reject(goe_filter_t *filter);
 
 /* Width that a first guess without a class assumes, m, when so many were too near. */
 float goe_kind_prior_width_m(const goe_settings_t *settings, unsigned passed);

@@ -20,13 +20,14 @@ bool goe_model_place(goe_filter_t *filter, const goe_view_t *view) {
 }
 
 bool goe_model_start(goe_filter_t *filter, const goe_observation_t *obs) {
-    if (!goe_footprint_start(obs, filter->state, &filter->root)) {
+    bool by_kind = false;
+    if (!goe_footprint_start(obs, filter->state, &filter->root, &by_kind)) {
         return false;
     }
     goe_filter_enter(filter, GOE_PHASE_FOOTPRINT);
     memset(filter->side, 0, sizeof filter->side);
     goe_ground_start(filter, obs);
-    goe_kind_start(filter, obs);
+    goe_kind_start(filter, obs, by_kind);
     memset(filter->walk_s, 0, sizeof filter->walk_s);
     filter->due_s = 0.0f;
     filter->candidate.stand_in = false;

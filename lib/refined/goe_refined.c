@@ -25,7 +25,12 @@
 
 #define GAP_MAX_US 1000000000u /* a longer gap between images counts as this one */
 #define TOO_SOON_SHARE 0.08f   /* of the time constant: sooner, differences of boxes are their linearization's */
-#define FADE_MAX 0.95f         /* of what a box's error keeps from image to image, where it is not remembered */
+#define LOST_S 0.5f            /* without rows, after which a known range is not taken as known */
+#define VAGUE2                                                                                                         \
+    4.0f /* (sigma of 1/Z0 times the way along Z)^2; 1/Z0 of what is ahead lies between 0 and 1 over that way */
+#define BEYOND2 9.0f     /* squared sigmas of 1/Z0 below 0 */
+#define RECEDED_MAX 2.0f /* Z over Z0 of what the images show to grow */
+#define FADE_MAX 0.95f   /* of what a box's error keeps from image to image, where it is not remembered */
 
 /* --------------------------------------------------------------------------------------------------------------- time -- */
 
@@ -129,11 +134,9 @@ static void note_time(goe_filter_t *filter, goe_observation_t *obs) {
 static bool open_image(goe_filter_t *filter, const goe_settings_t *settings, const goe_view_t *view,
                        goe_observation_t *obs, unsigned *swapped) {
     const bool running = goe_filter_has_started(filter);
-    if (!running && !goe_model_place(filter, view)) {
-        return false;
-    }
-    *swapped = goe_observation_open(obs, settings, filter, view);
-    if (!running && !goe_model_start(filter, obs)) {
+    const bool placed = running || goe_model_place(filter, view);
+    *swapped = goe_observation_open(obs, settings, filter, view); /* also of an image that does not start the filter */
+    if (!placed || (!running && !goe_model_start(filter, obs))) {
         return false;
     }
     if (!running) {
@@ -156,11 +159,27 @@ static bool starts_to_move(goe_filter_t *filter, const goe_observation_t *obs, c
 #endif
 }
 
-/* A state behind the camera gives no rows, so that no image corrects it. If images know its range it may be right, and the image wrong. */
-static bool is_passed(const goe_filter_t *filter, const goe_observation_t *obs) {
-    const float known = obs->settings->filter.range_sd_rel_max * filter->state[GOE_INVERSE_RANGE];
-    return goe_filter_has_started(filter) && obs->range_variance > goe_square(known) &&
-           goe_observation_reference(obs).z < 0.0f;
+/* Whether the obstacle moves, and the state that moves with it has it at a range that is none: growth then counts as motion alone. */
+static bool is_beyond(const goe_filter_t *filter, const goe_observation_t *obs) {
+#if GOE_AUGMENTED
+    const float q = filter->state[GOE_INVERSE_RANGE];
+    return filter->mover.followed && q < 0.0f && q * q > BEYOND2 * obs->range_variance;
+#else
+    (void)filter;
+    (void)obs;
+    return false;
+#endif
+}
+
+/* Whether the obstacle is seen where the state cannot have it: passed; by its sigma anywhere; or farther off than at the start, by more
+ * than it was then. No image corrects that: a state behind the camera gives no rows, and a vague one takes nothing from them. If images
+ * know a range that was passed, it may be right, and the image wrong; not for long. */
+static bool is_lost(const goe_filter_t *filter, const goe_observation_t *obs) {
+    const float known2 = goe_square(obs->settings->filter.range_sd_rel_max * filter->state[GOE_INVERSE_RANGE]);
+    const float z = goe_observation_reference(obs).z;
+    const bool passed = z < 0.0f && (obs->range_variance > known2 || filter->due_s > LOST_S);
+    const bool vague = obs->range_variance * goe_square(obs->camera_m.z) > VAGUE2;
+    return goe_filter_has_started(filter) && (passed || vague || z > RECEDED_MAX || is_beyond(filter, obs));
 }
 
 /* What the rows bring; its locals are not on the stack while they are made. */
@@ -222,7 +241,7 @@ bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, co
         return false;
     }
     const bool used = use_image(filter, &obs);
-    if (!used && view->seen && is_passed(filter, &obs)) {
+    if (view->seen && is_lost(filter, &obs)) {
         goe_kind_start_farther(filter);
     }
     return used;

@@ -253,7 +253,7 @@ static goe_status_t judge(const frame_t *frame, goe_status_t solving) {
 }
 
 /*@ requires \valid(frame) && \valid_read(settings) && goe_view_is_open(view) && goe_faults_are_open(faults);
-    requires estimate == \null || \valid(estimate); */
+    requires \valid(estimate); */
 static void start_frame(frame_t *frame, const goe_settings_t *settings, const goe_view_t *view,
                         const goe_faults_t *faults, goe_estimate_t *estimate) {
     frame->settings = settings;
@@ -266,13 +266,10 @@ static void start_frame(frame_t *frame, const goe_settings_t *settings, const go
 }
 
 goe_status_t goe_window_update(goe_window_t *window, const goe_settings_t *settings, const goe_view_t *view,
-                               goe_window_task_t task, const goe_faults_t *faults, goe_estimate_t *estimate) {
+                               const goe_faults_t *faults, goe_estimate_t *estimate) {
     frame_t frame;
     start_frame(&frame, settings, view, faults, estimate);
     const goe_status_t fault = add_disc_row(window, &frame);
-    if (task == GOE_WINDOW_COLLECTS) {
-        return GOE_STALE;
-    }
     estimate->fresh = false;
     goe_fault_note(&frame.faults, fault);
     find_faces(window, &frame);

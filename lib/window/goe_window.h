@@ -5,19 +5,14 @@
 #include "image/goe_fault.h"
 #include "image/goe_view.h"
 
-typedef enum {
-    GOE_WINDOW_SOLVES,
-    GOE_WINDOW_COLLECTS /* rows of the disc only, to be able to solve on request */
-} goe_window_task_t;
-
 /* Forgets the track. */
 void goe_window_clear(goe_window_t *window);
 
-/* Takes one image and, if it solves, brings *estimate, the window's own or an empty one, up to date. Returns what to say of the
+/* Takes one image and, if it solves, brings *estimate up to date. Returns what to say of the
  * image. faults: those met so far; more are counted. */
 /*@ requires \valid(window) && \valid_read(settings) && goe_view_is_open(view) && goe_faults_are_open(faults);
-    requires estimate == \null || \valid(estimate); */
+    requires \valid(estimate); */
 goe_status_t goe_window_update(goe_window_t *window, const goe_settings_t *settings, const goe_view_t *view,
-                               goe_window_task_t task, const goe_faults_t *faults, goe_estimate_t *estimate);
+                               const goe_faults_t *faults, goe_estimate_t *estimate);
 
 #endif

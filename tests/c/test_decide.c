@@ -97,7 +97,7 @@ static void an_old_answer_clears_nothing_after_new_detections(void) {
     place(60.0);
     estimator.estimate.fresh = false;
     estimator.motion.time_us = estimator.estimate_time_us + 2100000;
-    estimator.estimate.method = GOE_METHOD_WINDOW; /* in place of the filter, which runs without an answer */
+    estimator.filter.answer.outdated = true;
     TEST_ASSERT_EQUAL_INT(GOE_DECISION_UNKNOWN, decide());
 #if GOE_WITH_WINDOW
     estimator.settings.method = GOE_METHOD_WINDOW;

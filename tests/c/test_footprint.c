@@ -24,6 +24,7 @@ static const size_t feature_of_side[] = {GOE_POINT_LEFT, GOE_POINT_TOP, GOE_POIN
 static check_random_t any;
 static sighting_t sighting;
 static goe_sides_t sides;
+static bool by_kind; /* the start took the range of the class */
 
 void setUp(void) {}
 void tearDown(void) {}
@@ -278,7 +279,7 @@ static void a_start_matches_one_box(void) {
     sighting.settings.navigation.terrain_slope_sd = 0.03f;
     sighting.sight.state = x;
     memset(x, 0xA5, sizeof x); /* whatever was there before */
-    TEST_ASSERT_TRUE(goe_footprint_start(&sighting.sight, x, &root));
+    TEST_ASSERT_TRUE(goe_footprint_start(&sighting.sight, x, &root, &by_kind));
     for (size_t i = 0; i < 3; i++) {
         CHECK_SAME(0.0f, x[i]);
     }
@@ -298,20 +299,20 @@ static void a_start_matches_one_box(void) {
         CHECK_CLOSE(1.0e-4, 1.0, sigma[i] * (double)*goe_srif_at(&root, i, i));
     }
     sighting.sight.is_round = true; /* as deep as wide */
-    TEST_ASSERT_TRUE(goe_footprint_start(&sighting.sight, x, &root));
+    TEST_ASSERT_TRUE(goe_footprint_start(&sighting.sight, x, &root, &by_kind));
     CHECK_CLOSE(1.0, 1000.0, *goe_srif_at(&root, GOE_LOG_DEPTH, GOE_LOG_DEPTH));
     CHECK_CLOSE(1.0, 50.0 / 0.05, *goe_srif_at(&root, GOE_SHEAR, GOE_SHEAR)); /* which shows that it is none */
     see_box(-0.05f, -0.1f, 0.05f, 0.25f);
     sides.usable = GOE_SIDE_LEFT | GOE_SIDE_RIGHT; /* no foot, no head */
-    TEST_ASSERT_TRUE(goe_footprint_start(&sighting.sight, x, &root));
+    TEST_ASSERT_TRUE(goe_footprint_start(&sighting.sight, x, &root, &by_kind));
     CHECK_CLOSE(1.0e-6, 0.1 / 6.0, x[GOE_INVERSE_RANGE]); /* 6 m under 0.1 */
     CHECK_CLOSE(1.0e-6, 20.0 * 0.1 / 6.0, x[GOE_TOP]);
     see_box(-0.05f, -0.1f, 0.05f, 0.02f); /* below three sigma of attitude, pixel and share */
-    TEST_ASSERT_TRUE(goe_footprint_start(&sighting.sight, x, &root));
+    TEST_ASSERT_TRUE(goe_footprint_start(&sighting.sight, x, &root, &by_kind));
     CHECK_CLOSE(1.0e-6, 0.1 / 6.0, x[GOE_INVERSE_RANGE]);
     see_box(-0.05f, -0.1f, 0.05f, 0.25f);
     sighting.sight.height_sd_m = 100.0f; /* no altimeter: the first box sets the ground */
-    TEST_ASSERT_TRUE(goe_footprint_start(&sighting.sight, x, &root));
+    TEST_ASSERT_TRUE(goe_footprint_start(&sighting.sight, x, &root, &by_kind));
     CHECK_CLOSE(1.0e-6, 0.25 - 20.0 * 0.1 / 6.0, x[GOE_GROUND]);
 }
 
@@ -498,7 +499,7 @@ static void show_tower(void) {
     sides.usable = GOE_SIDES_ALL;
 }
 
-static bool starts(void) { return goe_footprint_start(&sighting.sight, first, &first_root); }
+static bool starts(void) { return goe_footprint_start(&sighting.sight, first, &first_root, &by_kind); }
 
 static double first_range_m(void) {
     TEST_ASSERT_TRUE(starts());
@@ -554,10 +555,17 @@ static void no_range_is_no_start(void) {
     sides.px[GOE_BOX_LEFT] = -0.4f;
     sides.px[GOE_BOX_RIGHT] = 0.4f;
     TEST_ASSERT_FALSE(starts());
+}
+
+/* [filter.prior_width_m] GIVEN an assumed width that places the obstacle nearer than a meter THEN the first guess is a meter: a wrong width
+ * must not keep the filter from starting. */
+static void a_first_guess_is_no_nearer_than_a_meter(void) {
+    show_tower();
+    sides.usable &= (uint8_t)~GOE_SIDE_BOTTOM;
     sighting.settings.filter.prior_width_m = 0.1f;
     sides.px[GOE_BOX_LEFT] = -100.0f;
     sides.px[GOE_BOX_RIGHT] = 100.0f;
-    TEST_ASSERT_FALSE(starts());
+    CHECK_CLOSE(1.0e-6, 1.0, first_range_m());
 }
 
 /* GIVEN a height that is as good as not known THEN the first box's foot sets it, if visible. */
@@ -965,6 +973,7 @@ int main(void) {
     RUN_TEST(the_ground_gives_the_first_range);
     RUN_TEST(the_typical_size_gives_another_range);
     RUN_TEST(no_range_is_no_start);
+    RUN_TEST(a_first_guess_is_no_nearer_than_a_meter);
     RUN_TEST(without_an_altimeter_the_foot_gives_the_height);
     RUN_TEST(rows_are_whitened);
     RUN_TEST(a_shift_far_above_the_noise_makes_no_row_certain);

@@ -352,8 +352,9 @@ static void the_axes_face_the_obstacle(void) {
 
 static float first[GOE_STATES];
 static goe_triangle_t root;
+static bool by_kind; /* the start took the range of the class */
 
-static bool starts(void) { return goe_footprint_start(&sighting.sight, first, &root); }
+static bool starts(void) { return goe_footprint_start(&sighting.sight, first, &root, &by_kind); }
 
 /* An obstacle dead ahead, between -0.05 and 0.05, with base corners at `y` below the horizon, from 20 m above the ground. */
 static void see_base(double y) {

@@ -314,6 +314,24 @@ static void no_rows_are_no_verdict(void) {
     TEST_ASSERT_EQUAL_INT(0, verdict.rows);
 }
 
+/* [goe_gate.c] GIVEN a track that started again and again WHEN a point is off by any number of sigmas THEN it is not refused, but counts less,
+ * the more it is off. */
+static void of_a_track_adrift_nothing_is_refused(void) {
+    double before = 1.0;
+    for (int i = 0; i < 3; i++) {
+        setUp();
+        filter.health.adrift = true;
+        const goe_matrix_t whole = matrix;
+        *residual(0) = (float)(20.0 * pow(10.0, i) * SIGMA);
+        apply();
+        TEST_ASSERT_EQUAL_HEX32(0u, verdict.refused);
+        TEST_ASSERT_EQUAL_INT(rows.count, verdict.rows);
+        const double share = weight_of(0, &whole) * SIGMA;
+        TEST_ASSERT_TRUE(share > 0.0 && share < 0.5 * before);
+        before = share;
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(rows_without_suspicion_are_divided_by_their_sigma);
@@ -327,6 +345,7 @@ int main(void) {
     RUN_TEST(the_own_position_s_error_opens_the_gate);
     RUN_TEST(an_own_position_error_opens_the_gate);
     RUN_TEST(a_row_alone_is_judged);
+    RUN_TEST(of_a_track_adrift_nothing_is_refused);
     RUN_TEST(a_drift_of_the_attitude_opens_the_gate);
     RUN_TEST(no_rows_are_no_verdict);
     return UNITY_END();

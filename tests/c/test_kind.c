@@ -1,11 +1,12 @@
 /* Size and shape by the detector's class. SPDX-License-Identifier: MIT */
-/* tests: lib/refined/goe_kind.c */
+/* tests: lib/refined/goe_answer.c lib/refined/goe_kind.c */
 #include <math.h>
 #include <string.h>
 
 #include "check.h"
 #include "image/goe_intake.h"
 #include "inverse.h"
+#include "refined/goe_answer.h"
 #include "refined/goe_kind.h"
 #include "refined/goe_srif.h"
 #include "sighting.h"
@@ -180,6 +181,26 @@ static void one_wrong_size_is_enough(void) {
     TEST_ASSERT_TRUE(filter.kind.wrong);
 }
 
+/* [goe_answer.c] GIVEN a class by whose size the obstacle lies behind the camera, and images by which it does not THEN the class is wrong,
+ * nothing is answered, and the filter goes on with what the images know. */
+static void a_class_behind_the_camera_is_wrong(void) {
+    goe_motion_t motion;
+    goe_estimate_t estimate;
+    memset(&motion, 0, sizeof motion);
+    memset(&estimate, 0, sizeof estimate);
+    motion.heading_cos = 1.0f;
+    motion.dz_m = 90.0f;
+    filter.axes.turn_cos = 1.0f;
+    state(0.0f, 0.0f, 7.0f, 0.7f);
+    goe_kind_test(&filter, &sighting.sight);
+    TEST_ASSERT_TRUE(filter.kind.usable != 0u);
+    TEST_ASSERT_FALSE(goe_answer_update(&filter, &sighting.settings, &motion, &estimate));
+    TEST_ASSERT_TRUE(filter.kind.wrong);
+    TEST_ASSERT_EQUAL_HEX32(0u, estimate.valid);
+    TEST_ASSERT_EQUAL_INT(GOE_PHASE_FOOTPRINT, filter.phase);
+    CHECK_SAME(0.01f, filter.state[GOE_INVERSE_RANGE]);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_better_size_gives_the_range);
@@ -189,5 +210,6 @@ int main(void) {
     RUN_TEST(the_silhouette_of_a_box_is_tested);
     RUN_TEST(what_is_no_class_is_refused);
     RUN_TEST(one_wrong_size_is_enough);
+    RUN_TEST(a_class_behind_the_camera_is_wrong);
     return UNITY_END();
 }

@@ -304,10 +304,11 @@ static void a_stopped_filters_answer_stays_while_nothing_else_is_known(void) {
 /* GIVEN a filter that has stopped WHEN it cannot start from an image, as its first guess of the range is invalid THEN its last answer
  * stays. */
 static void an_answer_stays_while_the_filter_cannot_start(void) {
-    settings.filter.prior_width_m = 0.1f;
+    settings.filter.prior_width_m = 1000.0f;
     goe_image_t image = stop();
     const goe_estimate_t before = estimate;
     hide_base(&image);
+    image.right.u_px = image.left.u_px + 0.2f; /* beyond all distances, by that width */
     update(&image);
     TEST_ASSERT_EQUAL_INT(GOE_PHASE_NONE, phase());
     TEST_ASSERT_EQUAL_INT(GOE_METHOD_FILTER, estimate.method);

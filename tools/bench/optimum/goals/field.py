@@ -6,7 +6,7 @@ from goe_tools.models import offline
 from goe_tools.models.judge import LENGTH, ORIENTATION, WIDTH, Z0
 
 from .goal import Goal
-from .measures import consistency_goals, coverage_goals, offline_goals, start_goals, window_goals
+from .measures import consistency_goals, coverage_goals, offline_goals, suspect_goals, window_goals
 from .work import Amount, drawn, perform_all, simulated_tasks
 
 
@@ -18,4 +18,4 @@ def field_group(group: str, amount: Amount) -> list[Goal]:
     outcomes = perform_all(tasks, amount, group)
     result = window_goals(group, outcomes, 0.4, (Z0, ORIENTATION, WIDTH, LENGTH))
     result += offline_goals(group, outcomes) + coverage_goals(group, outcomes)
-    return result + consistency_goals(group, outcomes, False) + start_goals(group, outcomes)
+    return result + consistency_goals(group, outcomes, False) + suspect_goals(group, outcomes)

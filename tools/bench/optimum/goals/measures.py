@@ -171,13 +171,6 @@ def offline_goals(group: str, outcomes: Sequence[Outcome]) -> list[Goal]:
     ]
 
 
-def start_goals(group: str, outcomes: Sequence[Outcome]) -> list[Goal]:
-    answered = sum(o.answered for o in outcomes)
-    by_window = sum(o.answered_by_window for o in outcomes)
-    share = 100.0 * by_window / max(answered, 1)
-    return [Goal(group, "answers", "%", {"by the window method": share}), *suspect_goals(group, outcomes)]
-
-
 def suspect_goals(group: str, outcomes: Sequence[Outcome]) -> list[Goal]:
     """Share of static obstacles flagged as suspect in any image, and the NIS ratio of the others."""
     flagged = {"in any image": 100.0 * float(np.mean([o.suspect for o in outcomes]))}

@@ -11,7 +11,7 @@ from goe_tools.flights.measured import measure
 from goe_tools.flights.noise import Noise
 from goe_tools.flights.rotations import fold
 from goe_tools.flights.scene import Scene
-from goe_tools.library import METHODS, Track, estimate, known_shape, settings_of
+from goe_tools.library import Track, estimate, known_shape, settings_of
 from goe_tools.models import offline
 from goe_tools.models.bound import bound
 from goe_tools.models.judge import DISC_QUANTITIES, ORIENTATION, X0, Z0, Judgement, judge, renamed, renamed_sigma
@@ -48,7 +48,6 @@ class Outcome:
     misfit_most: float  # over the track
     suspect: bool  # in any image
     answered: int  # images with an answer
-    answered_by_window: int
     bound: np.ndarray | None = None  # (6,) under the naming of the last answer
     offline: np.ndarray | None = None  # (6,) errors
     rivals: dict[str, np.ndarray] = field(default_factory=dict)  # errors (6,) at the end
@@ -57,12 +56,6 @@ class Outcome:
     @property
     def box(self) -> bool:
         return self.truth.kind == "box"
-
-
-def _filter_only(track: Track) -> Track:
-    """Without the window method's answers before the start of the filter method, whose sigmas mean less."""
-    track.values[track.method != METHODS["filter"]] = np.nan
-    return track
 
 
 def _misfit_most(track: Track) -> float:
@@ -74,12 +67,11 @@ def outcome_of(flight: Flight, **shape: float) -> Outcome:
     """Runs both methods over a flight. ``shape``: settings for the obstacle's shape."""
     track = estimate(flight, **shape)
     position = track.valid[:, Z0]
-    by_window = int((position & (track.method == METHODS["window"])).sum())
     window = estimate(flight, settings_of(flight, method="window"), **shape)
     return Outcome(
-        flight.name, flight.group, flight.truth, flight.time_s, flight.reach_s, judge(_filter_only(track), flight),
+        flight.name, flight.group, flight.truth, flight.time_s, flight.reach_s, judge(track, flight),
         judge(window, flight), track.covariance[-1], float(track.nis.sum()), float(track.nis_rows.sum()),
-        float(track.nis_ratio[-1]), _misfit_most(track), bool(track.suspect.any()), int(position.sum()), by_window,
+        float(track.nis_ratio[-1]), _misfit_most(track), bool(track.suspect.any()), int(position.sum()),
     )  # fmt: skip
 
 

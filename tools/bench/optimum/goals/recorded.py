@@ -6,7 +6,7 @@ from goe_tools.flights.recorded import recorded_scenes
 from goe_tools.models.judge import HEIGHT, WIDTH, Z0
 
 from .goal import Goal
-from .measures import consistency_goals, coverage_goals, start_goals, window_goals
+from .measures import consistency_goals, coverage_goals, suspect_goals, window_goals
 from .outcome import Task
 from .work import Amount, perform_all
 
@@ -25,5 +25,5 @@ def recorded_group(group: str, amount: Amount) -> list[Goal]:
         name = f"{group} {autopilot}"
         result += window_goals(name, outcomes, 0.5, (Z0, WIDTH, HEIGHT), worse_asked=False)
         result += [g for g in coverage_goals(name, outcomes, (88.0, 100.0)) if "first" not in g.name]
-        result += consistency_goals(name, outcomes, False) + start_goals(name, outcomes)
+        result += consistency_goals(name, outcomes, False) + suspect_goals(name, outcomes)
     return result
