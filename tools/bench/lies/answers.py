@@ -47,7 +47,7 @@ SETTINGS = {  # by group of goe_settings_t: its field, and the parameter with it
         ("velocity_bias_sd_m_s", "velocity_bias"),
         ("position_walk_sd_m", "position_walk"), ("position_white_sd_m", "position_white"),
         ("height_white_sd_m", "height_white"),
-        ("terrain_height_sd_m", "ground"),
+        ("terrain_height_sd_m", "ground"), ("terrain_slope_sd", "slope"),
     ),
     "detector": (
         ("point_noise_px", "point_px"), ("point_noise_rel", "point_share"), ("point_correlation", "point_correlation"),
@@ -75,7 +75,8 @@ def settings(world: World, i: int) -> goe.Settings:
     """The settings for a flight."""
     p, heading = world.p, world.heading_deg[i].item()
     group = {name: {field: p[own][i].item() for field, own in rows} for name, rows in SETTINGS.items()}
-    group["navigation"] |= {"terrain_slope_sd": 0.0} | ({} if p["ground_drawn"][i] else {"terrain_height_sd_m": 0.0})
+    level = {"terrain_height_sd_m": "ground_drawn", "terrain_slope_sd": "slope_drawn"}
+    group["navigation"] |= {name: 0.0 for name, drawn in level.items() if not p[drawn][i]}
     return goe.Settings(
         camera=goe.Camera(**_camera(world, i, 0)),
         more_cameras=(goe.Camera(**_camera(world, i, 1)),) if p["two_cameras"][i] else (),

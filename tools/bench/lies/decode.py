@@ -45,6 +45,7 @@ ASPECTS = np.array([1.0, 4.0 / 3.0, 16.0 / 9.0])
 MARGINS = np.array([3.0, 5.0, 10.0, 15.0, 25.0])
 CLEARANCES = np.array([2.0, 5.0, 10.0, 20.0])
 TYPICAL_M, TYPICAL_FACTOR = 6.0, 3.0
+HIDDEN_MOST_M, HIDDEN_SHARE_MOST = 2.0, 0.3  # of the height
 SPREAD = 4.0  # drawn noise is at most this factor above or below the default
 
 
@@ -164,8 +165,16 @@ def _noise(g: Units, mix: np.ndarray) -> Params:
     found["point_correlation"] = np.where(g["point_correlation"] < 0.2, 0.9 * rest(g["point_correlation"], 0.2), 0.0)
     found["cut_noise"] = np.where(g["cut_noise"] < 0.3, log(rest(g["cut_noise"], 0.3), 0.03, 0.2), 1.0)
     found["cut_drawn"] = g["cut_noise"] < 0.3
+    found["slope_drawn"] = g["slope_drawn"] < 0.5
     found["ground_drawn"] = (mix == BOXES) | ((mix == BOXES_BASE) & (g["ground_drawn"] < 0.5))
     return found
+
+
+def _hidden(g: Units, mix: np.ndarray, h_m: Array) -> Params:
+    """Bushes in front of the base: a box's bottom is that of the visible part, and base corners are invisible."""
+    there = ((mix == BOXES) | (mix == BOXES_BASE)) & (g["hidden"] < 0.2)
+    most = np.minimum(HIDDEN_MOST_M, HIDDEN_SHARE_MOST * h_m)
+    return {"hidden_m": np.where(there, g["hidden_share"] * most, 0.0), "hidden_always": g["hidden_always"] < 0.5}
 
 
 def _typical(g: Units, p: Params) -> Params:
@@ -237,7 +246,7 @@ def decode(flights: Flights) -> Params:
     g, mix = Units(flights.unit), flights.mix
     p: Params = {"mix": mix, "seed": flights.seed} | _shape(g, mix)
     p |= _motion(g, p["h_m"], 0.5 * np.hypot(p["a_m"], p["b_m"])) | _camera(g) | _features(g, mix, p["round"])
-    p |= _disturbances(g) | _plan(g) | _noise(g, mix) | _typical(g, p)
+    p |= _disturbances(g) | _plan(g) | _noise(g, mix) | _typical(g, p) | _hidden(g, mix, p["h_m"])
     origin = {f"origin_{axis}_m": linear(g[f"origin_{axis}"], -300.0, 300.0) for axis in "ned"}
     ones = {f"{name}_scale": np.ones(len(mix)) for name in ("constant", "pose", "pixel")}
     return p | origin | ones

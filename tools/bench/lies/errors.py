@@ -55,6 +55,7 @@ class PoseErrors:
     attitude: Array  # (F, K, 3) about body axes, rad
     position: Array  # (F, K, 3) m
     height: Array  # (F, K) m
+    slope: Array  # (F,) of the ground from the obstacle towards the aircraft at first sight
 
 
 def _walk(white: Array, per_root_s: Array, t: Array) -> Array:
@@ -78,4 +79,5 @@ def pose_errors(p: Params, draws: Draws, t: Array, after_reset: np.ndarray) -> P
     )
     ground = np.where(p["ground_drawn"], p["ground"] * fixed[:, 7], 0.0)
     height = (p["height_bias"] * fixed[:, 6] + ground)[:, None] + p["height_white"][:, None] * series[..., WHITE_HEIGHT]
-    return PoseErrors(np.radians(attitude), position, height)
+    slope = np.where(p["slope_drawn"], p["slope"] * fixed[:, 11], 0.0)
+    return PoseErrors(np.radians(attitude), position, height, slope)

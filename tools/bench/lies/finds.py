@@ -144,6 +144,8 @@ def flags(world: World) -> dict[str, np.ndarray]:
         "point_share": p["point_share"] > 0,
         "correlated": p["point_correlation"] > 0,
         "ground_drawn": p["ground_drawn"],
+        "slope": p["slope_drawn"],
+        "bushes": p["hidden_m"] > 0,
         "pre_turn": p["pre_turn"],
         "missed": any_of(~world.detected),
         "partly": p["partly_share"] > 0,

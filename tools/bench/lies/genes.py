@@ -25,7 +25,8 @@ GENES = (
     "view_angle", "pixel_shape", "center", "lens", "lens_k1", "lens_k2", "lens_p1", "lens_p2", "lever", "lever_x",
     "lever_y", "lever_z", "heading_auto", "heading", "size_known", "cameras", "second_yaw", "second_share",
     "origin_n", "origin_e", "origin_d", "attitude_bias", "attitude_white", "attitude_drift", "height_bias",
-    "velocity_bias", "position_walk", "position_white", "height_white", "ground", "ground_drawn", "point_px",
+    "velocity_bias", "position_walk", "position_white", "height_white", "ground", "ground_drawn", "slope",
+    "slope_drawn", "hidden", "hidden_share", "hidden_always", "point_px",
     "point_share", "point_correlation", "box_px", "box_share", "correlation_s", "cut_noise", "typical",
     "top_is_highest", "sides_raw", "side_height", "top_seen", "sides_seen", "base_subset", "bottom_seen",
     "cut_reported",
@@ -40,7 +41,7 @@ STRAIGHT, SWAYING, WEAVING, CLIMBING, TURNING, ORBIT = range(6)  # kinds of flig
 NO_RESET, HORIZONTAL, VERTICAL, BOTH = range(4)  # kinds of resets
 DEFAULTS = {  # of goe.h
     "attitude_bias": 0.5, "attitude_white": 0.1, "height_bias": 0.5, "velocity_bias": 0.05, "position_walk": 0.05,
-    "ground": 2.0, "point_px": 0.5, "box_px": 1.0, "box_share": 0.07, "correlation_s": 1.2,
+    "ground": 2.0, "slope": 0.01, "point_px": 0.5, "box_px": 1.0, "box_share": 0.07, "correlation_s": 1.2,
 }  # fmt: skip
 
 

@@ -5,7 +5,7 @@ Also whether they are inside the image.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -91,9 +91,9 @@ def _roof_extreme(seen_by: View, solid: Solid) -> Array:
     return spots[np.arange(len(spots)), np.where(ahead, pixels[..., 1], np.inf).argmin(1)]
 
 
-def look(p: Params, flight: np.ndarray, seen_by: View, solid: Solid) -> Seen:
-    """``flight``: (N,) flight of each image."""
-    touching, whole = _touching(seen_by, solid)
+def look(p: Params, flight: np.ndarray, seen_by: View, solid: Solid, hidden_m: Array) -> Seen:
+    """``flight``: (N,) flight of each image. ``hidden_m``: (N,) height of the bushes in front of the base."""
+    touching, whole = _touching(seen_by, replace(solid, foot=solid.foot - hidden_m))
     posts = shapes.sides(solid)
     level = solid.foot + (solid.roof - solid.foot) * p["side_height"][flight]
     top = shapes.upright(shapes.nearest_of_rim(solid)[:, None], solid.roof)
@@ -106,7 +106,7 @@ def look(p: Params, flight: np.ndarray, seen_by: View, solid: Solid) -> Seen:
     points[raw, :2] = touching[raw][:, [0, 2]]
     ahead[raw, :2] = whole[raw, None]
     there = ahead & optics.in_image(seen_by, points)
-    there[:, BASE_LEFT:] &= base_there
+    there[:, BASE_LEFT:] &= base_there & (hidden_m == 0.0)[:, None]
     box = touching[:, np.arange(SIDES), SIDE_AXIS]
     inside = np.clip(box.reshape(-1, 2, 2), 0.0, seen_by.size[:, None])
     extent = inside[:, 1] - inside[:, 0]

@@ -46,6 +46,7 @@ SIMPLE: tuple[dict[str, float], ...] = (
     {"model": 1}, {"range_share": 0.25},
     {"height_white": 0.0}, {"position_white": 0.0}, {"attitude_drift": 0.0}, {"point_share": 0.0},
     {"point_correlation": 0.0},
+    {"hidden_m": 0.0}, {"hidden_always": 1}, {"slope_drawn": 0},
     {"ground_drawn": 0}, *({name: value} for name, value in DEFAULTS.items()), {"typical_m": 6.0}, {"since_s": 0.0},
     {"plan_turn_deg": 0.0},
     {"plan_climb_m_s": 0.0}, {"plan_hold": 1000}, {"origin_n_m": 0.0, "origin_e_m": 0.0, "origin_d_m": 0.0},

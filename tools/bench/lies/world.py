@@ -152,6 +152,13 @@ def _kept(moved: Motion, camera: Array, solid: Solid) -> np.ndarray:
     return found
 
 
+def _risen(moved: Motion, camera: Array, solid: Solid, slope: Array) -> Array:
+    """(F, K): height of the ground under the aircraft over that at the obstacle."""
+    begun = solid.center - camera[np.arange(len(slope)), moved.first, :2]
+    ahead = begun / np.hypot(*begun.T)[:, None]
+    return slope[:, None] * np.einsum("fkj,fj->fk", solid.center[:, None] - camera[..., :2], ahead)
+
+
 def _plan(p: Params, moved: Motion) -> Array:
     """(F, K, 3): planned velocities: as flown, constant for a while."""
     number = np.arange(moved.t_s.shape[1])
@@ -187,7 +194,9 @@ def fly(p: Params) -> World:
     mount, number = _mount(p, moved, solid), _camera_number(p, moved)[kept]
     axes = optics.mounted(*np.moveaxis(mount, -1, 0))[flight, number]
     looking = optics.view(p, moved.turned[kept], axes, flight)
-    ideal = seen.look(p, flight, looking, relative_to(solid, flight, camera[kept]))
+    hides = p["hidden_always"][flight] | (2 * k < p["images"][flight])
+    bushes = np.where(hides, p["hidden_m"][flight], 0.0)
+    ideal = seen.look(p, flight, looking, relative_to(solid, flight, camera[kept]), bushes)
     detections = features.detect(p, draws, moved, kept, flight, looking, ideal, happened.detected[kept])
     origin = np.stack([p[f"origin_{axis}_m"] for axis in "ned"], 1)[flight]
     reported = (moved.position + wrong.position + happened.jump)[kept] + origin
@@ -196,8 +205,10 @@ def fly(p: Params) -> World:
     refused = happened.refused[kept] & (k > 0)
     _given_pose(columns, attitude, refused, p["refused_kind"][flight])
     delta = happened.delta[kept]
+    risen = _risen(moved, camera, solid, wrong.slope)
+    over_ground = (wrong.height + happened.jump_height - risen)[kept] - camera[kept][:, 2]
     images = goe.Images(
-        columns["time_us"], reported, attitude, -camera[kept][:, 2] + wrong.height[kept] + happened.jump_height[kept],
+        columns["time_us"], reported, attitude, over_ground,
         box_px=detections.box, points_px=detections.points, reset_count=(happened.count[kept] % 256).astype(np.uint8),
         reset_delta_ned_m=delta, camera=number,
     ).to_c()  # fmt: skip
