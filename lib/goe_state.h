@@ -148,16 +148,17 @@ typedef struct {          /* refined/goe_box.c: what the report calls the edges 
 /* refined/goe_ground.c: the camera's height by the changes of down since the track's first image, and what the readings of the altimeter
  * say of it. */
 typedef struct {
-    float ground_m;            /* down of the ground, by the heights before the filter's start */
-    float height_m;            /* of the camera above it, latest image */
-    float sd_m;                /* one sigma of the first height, as its image gave it; 0: as in the settings */
-    float mean_m;              /* by how much the heights, freed of the changes of down, lie above that ground */
-    float noise_m2;            /* variance of that mean by the noise of the readings and the drift of down */
-    float scatter_m2;          /* mean square of the readings about it */
-    float first;               /* information of the height that the filter began with, 1/m^2 */
-    float information, moment; /* of the offset, already in the filter: 1/m^2, and times its mean */
-    uint8_t readings;          /* heights so far, saturating */
-    goe_flag_t boxes;          /* the filter has used an upright box */
+    float ground_m;     /* down of the ground, by the heights before the filter's start */
+    float height_m;     /* of the camera above it, latest image */
+    float sd_m;         /* one sigma of the first height, as its image gave it; 0: as in the settings */
+    float mean_m;       /* by how much the heights, freed of the changes of down, lie above that ground */
+    float noise_m2;     /* variance of that mean by the noise of the readings and the drift of down */
+    float scatter_m2;   /* mean square of the readings about it */
+    float first_m2;     /* variance of the height that the filter began with */
+    float taken_m2;     /* ... of the heights that are in the filter */
+    float taken_mean_m; /* ... and mean_m then */
+    uint8_t readings;   /* heights so far, saturating */
+    goe_flag_t boxes;   /* the filter has used an upright box */
 } goe_datum_t;
 
 /* refined/goe_side_memory.c: the slowly varying (correlated) error of a box's side, as estimated from the residuals

@@ -168,8 +168,7 @@ static float first_range_m(const goe_observation_t *obs, const sight_t *sight, b
 static void set_root(const goe_observation_t *obs, const float state[GOE_STATES], float width, goe_triangle_t *root) {
     float sd[GOE_STATES];
     goe_observation_prior(obs, state, width, sd);
-    sd[GOE_GROUND] =
-        goe_larger(sqrtf(goe_ground_variance(obs, state[GOE_INVERSE_RANGE])) * state[GOE_INVERSE_RANGE], GROUND_MIN);
+    sd[GOE_GROUND] = goe_larger(sqrtf(goe_ground_variance(obs, state[GOE_INVERSE_RANGE])), GROUND_MIN);
     sd[GOE_SHEAR] = (obs->is_round ? ROUND_SHEAR : SHEAR_FREEDOM) * state[GOE_HALF];
     sd[GOE_HALF] = HALF_FREEDOM * width;
     sd[GOE_LOG_DEPTH] = obs->is_round ? ROUND_FREEDOM : DEPTH_FREEDOM;

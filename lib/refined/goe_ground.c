@@ -15,7 +15,8 @@
 #define SCATTER_SEEDS 8      /* readings as configured, that their scatter is begun with */
 #define SCATTER_MEMORY 64.0f /* readings that it remembers */
 #define VARIANCE_MIN_M2 1.0e-12f
-#define LEVEL_SHARE 1.0e-3f /* of the offset's variance, that a level ground leaves at least */
+#define LEVEL_SHARE 1.0e-3f   /* of the offset's variance, that a level ground leaves at least */
+#define VARIANCE_MIN 1.0e-12f /* of the offset, units of Z0 */
 
 /* ----------------------------------------------------------------------------------------------------------- readings -- */
 
@@ -68,23 +69,28 @@ void goe_ground_read(goe_filter_t *filter, const goe_navigation_t *navigation, c
 
 /* --------------------------------------------------------------------------------------------------------------- known -- */
 
+/* Of GOE_GROUND: the error of a height counts by 1/Z0, a slope as it is, over whatever range. */
+static float variance_of(const goe_navigation_t *navigation, float height_m2, float q) {
+    return goe_larger(height_m2 * q * q + goe_square(navigation->terrain_slope_sd), VARIANCE_MIN);
+}
+
 float goe_ground_variance(const goe_observation_t *obs, float inverse_range) {
-    return goe_square(obs->height_sd_m) + goe_square(obs->settings->navigation.terrain_slope_sd / inverse_range);
+    return variance_of(&obs->settings->navigation, goe_square(obs->height_sd_m), inverse_range);
 }
 
 float goe_ground_if_level(const goe_filter_t *filter, const goe_navigation_t *navigation, float variance) {
-    const float q = filter->state[GOE_INVERSE_RANGE];
-    const float rise_m = navigation->terrain_slope_sd / q;
-    const float share = goe_larger(1.0f - filter->datum.information * goe_square(rise_m), LEVEL_SHARE);
-    const float more = filter->datum.information / goe_square(q) * (1.0f / share - 1.0f);
+    const float height_m2 = filter->datum.taken_m2;
+    const float all = variance_of(navigation, height_m2, filter->state[GOE_INVERSE_RANGE]);
+    const float level = goe_larger(height_m2 * goe_square(filter->state[GOE_INVERSE_RANGE]), LEVEL_SHARE * all);
+    const float more = 1.0f / level - 1.0f / all;
     return more / (1.0f + variance * more);
 }
 
 void goe_ground_start(goe_filter_t *filter, const goe_observation_t *obs) {
     filter->datum.boxes = obs->sides->usable != 0;
-    filter->datum.first = 1.0f / goe_ground_variance(obs, filter->state[GOE_INVERSE_RANGE]);
-    filter->datum.information = filter->datum.first;
-    filter->datum.moment = 0.0f;
+    filter->datum.first_m2 = goe_square(obs->height_sd_m);
+    filter->datum.taken_m2 = filter->datum.first_m2;
+    filter->datum.taken_mean_m = 0.0f;
     filter->ground_scale = 1.0f;
     filter->flown_m = 0.0f;
 }
@@ -94,9 +100,9 @@ void goe_ground_start(goe_filter_t *filter, const goe_observation_t *obs) {
 void goe_ground_drift(goe_filter_t *filter, const goe_observation_t *obs) {
     float direction[GOE_STATES] = {0.0f};
     goe_datum_t *datum = &filter->datum;
-    const float before = 1.0f / datum->information;
+    const float before = datum->taken_m2;
     const float walked = before + goe_square(obs->settings->navigation.position_walk_sd_m) * filter->due_s;
-    const float now = goe_larger(goe_ground_variance(obs, filter->state[GOE_INVERSE_RANGE]), walked);
+    const float now = goe_larger(goe_square(obs->height_sd_m), walked);
     if (!(filter->due_s > 0.0f) || !(now > before)) {
         return;
     }
@@ -104,33 +110,38 @@ void goe_ground_drift(goe_filter_t *filter, const goe_observation_t *obs) {
     direction[GOE_TOP] = -1.0f;
     goe_srif_spread(&filter->root, direction, GOE_GROUND, GOE_TOP,
                     filter->ground_scale * filter->state[GOE_INVERSE_RANGE] * sqrtf(now - before));
-    datum->moment *= before / now;
-    datum->information = 1.0f / now;
-    datum->first = datum->first < datum->information ? datum->first : datum->information;
+    datum->taken_m2 = now;
+    datum->first_m2 = goe_larger(datum->first_m2, now);
 }
 
-void goe_ground_widen(goe_filter_t *filter) {
-    const float scale2 = goe_square(goe_larger(filter->ground_scale, SCALE_MIN));
+/* What the first height gives the state with the present 1/Z0, over what it gave with that for which it was set; 1/variance. */
+static float first_gained(const goe_filter_t *filter, const goe_navigation_t *navigation, float scale) {
+    const float q = filter->state[GOE_INVERSE_RANGE];
+    return 1.0f / variance_of(navigation, filter->datum.first_m2, q) -
+           1.0f / variance_of(navigation, filter->datum.first_m2, scale * q);
+}
+
+void goe_ground_widen(goe_filter_t *filter, const goe_navigation_t *navigation) {
     if (filter->ground_scale > NARROW) {
         return;
     }
-    const float information = filter->datum.first / goe_square(filter->state[GOE_INVERSE_RANGE]);
+    const float scale = goe_larger(filter->ground_scale, SCALE_MIN);
+    const float excess = -first_gained(filter, navigation, scale);
+    const float q = scale * filter->state[GOE_INVERSE_RANGE];
     const float variance = goe_filter_variance(filter, GOE_GROUND);
-    const float share = variance * (1.0f / scale2 - 1.0f) * information; /* of its own, which was not there */
-    const float most = 1.0f - scale2;
+    const float share = variance * excess; /* of its own, which was not there */
+    const float most = excess * variance_of(navigation, filter->datum.first_m2, q);
     const float taken = share < most ? share : most;
     goe_filter_inflate(filter, GOE_GROUND, sqrtf(variance * taken / (1.0f - taken)));
     filter->ground_scale = 1.0f;
 }
 
 /* Of the first height. */
-static int add_first(goe_filter_t *filter, goe_rows_t *rows) {
-    const float scale = filter->ground_scale;
-    if (!(scale >= WIDE) || rows->count >= GOE_ROWS_MAX) {
+static int add_first(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
+    if (!(filter->ground_scale >= WIDE) || rows->count >= GOE_ROWS_MAX) {
         return 0;
     }
-    const float weight =
-        sqrtf((1.0f - 1.0f / goe_square(scale)) * filter->datum.first) / filter->state[GOE_INVERSE_RANGE];
+    const float weight = sqrtf(first_gained(filter, &obs->settings->navigation, filter->ground_scale));
     float *row = rows->matrix->row[rows->count++];
     row[GOE_STATE_COLUMN + GOE_GROUND] = weight;
     row[GOE_RESIDUAL] = -weight * filter->state[GOE_GROUND];
@@ -143,20 +154,21 @@ static int add_first(goe_filter_t *filter, goe_rows_t *rows) {
 static int add_grown(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
     goe_datum_t *datum = &filter->datum;
     const float q = filter->state[GOE_INVERSE_RANGE];
-    const float information = 1.0f / goe_ground_variance(obs, filter->state[GOE_INVERSE_RANGE]);
-    const float grown = information - datum->information;
-    const float moment = information * datum->mean_m;
+    const float height_m2 = goe_square(obs->height_sd_m);
+    const float information = 1.0f / variance_of(&obs->settings->navigation, height_m2, q);
+    const float before = 1.0f / variance_of(&obs->settings->navigation, datum->taken_m2, q);
+    const float grown = information - before;
     if (rows->count >= GOE_ROWS_MAX || !(grown > GROWN * information)) {
         return 0; /* later */
     }
     const float weight = sqrtf(grown);
-    const float offset_m = filter->state[GOE_GROUND] / q;
+    const float offset_m = (information * datum->mean_m - before * datum->taken_mean_m) / grown;
     float *row = rows->matrix->row[rows->count++];
-    row[GOE_STATE_COLUMN + GOE_GROUND] = weight / q;
-    row[GOE_STATE_COLUMN + GOE_INVERSE_RANGE] = -weight * offset_m / q;
-    row[GOE_RESIDUAL] = weight * ((moment - datum->moment) / grown - offset_m);
-    datum->information = information;
-    datum->moment = moment;
+    row[GOE_STATE_COLUMN + GOE_GROUND] = weight;
+    row[GOE_STATE_COLUMN + GOE_INVERSE_RANGE] = -weight * offset_m;
+    row[GOE_RESIDUAL] = weight * (offset_m * q - filter->state[GOE_GROUND]);
+    datum->taken_m2 = height_m2;
+    datum->taken_mean_m = datum->mean_m;
     return 1;
 }
 
@@ -164,7 +176,7 @@ int goe_ground_row(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_
     if ((filter->known & GOE_HAS_POSITION) == 0u) {
         return 0;
     }
-    const int first = add_first(filter, rows);
+    const int first = add_first(filter, obs, rows);
     return first + add_grown(filter, obs, rows);
 }
 

@@ -17,7 +17,7 @@ static inline bool goe_ground_lacks_height(const goe_image_t *image) {
 /* The autopilot's down jumped by this. */
 static inline void goe_ground_move(goe_filter_t *filter, float down_m) { filter->datum.ground_m += down_m; }
 
-/* m2, of the height above the obstacle's own ground, which may slope up or down to it over a range of 1/inverse_range. */
+/* Of GOE_GROUND, the height above the obstacle's own ground over the range: the ground may slope up or down to it. */
 float goe_ground_variance(const goe_observation_t *obs, float inverse_range);
 
 /* If the ground were known to be level, the variance of an unknown would be smaller by this times the square of its covariance with
@@ -41,7 +41,7 @@ static inline void goe_ground_follow(goe_filter_t *filter, float inverse_range_b
 
 /* Removes information that this ratio made too strong, before the rows of an image are taken; missing information is
  * a row of goe_ground_row(). */
-void goe_ground_widen(goe_filter_t *filter);
+void goe_ground_widen(goe_filter_t *filter, const goe_navigation_t *navigation);
 
 /* Appends the information of the heights beyond that already taken, if space remains. Returns how many rows. */
 int goe_ground_row(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows);

@@ -1,6 +1,8 @@
 /* Fit of the images, and recovery. SPDX-License-Identifier: MIT */
 #include "refined/goe_health.h"
 
+#include <string.h>
+
 #include "maths/goe_scalar.h"
 
 #if GOE_WITH_FILTER
@@ -93,7 +95,7 @@ static bool is_captured(goe_filter_t *filter, goe_verdict_t verdict) {
     return captured;
 }
 
-/* The top alone hangs on nothing else. */
+/* The top alone hangs on nothing else. What its side's error was found to be hangs on the top before. */
 static void free_top(goe_filter_t *filter) {
     const float *x = filter->state;
     const float extent = goe_filter_traits(filter)->is_ellipse
@@ -101,6 +103,7 @@ static void free_top(goe_filter_t *filter) {
                              : goe_larger(x[GOE_FRONT_X], goe_absolute(x[GOE_DEPTH_DIFFERENCE]));
     const float size = goe_larger(goe_absolute(x[GOE_TOP]), extent);
     goe_filter_inflate(filter, GOE_TOP, TOP_FREED * size);
+    memset(&filter->side[GOE_BOX_TOP], 0, sizeof filter->side[GOE_BOX_TOP]);
     filter->health.refused[GOE_POINT_TOP] = 0;
 }
 

@@ -64,7 +64,7 @@ static void allow_for_curvature(const goe_observation_t *obs, goe_rows_t *rows) 
 
 /* What the rows find less certain than the image before left it; not sooner, as without them the state stays as it is. */
 static void doubt(goe_filter_t *filter, const goe_observation_t *obs) {
-    goe_ground_widen(filter);
+    goe_ground_widen(filter, &obs->settings->navigation);
     goe_ground_drift(filter, obs);
     goe_observation_age(filter, obs);
 }

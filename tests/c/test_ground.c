@@ -68,7 +68,7 @@ static void start(float range_m) {
     look();
     *goe_srif_at(&filter.root, GOE_INVERSE_RANGE, GOE_INVERSE_RANGE) = RANGE_KNOWN * range_m;
     *goe_srif_at(&filter.root, GOE_GROUND, GOE_GROUND) =
-        range_m / sqrtf(goe_ground_variance(&obs, filter.state[GOE_INVERSE_RANGE]));
+        1.0f / sqrtf(goe_ground_variance(&obs, filter.state[GOE_INVERSE_RANGE]));
     *goe_srif_at(&filter.root, GOE_TOP, GOE_TOP) = TOP_KNOWN;
     goe_ground_start(&filter, &obs);
 }
@@ -87,7 +87,7 @@ static int give(void) {
 
 /* What an image does before its rows and with those of the height. Returns how many these were. */
 static int measure(void) {
-    goe_ground_widen(&filter);
+    goe_ground_widen(&filter, &settings.navigation);
     goe_ground_drift(&filter, &obs);
     filter.due_s = 0.0f;
     return give();
@@ -447,7 +447,7 @@ static void the_slope_counts_over_the_range(void) {
         const double expected = sqrt((double)(CONSTANT_M * CONSTANT_M) + 1.5 * 1.5 + slope_m * slope_m);
         CHECK_CLOSE(1.0e-4 * expected, expected, ground_sd_m());
         CHECK_CLOSE(1.0e-4 * expected, expected,
-                    sqrt((double)goe_ground_variance(&obs, filter.state[GOE_INVERSE_RANGE])));
+                    sqrt((double)goe_ground_variance(&obs, filter.state[GOE_INVERSE_RANGE])) * (double)range_m[i / 2]);
         filter.flown_m = 50.0f; /* the way that was flown has no part in it */
         TEST_ASSERT_EQUAL_INT(0, measure());
         CHECK_CLOSE(1.0e-4 * expected, expected, ground_sd_m());

@@ -51,6 +51,7 @@ static void make_any(goe_phase_t phase) {
     goe_settings_default(&settings);
     settings.navigation.velocity_bias_sd_m_s = 0.0f;
     settings.navigation.position_walk_sd_m = 0.0f;
+    filter.datum.taken_m2 = 1.0e9f; /* so that a slope of the ground adds nothing */
     filter.phase = (uint8_t)phase;
     filter.phase_images = 100;
     filter.known = 0xFFu;
@@ -325,13 +326,12 @@ static void a_slope_silences_nothing(void) {
         const float q = filter.state[GOE_INVERSE_RANGE];
         const float sloping_m2 = 0.25f + (0.02f / q) * (0.02f / q);
         settings.navigation.terrain_slope_sd = 0.02f;
-        filter.datum.information = 1.0f / sloping_m2;
+        filter.datum.taken_m2 = 0.25f;
         goe_quantities_find(&filter, &settings, &motion, &quantities);
         const goe_quantities_t sloping = quantities;
         row[GOE_GROUND] = sqrtf(4.0f - 1.0f / sloping_m2) / q;
         goe_srif_add(&filter.root, row, 0.0f, right);
         settings.navigation.terrain_slope_sd = 0.0f;
-        filter.datum.information = 4.0f;
         goe_quantities_find(&filter, &settings, &motion, &quantities);
         for (int i = 0; i < GOE_QUANTITIES; i++) {
             const double level = (double)quantities.worked_out[i];

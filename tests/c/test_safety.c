@@ -181,8 +181,8 @@ static double sloping(void) {
     const goe_filter_t *filter = &memory.estimator.filter;
     const double range_m = 1.0 / (double)filter->state[GOE_INVERSE_RANGE];
     const double rise_m = (double)memory.estimator.settings.navigation.terrain_slope_sd * range_m;
-    const double variance = 1.0 / (double)filter->datum.information;
-    const double level = fmax(variance - rise_m * rise_m, 1.0e-3 * variance);
+    const double variance = (double)filter->datum.taken_m2 + rise_m * rise_m;
+    const double level = fmax((double)filter->datum.taken_m2, 1.0e-3 * variance);
     return sqrt(1.0 + ground_sd_m() * ground_sd_m() * fmax(1.0 / level - 1.0 / variance, 0.0));
 }
 

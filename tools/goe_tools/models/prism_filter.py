@@ -204,13 +204,13 @@ class PrismFilter:
         self.due_s, self.walked_s = 0.0, np.zeros(2)  # since the walk was added along X, and along Z
         self.known = False  # the position
         self.scale = 1.0  # 1/Z0 when the sigma of G was set, over the present one
-        self.first = self.information = 1 / self._height_variance()
-        self.moment = 0.0  # of the height's offset: its information times its mean
+        self.first_m2 = self.taken_m2 = self.altimeter.sd_m**2  # of the first height, and of those in the state
+        self.taken_mean_m = 0.0  # the mean of the latter
         return True
 
-    def _height_variance(self) -> float:
-        """m2, above the obstacle's own ground."""
-        return self.altimeter.sd_m**2 + (self.errors.terrain_slope_sd / self.state[Q]) ** 2
+    def _ground_variance(self, height_m2: float, scale: float = 1.0) -> float:
+        """Of G: the error of a height counts by 1/Z0, a slope as it is. ``scale``: factor on 1/Z0."""
+        return height_m2 * (scale * self.state[Q]) ** 2 + self.errors.terrain_slope_sd**2
 
     def _prior_sd(self, width: float) -> np.ndarray:
         """(10,) sigmas of the first guess."""
@@ -218,7 +218,7 @@ class PrismFilter:
         sd = np.empty(COUNT)
         sd[:3] = np.radians(errors.attitude_bias_sd_deg)
         sd[2] = np.hypot(sd[2], HEADING_ARM * errors.velocity_bias_sd_m_s)
-        sd[G] = max(np.sqrt(self._height_variance()) * q, GROUND_MIN)
+        sd[G] = max(np.sqrt(self._ground_variance(self.altimeter.sd_m**2)), GROUND_MIN)
         sd[[A, Q, W]] = 1.0, 4.0 * q, 2.5 * width
         sd[E] = 10 * max(abs(self.state[E]), width)
         sd[[S, D]] = footprint_sds(errors, self.state[W])
@@ -268,37 +268,37 @@ class PrismFilter:
         which drift, and readings that scatter say less of it. The top counts from the altimeter's zero."""
         errors, q = self.errors, self.state[Q]
         if self.scale <= NARROW:
-            scale2 = max(self.scale, SCALE_MIN) ** 2
+            begun = self._ground_variance(self.first_m2, max(self.scale, SCALE_MIN))
+            excess = 1 / begun - 1 / self._ground_variance(self.first_m2)
             variance = self.full_covariance()[G, G]
-            taken = min(variance * (1 / scale2 - 1) * self.first / q**2, 1 - scale2)
+            taken = min(variance, begun) * excess
             self.covariance[G, G] += variance * taken / (1 - taken)
             self.scale = 1.0
-        before = 1 / self.information
-        now = max(self._height_variance(), before + errors.position_walk_sd_m**2 * self.due_s)
+        before = self.taken_m2
+        now = max(self.altimeter.sd_m**2, before + errors.position_walk_sd_m**2 * self.due_s)
         if now > before:
             direction = np.zeros(D)
             direction[[G, E]] = 1.0, -1.0
             self.covariance += (self.scale * q) ** 2 * (now - before) * np.outer(direction, direction)
-            self.moment *= before / now
-            self.information = 1 / now
-            self.first = min(self.first, self.information)
+            self.taken_m2, self.first_m2 = now, max(self.first_m2, now)
 
     def _height_rows(self, rows: Rows) -> Rows:
         """With the rows of the height: what a farther range made too weak, and what the readings added."""
-        q, offset_m = self.state[Q], self.state[G] / self.state[Q]
         residual, slope = [], []
         if self.known and self.scale >= WIDE:
-            weight = np.sqrt((1 - 1 / self.scale**2) * self.first) / q
+            gained = 1 / self._ground_variance(self.first_m2) - 1 / self._ground_variance(self.first_m2, self.scale)
+            weight = np.sqrt(gained)
             residual.append(-weight * self.state[G])
             slope.append(weight * np.eye(COUNT)[G])
             self.scale = 1.0
-        information = 1 / self._height_variance()
-        grown = information - self.information
+        information, before = (1 / self._ground_variance(v) for v in (self.altimeter.sd_m**2, self.taken_m2))
+        grown = information - before
         if self.known and grown > GROWN * information:
-            weight, moment = np.sqrt(grown), information * self.altimeter.mean_m
-            residual.append(weight * ((moment - self.moment) / grown - offset_m))
-            slope.append(weight / q * (np.eye(COUNT)[G] - offset_m * np.eye(COUNT)[Q]))
-            self.information, self.moment = information, moment
+            weight, mean_m = np.sqrt(grown), self.altimeter.mean_m
+            offset_m = (information * mean_m - before * self.taken_mean_m) / grown
+            residual.append(weight * (offset_m * self.state[Q] - self.state[G]))
+            slope.append(weight * (np.eye(COUNT)[G] - offset_m * np.eye(COUNT)[Q]))
+            self.taken_m2, self.taken_mean_m = self.altimeter.sd_m**2, mean_m
         if not residual:
             return rows
         more = len(residual)
