@@ -155,21 +155,13 @@ static void move_center(goe_estimate_t *estimate, const float delta_ned_m[3]) {
     }
 }
 
-/* Points out of order: pairs that the filter method found, once for each. */
-static void note_swapped(goe_estimator_t *estimator, unsigned swapped, goe_faults_t *faults) {
-    for (unsigned i = 0; i < swapped; i++) {
-        goe_count_cause(estimator->fault_counts, GOE_SWAPPED);
-    }
-    if (swapped > 0 && faults->first == GOE_OK) {
-        faults->first = GOE_SWAPPED;
-    }
-}
-
 static goe_status_t update_refined(goe_estimator_t *estimator, const goe_view_t *view, goe_faults_t *faults) {
     const goe_settings_t *settings = &estimator->settings;
     unsigned swapped;
     const bool measured = goe_refined_update(&estimator->filter, settings, view, &swapped);
-    note_swapped(estimator, swapped, faults);
+    for (unsigned i = 0; i < swapped; i++) { /* points out of order: each pair counts */
+        goe_fault_count(faults, GOE_SWAPPED);
+    }
     return report_refined(estimator, view, faults, measured && goe_filter_reports(&estimator->filter, settings->model));
 }
 

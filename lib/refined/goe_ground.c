@@ -70,7 +70,7 @@ void goe_ground_read(goe_filter_t *filter, const goe_navigation_t *navigation, c
 /* --------------------------------------------------------------------------------------------------------------- known -- */
 
 /* Of GOE_GROUND: the error of a height counts by 1/Z0, a slope as it is, over whatever range. */
-static float variance_of(const goe_navigation_t *navigation, float height_m2, float q) {
+static GOE_NOINLINE float variance_of(const goe_navigation_t *navigation, float height_m2, float q) {
     return goe_larger(height_m2 * q * q + goe_square(navigation->terrain_slope_sd), VARIANCE_MIN);
 }
 
