@@ -27,7 +27,7 @@
 #define TOO_SOON_SHARE 0.08f   /* of the time constant: sooner, differences of boxes are their linearization's */
 #define LOST_S 0.5f            /* without rows, after which a known range is not taken as known */
 #define VAGUE2                                                                                                         \
-    4.0f /* (sigma of 1/Z0 times the way along Z)^2; 1/Z0 of what is ahead lies between 0 and 1 over that way */
+    4.0f /* (sigma of 1/Z0 times the way along Z)^2; 1/Z0 of an obstacle ahead lies between 0 and 1 over that way */
 #define BEYOND2 9.0f     /* squared sigmas of 1/Z0 below 0 */
 #define RECEDED_MAX 2.0f /* Z over Z0 of what the images show to grow */
 #define FADE_MAX 0.95f   /* of what a box's error keeps from image to image, where it is not remembered */
@@ -171,7 +171,7 @@ static bool is_beyond(const goe_filter_t *filter, const goe_observation_t *obs) 
 #endif
 }
 
-/* Whether the obstacle is seen where the state cannot have it: passed; by its sigma anywhere; or farther off than at the start, by more
+/* Whether the image shows the obstacle where the state cannot have it: passed; by its sigma anywhere; or farther off than at the start, by more
  * than it was then. No image corrects that: a state behind the camera gives no rows, and a vague one takes nothing from them. If images
  * know a range that was passed, it may be right, and the image wrong; not for long. */
 static bool is_lost(const goe_filter_t *filter, const goe_observation_t *obs) {

@@ -252,8 +252,6 @@ static goe_status_t judge(const frame_t *frame, goe_status_t solving) {
     return solving;
 }
 
-/*@ requires \valid(frame) && \valid_read(settings) && goe_view_is_open(view) && goe_faults_are_open(faults);
-    requires \valid(estimate); */
 static void start_frame(frame_t *frame, const goe_settings_t *settings, const goe_view_t *view,
                         const goe_faults_t *faults, goe_estimate_t *estimate) {
     frame->settings = settings;

@@ -10,8 +10,6 @@ void goe_window_clear(goe_window_t *window);
 
 /* Takes one image and, if it solves, brings *estimate up to date. Returns what to say of the
  * image. faults: those met so far; more are counted. */
-/*@ requires \valid(window) && \valid_read(settings) && goe_view_is_open(view) && goe_faults_are_open(faults);
-    requires \valid(estimate); */
 goe_status_t goe_window_update(goe_window_t *window, const goe_settings_t *settings, const goe_view_t *view,
                                const goe_faults_t *faults, goe_estimate_t *estimate);
 

@@ -255,7 +255,7 @@ static void assume(double width_m, double factor) {
 
 static void claim(double width_m, double factor) { state((float)(factor * width_m), 0.0f, GOE_KIND_UNKNOWN); }
 
-/* [filter.prior_width_m, goe_kind_t] GIVEN any obstacle ahead, by points, boxes or both, of real detectors' noise, and a first guess by a
+/* [filter.prior_width_m, goe_kind_t.width_m] GIVEN any obstacle ahead, by points, boxes or both, of real detectors' noise, and a first guess by a
  * width or a class that is wrong by a factor of 0.01 to 10 THEN the warning comes in time, and no "clear". */
 static void a_wrong_first_guess_loses_no_warning_in_any_flight(void) {
     int cleared = 0;

@@ -295,9 +295,9 @@ class PrismFilter:
         grown = information - before
         if self.known and grown > GROWN * information:
             weight, mean_m = np.sqrt(grown), self.altimeter.mean_m
-            offset_m = (information * mean_m - before * self.taken_mean_m) / grown
-            residual.append(weight * (offset_m * self.state[Q] - self.state[G]))
-            slope.append(weight * (np.eye(COUNT)[G] - offset_m * np.eye(COUNT)[Q]))
+            read_m = (information * mean_m - before * self.taken_mean_m) / grown
+            residual.append(weight * (read_m * self.state[Q] - self.state[G]))
+            slope.append(weight * (np.eye(COUNT)[G] - self.state[G] / self.state[Q] * np.eye(COUNT)[Q]))
             self.taken_m2, self.taken_mean_m = self.altimeter.sd_m**2, mean_m
         if not residual:
             return rows
