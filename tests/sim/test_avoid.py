@@ -152,7 +152,7 @@ def test_a_place_that_cannot_be_written_is_reported_before_anything_is_flown(
 
 # Flights, some 10 s of one core. Even seeds: the thresholds were tuned on these. Of 3,000 flights of other seeds some
 # still miss a goal: port/flight/README.md has the table.
-SEVERAL = 630 if os.environ.get("GOE_LONG") else 315
+SEVERAL = 630
 SEVERAL_SEED = 2
 
 
