@@ -165,7 +165,8 @@ static int add_grown(goe_filter_t *filter, const goe_observation_t *obs, goe_row
     const float read_m = (information * datum->mean_m - before * datum->taken_mean_m) / grown;
     float *row = rows->matrix->row[rows->count++];
     row[GOE_STATE_COLUMN + GOE_GROUND] = weight;
-    row[GOE_STATE_COLUMN + GOE_INVERSE_RANGE] = -weight * filter->state[GOE_GROUND] / q; /* not read_m, which is noisy */
+    row[GOE_STATE_COLUMN + GOE_INVERSE_RANGE] =
+        -weight * filter->state[GOE_GROUND] / q; /* not read_m, which is noisy */
     row[GOE_RESIDUAL] = weight * (read_m * q - filter->state[GOE_GROUND]);
     datum->taken_m2 = height_m2;
     datum->taken_mean_m = datum->mean_m;
