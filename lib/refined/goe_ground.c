@@ -126,12 +126,11 @@ void goe_ground_widen(goe_filter_t *filter, const goe_navigation_t *navigation) 
         return;
     }
     const float scale = goe_larger(filter->ground_scale, SCALE_MIN);
-    const float excess = -first_gained(filter, navigation, scale);
-    const float q = scale * filter->state[GOE_INVERSE_RANGE];
+    const float begun = variance_of(navigation, filter->datum.first_m2, scale * filter->state[GOE_INVERSE_RANGE]);
     const float variance = goe_filter_variance(filter, GOE_GROUND);
-    const float share = variance * excess; /* of its own, which was not there */
-    const float most = excess * variance_of(navigation, filter->datum.first_m2, q);
-    const float taken = share < most ? share : most;
+    const float least = variance < begun ? variance : begun;
+    const float taken =
+        -first_gained(filter, navigation, scale) * least; /* share of its own information, which was not there */
     goe_filter_inflate(filter, GOE_GROUND, sqrtf(variance * taken / (1.0f - taken)));
     filter->ground_scale = 1.0f;
 }

@@ -26,11 +26,10 @@
 #define GAP_MAX_US 1000000000u /* a longer gap between images counts as this one */
 #define TOO_SOON_SHARE 0.08f   /* of the time constant: sooner, differences of boxes are their linearization's */
 #define LOST_S 0.5f            /* without rows, after which a known range is not taken as known */
-#define VAGUE2                                                                                                         \
-    4.0f /* (sigma of 1/Z0 times the way along Z)^2; 1/Z0 of an obstacle ahead lies between 0 and 1 over that way */
-#define BEYOND2 9.0f     /* squared sigmas of 1/Z0 below 0 */
-#define RECEDED_MAX 2.0f /* Z over Z0 of what the images show to grow */
-#define FADE_MAX 0.95f   /* of what a box's error keeps from image to image, where it is not remembered */
+#define VAGUE2 4.0f            /* (sigma of 1/Z0 times the way along Z)^2: below 1 is possible for an obstacle ahead */
+#define BEYOND2 9.0f           /* squared sigmas of 1/Z0 below 0 */
+#define RECEDED_MAX 2.0f       /* Z over Z0 */
+#define FADE_MAX 0.95f         /* of what a box's error keeps from image to image, where it is not remembered */
 
 /* --------------------------------------------------------------------------------------------------------------- time -- */
 
@@ -159,7 +158,7 @@ static bool starts_to_move(goe_filter_t *filter, const goe_observation_t *obs, c
 #endif
 }
 
-/* Whether the obstacle moves, and the state that moves with it has it at a range that is none: growth then counts as motion alone. */
+/* Whether the obstacle is followed as a moving one, and 1/Z0 is clearly negative: the state then explains all growth as motion. */
 static bool is_beyond(const goe_filter_t *filter, const goe_observation_t *obs) {
 #if GOE_AUGMENTED
     const float q = filter->state[GOE_INVERSE_RANGE];
@@ -171,8 +170,8 @@ static bool is_beyond(const goe_filter_t *filter, const goe_observation_t *obs) 
 #endif
 }
 
-/* Whether the image shows the obstacle where the state cannot have it: passed; by its sigma anywhere; or farther off than at the start, by more
- * than it was then. No image corrects that: a state behind the camera gives no rows, and a vague one takes nothing from them. If images
+/* Whether the image shows the obstacle where the state cannot have it: behind the camera; anywhere, by its sigma; or at more than twice
+ * the first range. No image corrects that: a state behind the camera gives no rows, and a vague one takes nothing from them. If images
  * know a range that was passed, it may be right, and the image wrong; not for long. */
 static bool is_lost(const goe_filter_t *filter, const goe_observation_t *obs) {
     const float known2 = goe_square(obs->settings->filter.range_sd_rel_max * filter->state[GOE_INVERSE_RANGE]);

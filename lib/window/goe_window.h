@@ -8,8 +8,8 @@
 /* Forgets the track. */
 void goe_window_clear(goe_window_t *window);
 
-/* Takes one image and, if it solves, brings *estimate up to date. Returns what to say of the
- * image. faults: those met so far; more are counted. */
+/* Takes one image and, if it solves, brings *estimate up to date. Returns what to say of the image. faults: those met so far; more are
+ * counted. */
 goe_status_t goe_window_update(goe_window_t *window, const goe_settings_t *settings, const goe_view_t *view,
                                const goe_faults_t *faults, goe_estimate_t *estimate);
 

@@ -165,7 +165,7 @@ static void a_state_of_no_obstacle_starts_the_filter_again(void) {
 }
 
 /* [T2] GIVEN the top alone refused 3 times THEN it is freed by twice the largest extent, as nothing else hangs on it, and the filter
- * goes on; the others are as certain as they were. */
+ * goes on; the others are as certain as they were. The error that was found of the top side is forgotten, those of the others are not. */
 static void a_top_that_is_refused_is_freed(void) {
     for (int box = 0; box < 2; box++) {
         setUp();
@@ -174,10 +174,18 @@ static void a_top_that_is_refused_is_freed(void) {
         filter.state[GOE_DEPTH_DIFFERENCE] = box == 1 ? -0.5f : 0.2f;
         const double size =
             box == 1 ? 0.5 : 0.6; /* twice the half width: a footprint has a ratio where a box has a depth */
+        filter.side[GOE_BOX_TOP].variance = filter.side[GOE_BOX_BOTTOM].variance = 1.0e-4f;
+        filter.side[GOE_BOX_TOP].value = filter.side[GOE_BOX_BOTTOM].value = 0.01f;
+        filter.side[GOE_BOX_TOP].by[GOE_TOP] = filter.side[GOE_BOX_BOTTOM].by[GOE_GROUND] = -0.5f;
         for (int i = 0; i < 3; i++) {
             CHECK_CLOSE(1.0e-5, 1.0, goe_filter_variance(&filter, GOE_TOP));
+            CHECK_SAME(0.01f, filter.side[GOE_BOX_TOP].value);
             TEST_ASSERT_FALSE(judge(TOP));
         }
+        CHECK_SAME(0.0f, filter.side[GOE_BOX_TOP].variance);
+        CHECK_SAME(0.0f, filter.side[GOE_BOX_TOP].value);
+        CHECK_SAME(0.0f, filter.side[GOE_BOX_TOP].by[GOE_TOP]);
+        CHECK_SAME(0.01f, filter.side[GOE_BOX_BOTTOM].value);
         CHECK_CLOSE(1.0e-3, 1.0 + 4.0 * size * size, goe_filter_variance(&filter, GOE_TOP));
         CHECK_CLOSE(1.0e-6, 1.0, goe_filter_variance(&filter, GOE_FRONT_X));
         TEST_ASSERT_EQUAL_UINT8(0u, filter.health.refused[GOE_POINT_TOP]); /* and has three images again */
