@@ -30,7 +30,7 @@ LEVEL_M_S = 0.05
 HELD = 3
 KINDS = ("confident", "false safety", "vanished")
 CAUSES = (
-    "moved on", "unknown reset", "refused image", "known reset", "no detection", "handover", "filter restart",
+    "moved on", "unknown reset", "refused image", "known reset", "no detection", "dropped", "filter restart",
     "other model",
     "held", "other",
 )  # fmt: skip
