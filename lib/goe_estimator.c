@@ -169,9 +169,7 @@ static goe_status_t take_refined(goe_estimator_t *estimator, const goe_view_t *v
     if (goe_ground_lacks_height(view->image)) {
         goe_fault_count(faults, GOE_NO_HEIGHT);
     }
-    const goe_status_t status = update_refined(estimator, view, faults);
-    goe_report_doubt(&estimator->filter, &estimator->estimate);
-    return status;
+    return update_refined(estimator, view, faults);
 }
 #endif
 

@@ -212,10 +212,8 @@ typedef struct {
 typedef struct {         /* refined/goe_refined.c: what of the latest answer outlives the state that gave it */
     float reach_m;       /* half of the extent about the reference point, m; prism: across the line of sight */
     goe_place_t nearer;  /* prism: from the middle of a circle of that reach to that of one as near as it is, T axes */
-    float least_m;       /* the same before the filter started again; 0 once the new filter knows a width */
     float height_bias_m; /* constant error of the camera's height that the answer is freed of, m */
     goe_flag_t outdated; /* the state has changed since, other than by time */
-    goe_flag_t previous; /* the answer is of the filter before it started again */
     goe_flag_t by_kind;  /* the answer's range is that of the detector's class */
 } goe_answer_t;
 

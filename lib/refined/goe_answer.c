@@ -11,8 +11,6 @@
 
 #if GOE_WITH_FILTER
 
-#define AGREE_SIGMA 3.0f   /* within which two answers say the same */
-#define KEPT_S 3.0f        /* since the new start, for which the answer before it may stand */
 #define REACH_MAX_M 1.0e6f /* as all positions */
 
 /* Half of the visible extent about the reference point, m, also while the width is not valid; and of a footprint, the way to the middle
@@ -32,46 +30,18 @@ static float reach_of(const goe_filter_t *filter, goe_xz_t *nearer_m) {
     return 0.5f * (x[GOE_FRONT_X] + goe_absolute(x[GOE_SIDE_X])) / x[GOE_INVERSE_RANGE];
 }
 
-/* One coordinate of the place. */
-typedef struct {
-    float value, sigma;
-} place_t;
-
-static bool agrees(const place_t *now, const place_t *before, float reach_m) {
-    const float sigma = sqrtf(goe_square(now->sigma) + goe_square(before->sigma));
-    return goe_absolute(now->value - before->value) <= AGREE_SIGMA * sigma + reach_m;
-}
-
-/* Whether the answer from before a new start of the filter is kept: the new one agrees, and is less certain. One that
- * disagrees, or that is of an obstacle that moves, takes over; after some seconds any does. */
-static bool keeps_previous(const goe_filter_t *filter, const goe_motion_t *motion, const goe_quantities_t *quantities,
-                           const goe_estimate_t *estimate) {
-    const place_t now[2] = {{quantities->value[GOE_X0], quantities->sigma[GOE_X0]},
-                            {quantities->value[GOE_Z0], quantities->sigma[GOE_Z0]}};
-    const place_t before[2] = {{estimate->x0_m, estimate->sigma.x_m}, {estimate->z0_m, estimate->sigma.z_m}};
-    const bool answered = (estimate->valid & GOE_HAS_POSITION) != 0u && !quantities->moves && estimate->z_m > 0.0f &&
-                          goe_filter_elapsed_s(filter, motion) < KEPT_S;
-    const float reach_m = filter->answer.reach_m;
-    return answered && (filter->answer.previous != 0u) &&
-           goe_square(now[0].sigma) + goe_square(now[1].sigma) >
-               goe_square(before[0].sigma) + goe_square(before[1].sigma) &&
-           agrees(&now[0], &before[0], reach_m) && agrees(&now[1], &before[1], reach_m);
-}
-
 /* Keeps what goe_hazard() needs of an answer when no new one follows. */
-static void keep_answer(goe_filter_t *filter, unsigned valid) {
+static void keep_answer(goe_filter_t *filter) {
     goe_answer_t *answer = &filter->answer;
     goe_xz_t nearer_m;
     const float reach_m = reach_of(filter, &nearer_m);
     answer->nearer.dx_m = nearer_m.x;
     answer->nearer.dz_m = nearer_m.z;
-    answer->least_m = (valid & GOE_HAS_WIDTH) != 0u ? 0.0f : answer->least_m;
     if (goe_within(reach_m, REACH_MAX_M)) {
-        answer->reach_m = goe_larger(reach_m, answer->least_m);
+        answer->reach_m = reach_m;
     }
     answer->height_bias_m = filter->state[GOE_GROUND] / filter->state[GOE_INVERSE_RANGE];
     answer->outdated = false;
-    answer->previous = false;
     answer->by_kind = false;
 }
 
@@ -99,12 +69,9 @@ static bool update(goe_filter_t *filter, const goe_settings_t *settings, const g
         }
         return false;
     }
-    if (placed && keeps_previous(filter, motion, &quantities, estimate)) {
-        return false;
-    }
     const bool fresh = goe_report_quantities(&quantities, motion, estimate);
     if (fresh) {
-        keep_answer(filter, estimate->valid);
+        keep_answer(filter);
     }
     return fresh;
 }

@@ -35,12 +35,7 @@ void goe_filter_clear(goe_filter_t *filter) {
 }
 
 void goe_filter_enter(goe_filter_t *filter, goe_phase_t phase) {
-    goe_answer_t *answer = &filter->answer;
-    if (phase == GOE_PHASE_NONE) { /* a filter that starts again knows no size at first; the answer before it did */
-        answer->least_m = goe_larger(answer->least_m, answer->reach_m);
-        answer->previous = true;
-    }
-    answer->outdated = true;
+    filter->answer.outdated = true;
     goe_filter_set_phase(filter, phase);
     filter->phase_images = 0;
     filter->known = 0;

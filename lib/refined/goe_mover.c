@@ -49,17 +49,6 @@ void goe_mover_clear(goe_filter_t *filter) {
     filter->root.estimated = 0;
 }
 
-void goe_mover_doubt(goe_filter_t *filter) {
-    for (size_t i = GOE_AUGMENTED_VELOCITY_X; i < GOE_AUGMENTED && !filter->mover.followed; i++) {
-        for (size_t j = i; j < GOE_AUGMENTED; j++) {
-            *augmented_at(&filter->root, i, j) = 0.0f;
-        }
-        filter->root.right[i] = 0.0f;
-    }
-    filter->mover.unlike_s = 0.0f;
-    filter->mover.images = 0;
-}
-
 /* ------------------------------------------------------------------------------------------------------------ columns -- */
 
 static float sane(float column) { return goe_within(column, COLUMN_MAX) ? column : 0.0f; }

@@ -13,9 +13,6 @@
 /* A new track: the poses are in time, as far as is known, and nothing moves. */
 void goe_mover_clear(goe_filter_t *filter);
 
-/* The model proved to be another: what it said of a velocity is forgotten. */
-void goe_mover_doubt(goe_filter_t *filter);
-
 /* The columns of the augmented states. They hold the derivatives by the place until then; after goe_rows_end(). */
 void goe_mover_columns(const goe_observation_t *obs, goe_rows_t *rows);
 

@@ -28,7 +28,6 @@
 #define LOST_S 0.5f            /* without rows, after which a known range is not taken as known */
 #define VAGUE2 4.0f            /* (sigma of 1/Z0 times the way along Z)^2: below 1 is possible for an obstacle ahead */
 #define BEYOND2 9.0f           /* squared sigmas of 1/Z0 below 0 */
-#define RECEDED_MAX 2.0f       /* Z over Z0 */
 #define FADE_MAX 0.95f         /* of what a box's error keeps from image to image, where it is not remembered */
 
 /* --------------------------------------------------------------------------------------------------------------- time -- */
@@ -170,15 +169,15 @@ static bool is_beyond(const goe_filter_t *filter, const goe_observation_t *obs) 
 #endif
 }
 
-/* Whether the image shows the obstacle where the state cannot have it: behind the camera; anywhere, by its sigma; or at more than twice
- * the first range. No image corrects that: a state behind the camera gives no rows, and a vague one takes nothing from them. If images
- * know a range that was passed, it may be right, and the image wrong; not for long. */
+/* Whether the image shows the obstacle where the state cannot have it: behind the camera; or anywhere, by its sigma. No image corrects
+ * that: a state behind the camera gives no rows, and a vague one takes nothing from them. If images know a range that was passed, it
+ * may be right, and the image wrong; not for long. */
 static bool is_lost(const goe_filter_t *filter, const goe_observation_t *obs) {
     const float known2 = goe_square(obs->settings->filter.range_sd_rel_max * filter->state[GOE_INVERSE_RANGE]);
     const float z = goe_observation_reference(obs).z;
     const bool passed = z < 0.0f && (obs->range_variance > known2 || filter->due_s > LOST_S);
     const bool vague = obs->range_variance * goe_square(obs->camera_m.z) > VAGUE2;
-    return goe_filter_has_started(filter) && (passed || vague || z > RECEDED_MAX || is_beyond(filter, obs));
+    return goe_filter_has_started(filter) && (passed || vague || is_beyond(filter, obs));
 }
 
 /* What the rows bring; its locals are not on the stack while they are made. */

@@ -138,16 +138,6 @@ static goe_reason_t reason_of(const goe_filter_t *filter, const goe_settings_t *
     return health->adrift ? GOE_REASON_CONVENTION : GOE_REASON_NOISE;
 }
 
-/* Also of an answer of the window's, which knows of no motion. */
-void goe_report_doubt(const goe_filter_t *filter, goe_estimate_t *estimate) {
-    if (moves(filter)) {
-        estimate->reason = GOE_REASON_MOVES;
-    } else if (filter->health.base_refused && estimate->reason == GOE_REASON_NONE) {
-        estimate->reason = GOE_REASON_BASE;
-    }
-    estimate->suspect = goe_is_set(&estimate->suspect) || moves(filter) || filter->health.base_refused;
-}
-
 void goe_report_fit(const goe_filter_t *filter, const goe_settings_t *settings, goe_estimate_t *estimate) {
     const goe_health_t *health = &filter->health;
     estimate->reason = reason_of(filter, settings);

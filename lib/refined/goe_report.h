@@ -11,7 +11,4 @@ bool goe_report_quantities(const goe_quantities_t *quantities, const goe_motion_
 /* How the latest image fits: nis to nis_ratio, suspect, points. */
 void goe_report_fit(const goe_filter_t *filter, const goe_settings_t *settings, goe_estimate_t *estimate);
 
-/* What the filter doubts of any answer, also of the window's: motion, base corners. */
-void goe_report_doubt(const goe_filter_t *filter, goe_estimate_t *estimate);
-
 #endif

@@ -706,22 +706,6 @@ static void false_base_corners_are_found_out(void) {
     TEST_ASSERT_FALSE(goe_filter_is_box(&estimator.filter));
 }
 
-/* GIVEN base corners that proved to be wrong WHEN the window answers, which has no doubt THEN its answer reports them, and a
- * graver reason stays. */
-static void refused_corners_are_reported_with_every_answer(void) {
-    goe_filter_clear(&filter);
-    for (int refused = 0; refused < 2; refused++) {
-        filter.health.base_refused = refused != 0;
-        memset(&estimate, 0, sizeof estimate);
-        goe_report_doubt(&filter, &estimate);
-        TEST_ASSERT_EQUAL_INT(refused ? GOE_REASON_BASE : GOE_REASON_NONE, estimate.reason);
-        TEST_ASSERT_EQUAL(refused != 0, estimate.suspect);
-        estimate.reason = GOE_REASON_CONVENTION;
-        goe_report_doubt(&filter, &estimate);
-        TEST_ASSERT_EQUAL_INT(GOE_REASON_CONVENTION, estimate.reason);
-    }
-}
-
 /* [goe_estimate_t.suspect, filter.nis_ratio_max]
  * GIVEN noise larger than configured by a factor of 2 THEN a true box is suspect, but keeps its base corners in the end. */
 static void noise_does_not_make_corners_false(void) {
@@ -758,7 +742,6 @@ int main(void) {
     RUN_TEST(a_cylinder_is_not_suspect);
     RUN_TEST(a_disc_by_force_is_suspect);
     RUN_TEST(false_base_corners_are_found_out);
-    RUN_TEST(refused_corners_are_reported_with_every_answer);
     RUN_TEST(noise_does_not_make_corners_false);
     return UNITY_END();
 }

@@ -240,8 +240,8 @@ static double reach_by_state(void) {
 }
 
 /* [A34]
- * GIVEN flights by any features THEN a hazard reaches as far as the filter's own guess of the extent, valid or not; after a new start no
- * less far than before, until a width is valid. */
+ * GIVEN flights by any features THEN a hazard reaches as far as the filter's own guess of the extent, valid or not; after a new start as far
+ * as before, until a new estimate. */
 static void the_reach_is_that_of_the_state(void) {
     unsigned phases = 0u;
     for (int flight = 0; flight < 2 * KINDS; flight++) {
@@ -251,55 +251,18 @@ static void the_reach_is_that_of_the_state(void) {
         for (int k = 0; k < IMAGES; k++) {
             look(kind, k);
             (void)goe_update(&estimator, &image, &estimate);
-            const goe_answer_t *answer = &estimator.filter.answer;
             if (estimate.fresh && estimate.method == GOE_METHOD_FILTER) {
                 const double reach_m = reach_by_state();
                 phases |= 1u << estimator.filter.phase;
-                CHECK_CLOSE(1.0e-4 * reach_m, fmax(reach_m, (double)answer->least_m), goe_latest_reach(&estimator));
-                TEST_ASSERT_TRUE(answer->least_m == 0.0f || !(estimate.valid & GOE_HAS_WIDTH));
+                CHECK_CLOSE(1.0e-4 * reach_m, reach_m, goe_latest_reach(&estimator));
             }
         }
         const float before = goe_latest_reach(&estimator);
         goe_filter_enter(&estimator.filter, GOE_PHASE_NONE);
         CHECK_SAME(before, goe_latest_reach(&estimator));
-        TEST_ASSERT_TRUE(estimator.filter.answer.least_m >= before);
     }
     TEST_ASSERT_TRUE(phases & (1u << GOE_PHASE_FOOTPRINT));
     TEST_ASSERT_TRUE(phases & (1u << GOE_PHASE_BOX));
-}
-
-/* [A34]
- * GIVEN a first answer of a new start that agrees with the last one before it THEN it takes over once it knows the place as well; after
- * three seconds whatever it knows; one that disagrees takes over at once. */
-static void a_worse_answer_waits_and_another_one_does_not(void) {
-    for (int moved = 0; moved < 2; moved++) {
-        scene_default(&scene);
-        scene_make_cylinder(&scene);
-        scene.image_rate_hz = HZ;
-        scene.z0_m = 250.0;
-        start();
-        for (int k = 0; k < 40; k++) {
-            look(BY_POINTS, k);
-            (void)goe_update(&estimator, &image, &estimate);
-        }
-        TEST_ASSERT_TRUE(estimate.fresh);
-        goe_filter_enter(&estimator.filter, GOE_PHASE_NONE);
-        scene.x0_m += moved == 1 ? 60.0 : 0.0; /* another obstacle under the same id */
-        const int64_t started_us = estimator.motion.time_us;
-        double stood = 0.0; /* of the old answer, grown */
-        double waited_s = 0.0;
-        for (int k = 40; k < 80 && !(k > 40 && estimate.fresh); k++) {
-            stood = hypot((double)estimate.sigma.x_m, (double)estimate.sigma.z_m);
-            look(BY_POINTS, k);
-            (void)goe_update(&estimator, &image, &estimate);
-            waited_s = (double)(estimator.motion.time_us - started_us) * 1.0e-6;
-        }
-        check_report("s until a new answer", waited_s);
-        const double now = hypot((double)estimate.sigma.x_m, (double)estimate.sigma.z_m);
-        TEST_ASSERT_TRUE(estimate.fresh && waited_s < 3.4);
-        TEST_ASSERT_TRUE(moved == 1 || now <= 1.02 * stood || waited_s > 3.0);
-        TEST_ASSERT_TRUE(moved == 0 || waited_s < 1.0);
-    }
 }
 
 /* ---------------------------------------------------------------------------------------------- traps of the interface -- */
@@ -376,7 +339,6 @@ int main(void) {
     RUN_TEST(a_new_start_of_the_filter_takes_no_warning_back);
     RUN_TEST(a_wide_building_stays_wide);
     RUN_TEST(the_reach_is_that_of_the_state);
-    RUN_TEST(a_worse_answer_waits_and_another_one_does_not);
     RUN_TEST(a_turn_before_first_sight_costs_nothing);
     RUN_TEST(a_box_of_one_side_is_reported);
     RUN_TEST(a_height_that_was_not_set_is_reported);

@@ -498,30 +498,6 @@ static void a_velocitys_variance_is_that_of_both_parts(void) {
     }
 }
 
-/* GIVEN a model that proved to be another THEN what it said of a velocity is forgotten, and what it said of the latency is not; of an
- * obstacle that is followed nothing is. */
-static void another_model_forgets_the_velocity_alone(void) {
-    for (int followed = 0; followed < 2; followed++) {
-        const double z[3] = {5.0, 6.0, 7.0};
-        give_rows(z);
-        judged.mover.followed = followed == 1;
-        judged.mover.unlike_s = 0.3f;
-        judged.mover.images = 2;
-        const goe_triangle_t before = judged.root;
-        goe_mover_doubt(&judged);
-        for (size_t i = 0; i < 3; i++) {
-            const bool forgotten = i > 0 && followed == 0;
-            CHECK_SAME(forgotten ? 0.0f : before.right[i], judged.root.right[i]);
-            for (size_t j = i; j < 3; j++) {
-                CHECK_SAME(forgotten ? 0.0f : (float)reported[i][j],
-                           *goe_srif_at(&judged.root, GOE_STATES + i, GOE_STATES + j));
-            }
-        }
-        CHECK_SAME(0.0f, judged.mover.unlike_s);
-        TEST_ASSERT_EQUAL_UINT8(0, judged.mover.images);
-    }
-}
-
 /* GIVEN numbers that are impossible in a flight THEN all augmented states begin again, and with them the filter, if its axes moved along.
  * */
 static void values_outside_any_flight_are_forgotten(void) {
@@ -813,7 +789,6 @@ int main(void) {
     RUN_TEST(a_latency_that_no_velocity_explains_is_estimated);
     RUN_TEST(a_followed_target_may_prove_to_be_late_poses);
     RUN_TEST(a_velocitys_variance_is_that_of_both_parts);
-    RUN_TEST(another_model_forgets_the_velocity_alone);
     RUN_TEST(values_outside_any_flight_are_forgotten);
     RUN_TEST(a_followed_target_continues_without_detections);
 #if GOE_WITH_HAZARD

@@ -104,33 +104,6 @@ static void a_shear_matters_where_a_disc_was_requested(void) {
     check_reason(GOE_REASON_SHAPE, true);
 }
 
-/* GIVEN an answer of the window's, which knows of no motion and of no false corners THEN the filter's knowledge of them is reported with
- * it; a reason that the answer has stays, but for the motion. */
-static void the_windows_answer_is_doubted_too(void) {
-    estimate.method = GOE_METHOD_WINDOW;
-    goe_report_doubt(&filter, &estimate);
-    TEST_ASSERT_FALSE(estimate.suspect);
-    TEST_ASSERT_EQUAL_INT(GOE_REASON_NONE, estimate.reason);
-    filter.health.base_refused = true;
-    goe_report_doubt(&filter, &estimate);
-    TEST_ASSERT_TRUE(estimate.suspect);
-    TEST_ASSERT_EQUAL_INT(GOE_REASON_BASE, estimate.reason);
-    estimate.reason = GOE_REASON_NOISE;
-    goe_report_doubt(&filter, &estimate);
-    TEST_ASSERT_EQUAL_INT(GOE_REASON_NOISE, estimate.reason);
-    filter.mover.moves = true;
-    goe_report_doubt(&filter, &estimate);
-    TEST_ASSERT_EQUAL_INT(GOE_REASON_MOVES, estimate.reason);
-    setUp();
-    filter.mover.moves = true;
-    goe_report_doubt(&filter, &estimate);
-    TEST_ASSERT_TRUE(estimate.suspect);
-    setUp();
-    estimate.suspect = true; /* stays */
-    goe_report_doubt(&filter, &estimate);
-    TEST_ASSERT_TRUE(estimate.suspect);
-}
-
 /* GIVEN an answer THEN the fit is reported with the filter method's alone; the latency, which both methods suffer from, always. */
 static void the_fit_is_reported_with_the_filters_answer(void) {
     filter.mover.augmented[0] = 0.12f;
@@ -254,7 +227,6 @@ int main(void) {
     RUN_TEST(the_most_informative_reason_is_reported);
     RUN_TEST(few_images_make_nothing_suspect);
     RUN_TEST(a_shear_matters_where_a_disc_was_requested);
-    RUN_TEST(the_windows_answer_is_doubted_too);
     RUN_TEST(the_fit_is_reported_with_the_filters_answer);
     RUN_TEST(only_known_values_are_reported);
     RUN_TEST(an_image_that_knows_nothing_takes_nothing_back);
