@@ -28,6 +28,16 @@ static unsigned near_border(const goe_camera_t *camera, const goe_sides_t *sides
     return set & sides->usable;
 }
 
+/* A side that is not measured may hold anything. The visible part ends at the image's border. */
+static void end_at_border(const goe_camera_t *camera, goe_sides_t *sides) {
+    if (!goe_sides_see(sides, GOE_SIDE_LEFT)) {
+        sides->px[GOE_BOX_LEFT] = 0.0f;
+    }
+    if (!goe_sides_see(sides, GOE_SIDE_RIGHT)) {
+        sides->px[GOE_BOX_RIGHT] = goe_larger(camera->width_px, 2.0f * camera->cx_px);
+    }
+}
+
 void goe_sides_read(const goe_camera_t *camera, goe_view_t *view, goe_faults_t *faults) {
     const goe_box_t *box = &view->image->box;
     goe_sides_t *sides = &view->sides;
@@ -46,6 +56,7 @@ void goe_sides_read(const goe_camera_t *camera, goe_view_t *view, goe_faults_t *
     if (!swapped && (sides->usable & (sides->usable - 1u)) == 0u) { /* none or one */
         goe_fault_count(faults, GOE_BOX_INCOMPLETE);
     }
+    end_at_border(camera, sides);
     const unsigned wide = GOE_SIDE_LEFT | GOE_SIDE_RIGHT;
     sides->cut = !goe_sides_see(sides, wide) || (near_border(camera, sides, camera->truncation_rel) & wide) != 0u;
 }

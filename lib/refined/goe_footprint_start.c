@@ -44,25 +44,30 @@ static bool ray_of(const goe_camera_t *camera, const float camera_to_axes[9], fl
     return ray->usable;
 }
 
-/* Of the visible part of the box. */
-static void middle_of(const goe_camera_t *camera, const goe_sides_t *sides, float *x, float *y) {
-    *x =
-        0.5f * (goe_touch_coordinate(camera, sides, GOE_BOX_LEFT) + goe_touch_coordinate(camera, sides, GOE_BOX_RIGHT));
+/* Whether a box shows where the obstacle is: one side does, as its visible part ends at the image's border. */
+static bool shows_box(const goe_sides_t *sides) { return (sides->usable & (GOE_SIDE_LEFT | GOE_SIDE_RIGHT)) != 0u; }
+
+/* Middle of the visible part of the box. Returns its width, focal lengths. */
+static float middle_of(const goe_camera_t *camera, const goe_sides_t *sides, float *x, float *y) {
+    const float left = goe_touch_coordinate(camera, sides, GOE_BOX_LEFT);
+    const float right = goe_touch_coordinate(camera, sides, GOE_BOX_RIGHT);
+    *x = 0.5f * (left + right);
     *y = goe_sides_see(sides, GOE_SIDE_TOP | GOE_SIDE_BOTTOM)
              ? 0.5f * (goe_touch_coordinate(camera, sides, GOE_BOX_TOP) +
                        goe_touch_coordinate(camera, sides, GOE_BOX_BOTTOM))
              : 0.0f;
+    return right - left;
 }
 
 /* x of the ray to the obstacle. */
 static bool find_middle(const goe_view_t *view, float *x) {
     goe_feature_t left;
     goe_feature_t right;
-    if (goe_sides_see(&view->sides, GOE_SIDE_LEFT | GOE_SIDE_RIGHT)) {
+    if (shows_box(&view->sides)) {
         goe_point_t ray;
         float at_x;
         float at_y;
-        middle_of(view->camera, &view->sides, &at_x, &at_y);
+        (void)middle_of(view->camera, &view->sides, &at_x, &at_y);
         const bool ahead = ray_of(view->camera, view->camera_to_trajectory, at_x, at_y, &ray);
         *x = ray.x;
         return ahead;
@@ -93,6 +98,7 @@ typedef struct {
     float size;
     goe_point_t head, foot;
     bool box; /* by an upright box */
+    bool cut; /* ... of which the image's border hides the left or the right end */
 } sight_t;
 
 static void see_box(const goe_observation_t *obs, sight_t *sight) {
@@ -100,15 +106,16 @@ static void see_box(const goe_observation_t *obs, sight_t *sight) {
     const goe_sides_t *sides = obs->sides;
     float x;
     float y;
-    middle_of(camera, sides, &x, &y);
+    const float width = middle_of(camera, sides, &x, &y);
     if (goe_sides_see(sides, GOE_SIDE_TOP)) {
         (void)ray_of(camera, obs->camera_to_axes, x, goe_touch_coordinate(camera, sides, GOE_BOX_TOP), &sight->head);
     }
     if (goe_sides_see(sides, GOE_SIDE_BOTTOM)) {
         (void)ray_of(camera, obs->camera_to_axes, x, goe_touch_coordinate(camera, sides, GOE_BOX_BOTTOM), &sight->foot);
     }
-    sight->size = goe_touch_size(obs, GOE_BOX_LEFT, 0.0f) / (1.0f + x * x);
+    sight->size = width / (1.0f + x * x);
     sight->box = true;
+    sight->cut = !goe_sides_see(sides, GOE_SIDE_LEFT | GOE_SIDE_RIGHT);
 }
 
 static bool see_points(const goe_observation_t *obs, sight_t *sight) {
@@ -126,11 +133,11 @@ static bool see_points(const goe_observation_t *obs, sight_t *sight) {
 
 static bool see(const goe_observation_t *obs, sight_t *sight) {
     memset(sight, 0, sizeof *sight);
-    if (!goe_sides_see(obs->sides, GOE_SIDE_LEFT | GOE_SIDE_RIGHT)) {
+    if (!shows_box(obs->sides)) {
         return see_points(obs, sight);
     }
     see_box(obs, sight);
-    return true;
+    return sight->size > 0.0f;
 }
 
 /* Angular height, 0 if not visible. */
@@ -157,7 +164,7 @@ static float range_by_ground_m(const goe_observation_t *obs, const sight_t *sigh
 static float first_range_m(const goe_observation_t *obs, const sight_t *sight, bool *by_kind) {
     const float ground_m = range_by_ground_m(obs, sight);
     const float prior_m = goe_kind_prior_width_m(obs->settings, obs->passed) / goe_larger(sight->size, BOX_SIZE_MIN);
-    const float kind_m = goe_kind_range_m(obs->kind, sight->size, up_of(sight));
+    const float kind_m = goe_kind_range_m(obs->kind, sight->cut ? 0.0f : sight->size, up_of(sight));
     *by_kind = !(ground_m > 0.0f) && kind_m >= RANGE_MIN_M && kind_m <= FARTHER_MAX * prior_m;
     if (*by_kind) {
         return kind_m;
@@ -165,12 +172,21 @@ static float first_range_m(const goe_observation_t *obs, const sight_t *sight, b
     return goe_larger(ground_m > 0.0f ? ground_m : prior_m, RANGE_MIN_M);
 }
 
-static void set_root(const goe_observation_t *obs, const float state[GOE_STATES], float width, goe_triangle_t *root) {
+/* One sigma of the half width, which what is hidden behind the border may double, or exceed by an assumed width. */
+static float half_freedom(const goe_observation_t *obs, const sight_t *sight, float q) {
+    if (!sight->cut) {
+        return HALF_FREEDOM * sight->size;
+    }
+    return goe_larger(0.5f * sight->size, goe_kind_prior_width_m(obs->settings, obs->passed) * q);
+}
+
+static void set_root(const goe_observation_t *obs, const float state[GOE_STATES], const sight_t *sight,
+                     goe_triangle_t *root) {
     float sd[GOE_STATES];
-    goe_observation_prior(obs, state, width, sd);
+    goe_observation_prior(obs, state, sight->size, sd);
     sd[GOE_GROUND] = goe_larger(sqrtf(goe_ground_variance(obs, state[GOE_INVERSE_RANGE])), GROUND_MIN);
     sd[GOE_SHEAR] = (obs->is_round ? ROUND_SHEAR : SHEAR_FREEDOM) * state[GOE_HALF];
-    sd[GOE_HALF] = HALF_FREEDOM * width;
+    sd[GOE_HALF] = half_freedom(obs, sight, state[GOE_INVERSE_RANGE]);
     sd[GOE_LOG_DEPTH] = obs->is_round ? ROUND_FREEDOM : DEPTH_FREEDOM;
     goe_srif_from_sigmas(sd, root);
 }
@@ -192,7 +208,7 @@ bool goe_footprint_start(const goe_observation_t *obs, float state[GOE_STATES], 
     if (obs->height_sd_m > NO_ALTIMETER_M && sight.foot.usable) {
         state[GOE_GROUND] = sight.foot.y - obs->height_m * q;
     }
-    set_root(obs, state, sight.size, root);
+    set_root(obs, state, &sight, root);
     return true;
 }
 

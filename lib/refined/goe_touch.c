@@ -101,8 +101,8 @@ static void reach_rim(const goe_solid_t *solid, const float n[3], goe_touch_t *t
 
 typedef enum { FOOT, HEAD, EITHER } end_t;
 
-/* The touching point on the side of the outward normal, which is given in the camera's axes. (R24), (R25). False if it is not
- * ahead. */
+/* The touching point on the side of the outward normal, which is given in the camera's axes. (R24), (R25). An end that is not ahead is
+ * not visible: the other one is taken. False if neither is ahead. */
 static bool touch(const goe_solid_t *solid, const float normal[3], end_t end, goe_touch_t *t) {
     const float *r = solid->unbiased_from_camera;
     float n[3];
@@ -113,9 +113,15 @@ static bool touch(const goe_solid_t *solid, const float normal[3], end_t end, go
     } else {
         reach_rim(solid, n, t);
     }
-    const float *p = t->point;
-    t->point[1] = t->foot ? solid->ground : solid->roof;
-    const float z = r[2] * p[0] + r[5] * p[1] + r[8] * p[2];
+    float *p = t->point;
+    const float level = r[2] * p[0] + r[8] * p[2];
+    p[1] = t->foot ? solid->ground : solid->roof;
+    t->other = !(level + r[5] * p[1] >= GOE_AHEAD_MIN);
+    if (t->other) {
+        t->foot = !t->foot;
+        p[1] = t->foot ? solid->ground : solid->roof;
+    }
+    const float z = level + r[5] * p[1];
     if (!(z >= GOE_AHEAD_MIN)) {
         return false;
     }
@@ -174,9 +180,11 @@ static bool touch_side(const goe_observation_t *obs, const goe_solid_t *solid, s
     if (!touch_bent(obs, solid, side, straight, FOOT, t) || !touch_bent(obs, solid, side, straight, HEAD, &head)) {
         return false;
     }
+    const bool other = side == GOE_BOX_TOP ? head.other : t->other || (head.other && !goe_touch_is_level(side));
     if (sign * line_at(camera, side, head.x, head.y).at > sign * line_at(camera, side, t->x, t->y).at) {
         *t = head;
     }
+    t->other = other;
     return true;
 }
 
@@ -204,7 +212,8 @@ static void find_gradient(const goe_observation_t *obs, const goe_solid_t *solid
 /* Whether the end of the solid that the side touches may be hidden, or outside the image: no level side of the box, and no base
  * corner, shows it. */
 static bool is_hidden(const goe_observation_t *obs, const goe_touch_t *t) {
-    return !goe_sides_see(obs->sides, t->foot ? GOE_SIDE_BOTTOM : GOE_SIDE_TOP) && !(t->foot && obs->edge);
+    return t->other ||
+           (!goe_sides_see(obs->sides, t->foot ? GOE_SIDE_BOTTOM : GOE_SIDE_TOP) && !(t->foot && obs->edge));
 }
 
 /* (R27a): then the side touches the visible part's end, anywhere between foot and head. The row takes the middle and says
@@ -223,12 +232,12 @@ GOE_NOINLINE float *goe_touch_add(goe_rows_t *rows, const goe_observation_t *obs
         return NULL;
     }
     const float measured = goe_touch_coordinate(obs->camera, obs->sides, side);
-    if (!touch_side(obs, solid, side, measured, touch)) {
+    const bool level = goe_touch_is_level(side);
+    if (!touch_side(obs, solid, side, measured, touch) || (level && touch->other)) {
         return NULL;
     }
     const line_t line = line_at(obs->camera, side, touch->x, touch->y);
     find_gradient(obs, solid, touch, &line, gradient);
-    const bool level = goe_touch_is_level(side);
     const float hidden = !level && is_hidden(obs, touch) ? forget_height(solid, touch, gradient) : 0.0f;
     float *by = goe_rows_add(rows, (goe_feature_t)feature_of[side], level ? GOE_ALONG_Y : GOE_ALONG_X, measured,
                              variance + hidden, gradient);

@@ -28,6 +28,7 @@ typedef struct {
     goe_contact_t contact; /* of an ellipse, along that */
     size_t corner;         /* of a hull: the one that is touched */
     bool foot;             /* at the foot, not at the head */
+    bool other;            /* ... although the plane touches the other end, which is not ahead */
 } goe_touch_t;
 
 /*@ predicate goe_solid_is_closed(goe_solid_t *solid) =

@@ -316,8 +316,43 @@ static void a_start_matches_one_box(void) {
     CHECK_CLOSE(1.0e-6, 0.25 - 20.0 * 0.1 / 6.0, x[GOE_GROUND]);
 }
 
+/* GIVEN a box of which the image's border hides one side THEN the filter starts from the visible part, and the border may hide as much again,
+ * or an assumed width; and the class gives the range by the height alone. No side at all, or none of a width, starts nothing. */
+static void a_start_needs_one_side(void) {
+    goe_triangle_t root;
+    float x[GOE_STATES];
+    goe_kind_t kind;
+    memset(&kind, 0, sizeof kind);
+    any = check_random_start("border");
+    for (int wide = 0; wide < 2; wide++) {
+        const double width = wide == 1 ? 0.6 : 0.02;
+        see_box(0.1f, -0.1f, 0.1f + (float)width, 0.25f);
+        sighting.sight.state = x;
+        sighting.sight.kind = &kind;
+        sides.usable = GOE_SIDE_LEFT | GOE_SIDE_BOTTOM; /* right is that of the border */
+        const double middle = 0.1 + 0.5 * width;
+        const double size = width / (1.0 + middle * middle);
+        const double q = 1.0 / (80.0 * (1.0 + 0.5 * size));
+        TEST_ASSERT_TRUE(goe_footprint_start(&sighting.sight, x, &root, &by_kind));
+        CHECK_CLOSE(1.0e-5, q, x[GOE_INVERSE_RANGE]);
+        CHECK_CLOSE(1.0e-5, 0.5 * size, x[GOE_HALF]);
+        CHECK_CLOSE(1.0e-3, 1.0, fmax(0.5 * size, 6.0 * q) * (double)*goe_srif_at(&root, GOE_HALF, GOE_HALF));
+        sighting.sight.height_sd_m = 100.0f; /* no ground */
+        kind.width_m = 2.0f;
+        TEST_ASSERT_TRUE(goe_footprint_start(&sighting.sight, x, &root, &by_kind));
+        TEST_ASSERT_FALSE(by_kind);
+        CHECK_CLOSE(1.0e-5, size / 6.0, x[GOE_INVERSE_RANGE]);
+        kind.width_m = 0.0f;
+        sides.usable = GOE_SIDE_TOP | GOE_SIDE_BOTTOM;
+        TEST_ASSERT_FALSE(goe_footprint_start(&sighting.sight, x, &root, &by_kind));
+        sides.usable = GOE_SIDE_LEFT;
+        sides.px[GOE_BOX_RIGHT] = sides.px[GOE_BOX_LEFT];
+        TEST_ASSERT_FALSE(goe_footprint_start(&sighting.sight, x, &root, &by_kind));
+    }
+}
+
 /* GIVEN a box off the axis THEN the state's axes are turned towards its middle, at the middle of its height, or at the horizon where
- * that is not visible; and a box without both of its upright sides turns nothing. */
+ * that is not visible; and a box without any of its upright sides turns nothing. */
 static void the_axes_turn_towards_the_box(void) {
     static const float rolled[9] = {0.8f, -0.6f, 0.0f, 0.6f, 0.8f, 0.0f, 0.0f, 0.0f, 1.0f};
     goe_filter_t filter;
@@ -332,7 +367,7 @@ static void the_axes_turn_towards_the_box(void) {
         view.sides = sides;
         view.sides.usable = n == 0   ? GOE_SIDES_ALL
                             : n == 1 ? GOE_SIDE_LEFT | GOE_SIDE_RIGHT
-                                     : GOE_SIDE_LEFT | GOE_SIDE_TOP;
+                                     : GOE_SIDE_BOTTOM | GOE_SIDE_TOP;
         TEST_ASSERT_EQUAL_INT(n < 2, goe_footprint_face(&filter, &view));
         const double x = 0.8 * 0.4 - 0.6 * (n == 0 ? 0.1 : 0.0);
         if (n < 2) {
@@ -986,6 +1021,7 @@ int main(void) {
     RUN_TEST(each_side_has_its_own_memory);
     RUN_TEST(a_sides_error_is_a_share_of_the_box);
     RUN_TEST(a_start_matches_one_box);
+    RUN_TEST(a_start_needs_one_side);
     RUN_TEST(the_axes_turn_towards_the_box);
     RUN_TEST(sides_are_remembered_in_flight);
     RUN_TEST(a_box_goes_with_base_corners);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "check.h"
+#include "drawn.h"
 #include "goe.h"
 #include "scene.h"
 
@@ -142,85 +143,20 @@ static void a_wrong_prior_width_loses_no_warning(void) {
 /* ---------------------------------------------------------------------------------------------------------- any flight -- */
 
 #define FLIGHTS 1000
-#define RATE_HZ 8.0
-#define AHEAD_S 3.0 /* a warning must come at least this long before the near side is reached */
-#define RAD_PER_DEG 0.017453292519943295
-#define BOX_MEMORY_S 1.2 /* of a detector's errors */
-#define POINT_PX 0.5
-#define IMAGE_PX 1280.0f
-
-typedef struct {
-    bool points, boxes;
-    double box_share;
-    double error[4]; /* of the box's sides, in its sigma */
-} detector_t;
-
-/* A chimney or a building 160 to 250 m ahead, in the way and higher than the aircraft. */
-static detector_t any_flight(check_random_t *any) {
-    scene_default(&scene);
-    scene.shape = check_random_bits(any) % 2u == 0u ? SCENE_CYLINDER : SCENE_BOX;
-    scene.width_m = exp(check_random_between(any, log(2.5), log(30.0)));
-    scene.length_m = scene.width_m * check_random_between(any, 0.4, 2.5);
-    scene.alpha_deg = check_random_between(any, -45.0, 45.0);
-    scene.altitude_m = check_random_between(any, 15.0, 40.0);
-    scene.height_m = scene.altitude_m + check_random_between(any, 0.0, 30.0);
-    scene.x0_m = check_random_between(any, -0.3, 0.3) * scene.width_m;
-    scene.z0_m = check_random_between(any, 160.0, 250.0);
-    scene.speed_mps = check_random_between(any, 10.0, 20.0);
-    scene.image_rate_hz = RATE_HZ;
-    scene.roll_swing_deg = check_random_bits(any) % 2u == 0u ? 0.0 : check_random_between(any, 0.0, 10.0);
-    scene.roll_swing_hz = check_random_between(any, 0.1, 0.25);
-    const unsigned features = check_random_bits(any) % 3u;
-    detector_t detector = {features != 1u, features != 0u, check_random_bits(any) % 2u == 0u ? 0.02 : 0.07, {0.0}};
-    for (int i = 0; i < 4; i++) {
-        detector.error[i] = check_random_normal(any);
-    }
-    return detector;
-}
-
-static void box_image(const detector_t *detector, int k, goe_image_t *image) {
-    goe_image_t boxed;
-    scene.boxes = true;
-    scene_image(&scene, k, &boxed, NULL);
-    scene.boxes = false;
-    image->box = boxed.box;
-    if (!detector->points) {
-        scene_hide_points(image);
-    }
-}
-
-static void spoil_box(detector_t *detector, check_random_t *any, goe_box_t *box) {
-    float *const side[4] = {&box->left_px, &box->top_px, &box->right_px, &box->bottom_px};
-    const double size[2] = {(double)(box->right_px - box->left_px), (double)(box->bottom_px - box->top_px)};
-    const double kept = exp(-1.0 / RATE_HZ / BOX_MEMORY_S);
-    for (int i = 0; i < 4; i++) {
-        detector->error[i] = kept * detector->error[i] + sqrt(1.0 - kept * kept) * check_random_normal(any);
-        *side[i] += (float)(detector->box_share * size[i % 2] * detector->error[i] + check_random_normal(any));
-        *side[i] = fminf(fmaxf(*side[i], 0.0f), IMAGE_PX - 1.0f);
-    }
-}
-
 /* Time ahead of the near side at the first warning, s; negative: none. cleared: whether "clear" came within 10 s. */
-static double warned_s(detector_t detector, check_random_t any, bool *cleared) {
+static double warned_s(drawn_t drawn, check_random_t any, bool *cleared) {
     const goe_intent_t intent = {{(float)scene.speed_mps, 0.0f, 0.0f}, 15.0f, 10.0f, 0.0f, 0.0f};
-    const double turned = fabs(sin(scene.alpha_deg * RAD_PER_DEG));
-    const double reach_m = 0.5 * scene.width_m * (scene.shape == SCENE_CYLINDER ? 1.0 : turned); /* nearer than z0_m */
     double first_s = -1.0;
     goe_estimator_t estimator;
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
     for (int k = 0; first_s < 0.0; k++) {
         goe_image_t image;
         goe_estimate_t estimate;
-        const double left_s = (scene.z0_m - reach_m) / scene.speed_mps - k / RATE_HZ;
+        const double left_s = drawn_left_s(&scene, k);
         if (left_s < 0.5) {
             break;
         }
-        scene_image(&scene, k, &image, NULL);
-        scene_add_noise(&image, &any, POINT_PX);
-        if (detector.boxes) {
-            box_image(&detector, k, &image);
-            spoil_box(&detector, &any, &image.box);
-        }
+        drawn_image(&drawn, &scene, &any, k, &image);
         image.kind = kind;
         (void)goe_update(&estimator, &image, &estimate);
         const goe_decision_t decision = goe_decide(&estimator, &intent, NULL, NULL);
@@ -236,13 +172,13 @@ static int unwarned(const char *what, void (*wrong)(double width_m, double facto
     int late = 0;
     for (int n = 0; n < FLIGHTS; n++) {
         bool clear = false;
-        const detector_t detector = any_flight(&any);
+        const drawn_t drawn = drawn_flight(&scene, &any);
         settings = scene_settings(&scene);
         settings.navigation.terrain_height_sd_m = 1000.0f;
-        settings.detector.box_noise_rel = (float)detector.box_share;
+        settings.detector.box_noise_rel = (float)drawn.box_share;
         memset(&kind, 0, sizeof kind);
         wrong(scene.width_m, exp(check_random_between(&any, log(0.01), log(10.0))));
-        late += warned_s(detector, any, &clear) < AHEAD_S ? 1 : 0;
+        late += warned_s(drawn, any, &clear) < DRAWN_AHEAD_S ? 1 : 0;
         *cleared += clear ? 1 : 0;
     }
     check_report("flights without a warning in time", late);
@@ -264,6 +200,55 @@ static void a_wrong_first_guess_loses_no_warning_in_any_flight(void) {
     TEST_ASSERT_EQUAL_INT(0, cleared);
 }
 
+/* ------------------------------------------------------------------------------------------------------------- border -- */
+
+#define BORDER_FLIGHTS 300
+
+/* Seconds ahead of the near side at the first warning of an obstacle that reaches beyond the image's left border in every image. hidden: the
+ * detector says so and the camera's width is not configured; otherwise both are left to the library. */
+static double warned_at_border_s(drawn_t drawn, check_random_t any, bool hidden) {
+    const goe_intent_t intent = {{(float)scene.speed_mps, 0.0f, 0.0f}, 15.0f, 10.0f, 0.0f, 0.0f};
+    double first_s = -1.0;
+    goe_estimator_t estimator;
+    settings = scene_settings(&scene);
+    settings.camera.width_px = settings.camera.height_px = hidden ? 0.0f : 1280.0f;
+    settings.camera.border_rel = 0.012f; /* the library's default */
+    settings.detector.box_noise_rel = (float)drawn.box_share;
+    CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
+    for (int k = 0; first_s < 0.0 && drawn_left_s(&scene, k) > 0.5; k++) {
+        goe_image_t image;
+        goe_estimate_t estimate;
+        drawn_image(&drawn, &scene, &any, k, &image);
+        scene_hide_points(&image);
+        if (image.box.right_px - image.box.left_px < 2.0f) {
+            continue; /* nothing of it is in the image */
+        }
+        image.box.left_px = hidden ? NAN : 0.0f;
+        image.box.sides = hidden ? GOE_SIDES_ALL & ~GOE_SIDE_LEFT : GOE_SIDES_ALL;
+        (void)goe_update(&estimator, &image, &estimate);
+        first_s = goe_decide(&estimator, &intent, NULL, NULL) == GOE_DECISION_ACT ? drawn_left_s(&scene, k) : first_s;
+    }
+    return first_s;
+}
+
+/* [goe_box_t.sides] GIVEN any obstacle ahead whose left end is never in the image THEN the visible side and the ground give a range, and the
+ * warning comes in time. */
+static void a_box_cut_by_the_border_is_warned_of(void) {
+    check_random_t any = check_random_start("border");
+    int late[2] = {0, 0};
+    for (int n = 0; n < BORDER_FLIGHTS; n++) {
+        drawn_t drawn = drawn_flight(&scene, &any);
+        drawn.boxes = true;
+        scene.camera.mount_yaw_deg = 34.0f; /* straight ahead is one degree inside the left border */
+        scene.roll_swing_deg = 0.0;
+        late[n % 2] += warned_at_border_s(drawn, any, n % 2 == 1) < DRAWN_AHEAD_S ? 1 : 0;
+    }
+    check_report("flights without a warning in time, of 150, border known", late[0]);
+    check_report("... side hidden", late[1]);
+    TEST_ASSERT_EQUAL_INT(0, late[0]);
+    TEST_ASSERT_EQUAL_INT(0, late[1]);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_right_class_answers_sooner);
@@ -271,5 +256,6 @@ int main(void) {
     RUN_TEST(a_class_alone_clears_nothing);
     RUN_TEST(a_wrong_prior_width_loses_no_warning);
     RUN_TEST(a_wrong_first_guess_loses_no_warning_in_any_flight);
+    RUN_TEST(a_box_cut_by_the_border_is_warned_of);
     return UNITY_END();
 }

@@ -178,14 +178,24 @@ static void a_level_plane_touches_the_nearest_point(void) {
     CHECK_CLOSE(1.0e-5, 0.0, by[GOE_BEARING]);
 }
 
-/* GIVEN a camera with a lens that looks 60 degrees down WHEN the foot is ahead of it and the head of a tall cylinder is not THEN no
- * side gives a row; a low one gives them. */
-static void a_head_behind_the_camera_gives_no_row(void) {
+/* [(R27a)] GIVEN a camera with a lens that looks 60 degrees down WHEN the foot is ahead of it and the head of a tall cylinder is not THEN the
+ * top gives no row, and left and right say nothing about either height, as where the head is hidden; a low one gives all rows. */
+static void a_head_behind_the_camera_counts_as_hidden(void) {
     for (int tall = 0; tall < 2; tall++) {
         cylinder_ahead(tall ? 100.0 : 5.0, 60.0);
         sighting.settings.camera.k1 = -0.05f;
         make_rows();
-        TEST_ASSERT_EQUAL_size_t(tall ? 0 : GOE_BOX_SIDES, sighting.rows.count);
+        TEST_ASSERT_EQUAL_size_t(tall ? 3 : GOE_BOX_SIDES, sighting.rows.count);
+        for (size_t i = 0; i < sighting.rows.count; i++) {
+            const float *by = &sighting.matrix.row[i][GOE_STATE_COLUMN];
+            if (tall) {
+                TEST_ASSERT_TRUE(sighting.rows.feature[i] != GOE_POINT_TOP);
+            }
+            if (tall && sighting.rows.axis[i] == GOE_ALONG_X) {
+                CHECK_SAME(0.0f, by[GOE_GROUND]);
+                CHECK_SAME(0.0f, by[GOE_TOP]);
+            }
+        }
     }
 }
 
@@ -265,7 +275,7 @@ int main(void) {
     RUN_TEST(sides_touch_a_footprint_where_its_image_ends);
     RUN_TEST(a_side_that_is_not_visible_gives_no_row);
     RUN_TEST(a_level_plane_touches_the_nearest_point);
-    RUN_TEST(a_head_behind_the_camera_gives_no_row);
+    RUN_TEST(a_head_behind_the_camera_counts_as_hidden);
     RUN_TEST(a_house_by_its_box_and_its_corners_has_its_height);
     RUN_TEST(a_good_detector_is_not_spoiled_by_roll);
     return UNITY_END();
