@@ -215,6 +215,7 @@ typedef struct {         /* refined/goe_refined.c: what of the latest answer out
     float height_bias_m; /* constant error of the camera's height that the answer is freed of, m */
     goe_flag_t outdated; /* the state has changed since, other than by time */
     goe_flag_t by_kind;  /* the answer's range is that of the detector's class */
+    goe_flag_t outgrown; /* the latest image shows the obstacle larger than it can be at the state's range */
 } goe_answer_t;
 
 #define GOE_KIND_SIZES 2 /* width, height */

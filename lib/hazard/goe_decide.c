@@ -65,31 +65,29 @@ static bool is_outside(const goe_hazard_t *hazard, const goe_intent_t *intent) {
     return aside || above;
 }
 
+#if GOE_WITH_FILTER
 /* Whether detections came for a while without an answer: the old one may be of something else. Silence is another matter. */
 static bool is_superseded(const goe_estimator_t *estimator) {
-#if GOE_WITH_FILTER
-    return goe_uses_filter(estimator) && estimator->filter.answer.outdated != 0u &&
-           !goe_is_set(&estimator->estimate.fresh) &&
+    return estimator->filter.answer.outdated != 0u && !goe_is_set(&estimator->estimate.fresh) &&
            goe_latest_since_s(estimator, estimator->motion.time_us) > SUPERSEDED_S;
+}
+
+/* Whether the range is in doubt: no image has renewed it, it is that of a class, which may be wrong, and no image has tested it yet, or
+ * the latest image shows the obstacle larger than it can be there. */
+static bool is_doubted(const goe_estimator_t *estimator) {
+    const goe_answer_t *answer = &estimator->filter.answer;
+    return goe_uses_filter(estimator) && (is_superseded(estimator) || answer->by_kind != 0u || answer->outgrown != 0u);
+}
 #else
+static bool is_doubted(const goe_estimator_t *estimator) {
     (void)estimator;
     return false;
-#endif
 }
+#endif
 
 /* Whether the position is known to be wrong: the obstacle moves, and no velocity of it is estimated. */
 static bool is_misplaced(const goe_estimate_t *estimate) {
     return estimate->reason == GOE_REASON_MOVES && (estimate->valid & GOE_HAS_VELOCITY) == 0u;
-}
-
-/* Whether the range is that of a class, which may be wrong, and no image has tested yet. */
-static bool is_presumed(const goe_estimator_t *estimator) {
-#if GOE_WITH_FILTER
-    return goe_uses_filter(estimator) && estimator->filter.answer.by_kind != 0u;
-#else
-    (void)estimator;
-    return false;
-#endif
 }
 
 /* Between the two bounds of the time, and between a small probability and a distance that is kept, too little is known to clear. */
@@ -121,7 +119,7 @@ static GOE_NOINLINE goe_decision_t judge(const goe_estimator_t *estimator, const
         return status == GOE_CONVERGING ? GOE_DECISION_UNKNOWN : GOE_DECISION_KEEP;
     }
     const goe_decision_t decision = decision_of(met, &wide, rule);
-    const bool clears = !is_superseded(estimator) && !is_presumed(estimator) && !is_misplaced(&estimator->estimate);
+    const bool clears = !is_doubted(estimator) && !is_misplaced(&estimator->estimate);
     return decision == GOE_DECISION_CLEAR && !clears ? GOE_DECISION_UNKNOWN : decision;
 }
 

@@ -6,12 +6,14 @@
 
 #include "maths/goe_scalar.h"
 #include "refined/goe_gate.h"
+#include "refined/goe_growth.h"
 
 #if GOE_AUGMENTED
 
 #define LATENCY_PRIOR_S 0.05f   /* one sigma of what poses are late by before anything is known */
 #define LATENCY_SHARE 0.25f     /* of a latency, one sigma: a rate of turn over a span replaces that at the exposure */
 #define SPREAD_GROWN 25.0f      /* of a velocity's variance, when the obstacle begins to be followed */
+#define SPEED_MAX_M_S 20.0f     /* of what the images showed; a faster one is the linearization's */
 #define LATE_MIN_S 0.02f        /* poses are reported as late from here on ... */
 #define LATE_SIGMAS 2.7f        /* ... and if it is that much more than nothing */
 #define RATE_PREDICTED 0.8f     /* of a rate of turn, by the one before it: the mean over usual swaying */
@@ -28,6 +30,7 @@
 #define SINCE_MAX_S 0.5f        /* a gap between images counts as that */
 #define COLUMN_MAX 1.0e3f       /* focal lengths per second, or per m/s: beyond that no flight is */
 #define AUGMENTED_MAX 1.0e9f    /* of the augmented states and their rows of the triangle: no flight has more */
+#define SPEED_SD_M_S 8.0f       /* one sigma of the velocity along north and east of what moves on the ground */
 #define TIME_MIN_S 0.1f         /* keeps a walk over time finite */
 #define DETERMINANT_MIN 1.0e-5f /* of a covariance of two, over the product of the variances */
 
@@ -56,16 +59,19 @@ static float sane(float column) { return goe_within(column, COLUMN_MAX) ? column
 /* (R33): the obstacle at velocity v has moved by v t; poses that are tau late have the attitude and the velocity of then. */
 void goe_mover_columns(const goe_observation_t *obs, goe_rows_t *rows) {
     const float q = obs->state[GOE_INVERSE_RANGE];
+    const float passed = q * obs->elapsed_s;
+    const float *before = obs->rate_before_rad_s;
+    const float rate[3] = {-RATE_PREDICTED * before[0], -RATE_PREDICTED * before[1], -RATE_PREDICTED * before[2]};
+    const goe_xz_t gained = {q * obs->gained_m_s.x, q * obs->gained_m_s.z};
     for (size_t i = 0; i < rows->count; i++) {
         float *row = rows->matrix->row[i];
         float *by = &row[GOE_AUGMENTED_COLUMN];
         const goe_xz_t place = {by[GOE_AUGMENTED_VELOCITY_X], by[GOE_AUGMENTED_VELOCITY_Z]};
         const goe_xz_t moved = goe_xz_out_of(place, obs->turn_cos, obs->turn_sin);
-        const float *rate = obs->rate_before_rad_s;
         const float turned = row[0] * rate[1] + row[1] * rate[0] + row[2] * rate[2];
-        by[GOE_AUGMENTED_LATENCY] = sane(-RATE_PREDICTED * turned - q * goe_xz_dot(place, obs->gained_m_s));
-        by[GOE_AUGMENTED_VELOCITY_X] = sane(moved.x * q * obs->elapsed_s);
-        by[GOE_AUGMENTED_VELOCITY_Z] = sane(moved.z * q * obs->elapsed_s);
+        by[GOE_AUGMENTED_LATENCY] = sane(turned - goe_xz_dot(place, gained));
+        by[GOE_AUGMENTED_VELOCITY_X] = sane(moved.x * passed);
+        by[GOE_AUGMENTED_VELOCITY_Z] = sane(moved.z * passed);
     }
 }
 
@@ -160,9 +166,11 @@ static bool is_unlike_static(const fit_t *fit, float least) {
            fit->rest_latency > REST_CHI2 * fit->wider && fit->rest_velocity < REST_SHARE * fit->rest_latency;
 }
 
-static bool is_moving(goe_filter_t *filter, const fit_t *fit, float since_s) {
+/* Whether enough images in a row contradict a static obstacle. */
+static bool is_moving(goe_filter_t *filter, const fit_t *fit, bool outgrown, float since_s) {
     goe_mover_t *m = &filter->mover;
-    if (!(m->observed_s > SETTLED_S) || !is_unlike_static(fit, goe_filter_by_boxes(filter) ? BOXES_CHI2 : MOVES_CHI2)) {
+    const float least = goe_filter_by_boxes(filter) ? BOXES_CHI2 : MOVES_CHI2;
+    if (!outgrown && !(m->observed_s > SETTLED_S && is_unlike_static(fit, least))) {
         m->unlike_s = 0.0f;
         m->images = 0;
         return false;
@@ -171,16 +179,15 @@ static bool is_moving(goe_filter_t *filter, const fit_t *fit, float since_s) {
     return goe_count_image(&m->images) >= MOVES_IMAGES && m->unlike_s >= MOVES_S;
 }
 
-/* (R35): from the velocity that the images showed, with more than its uncertainty, as it was linearized at a wrong
- * place; the latency is open again. */
+/* (R35): one over the sigma of a velocity's component: five times as uncertain as the images have it, or as any velocity of what moves on
+ * the ground. */
+static float root_of(float variance) { return goe_larger(1.0f / sqrtf(SPREAD_GROWN * variance), 1.0f / SPEED_SD_M_S); }
+
+/* From the velocity that the images showed; as it was linearized at a wrong place, with more than its uncertainty; the latency is open
+ * again. */
 static void follow(goe_filter_t *filter, const fit_t *fit) {
     goe_mover_t *m = &filter->mover;
     goe_triangle_t *root = &filter->root;
-    const float x = SPREAD_GROWN * fit->spread[0];
-    const float both = SPREAD_GROWN * fit->spread[1];
-    const float z = SPREAD_GROWN * fit->spread[2];
-    const float determinant = determinant_of(x, both, z);
-    const float root_x = sqrtf(z / determinant); /* the triangle of the inverse of (x, both; both, z) */
     m->moves = true;
     m->followed = true;
     m->late = false;
@@ -189,9 +196,8 @@ static void follow(goe_filter_t *filter, const fit_t *fit) {
     m->augmented[GOE_AUGMENTED_VELOCITY_Z] = fit->velocity_m_s.z;
     forget_augmented(root);
     *augmented_at(root, GOE_AUGMENTED_LATENCY, GOE_AUGMENTED_LATENCY) = 1.0f / LATENCY_PRIOR_S;
-    *augmented_at(root, GOE_AUGMENTED_VELOCITY_X, GOE_AUGMENTED_VELOCITY_X) = root_x;
-    *augmented_at(root, GOE_AUGMENTED_VELOCITY_X, GOE_AUGMENTED_VELOCITY_Z) = -both / (determinant * root_x);
-    *augmented_at(root, GOE_AUGMENTED_VELOCITY_Z, GOE_AUGMENTED_VELOCITY_Z) = 1.0f / sqrtf(z);
+    *augmented_at(root, GOE_AUGMENTED_VELOCITY_X, GOE_AUGMENTED_VELOCITY_X) = root_of(fit->spread[0]);
+    *augmented_at(root, GOE_AUGMENTED_VELOCITY_Z, GOE_AUGMENTED_VELOCITY_Z) = root_of(fit->spread[2]);
     root->estimated = GOE_AUGMENTED;
 }
 
@@ -256,10 +262,16 @@ bool goe_mover_judge(goe_filter_t *filter, const goe_observation_t *obs, const f
         return false;
     }
     judge_latency(filter, &fit);
-    const bool seen = is_moving(filter, &fit, since_s);
+    const bool outgrown = obs->grown2 > GOE_GROWN_SIGMAS2;
+    const bool seen = is_moving(filter, &fit, outgrown, since_s);
     if (!seen || !has_scale(obs)) { /* an outline of another shape drifts, too, but fits */
-        m->moves = m->moves || (seen && filter->health.mean_nis > obs->settings->filter.nis_ratio_max);
+        const bool misfit = outgrown || filter->health.mean_nis > obs->settings->filter.nis_ratio_max;
+        m->moves = m->moves || (seen && misfit);
         return false;
+    }
+    if (outgrown || goe_xz_dot(fit.velocity_m_s, fit.velocity_m_s) > goe_square(SPEED_MAX_M_S)) {
+        fit.velocity_m_s.x = fit.velocity_m_s.z = 0.0f;
+        fit.spread[0] = fit.spread[2] = goe_square(SPEED_SD_M_S);
     }
     follow(filter, &fit);
     return true;

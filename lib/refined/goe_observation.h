@@ -26,6 +26,7 @@ typedef struct {
     float position_sd;       /* ... of the image's own position error, m, with what the uncertain range adds */
     float range_variance;    /* of GOE_INVERSE_RANGE */
     float depth_variance;    /* box: of GOE_DEPTH_DIFFERENCE */
+    float grown2;            /* (excess of width or height over the predicted one, in sigmas)^2 */
     bool two_faces;          /* box: both were visible, its length is estimated */
     bool stand_in;           /* footprint: it substitutes for a box */
     bool is_round;           /* by its class, or by the settings */

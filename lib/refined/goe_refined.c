@@ -15,6 +15,7 @@
 #include "maths/goe_time.h"
 #include "refined/goe_box.h"
 #include "refined/goe_ground.h"
+#include "refined/goe_growth.h"
 #include "refined/goe_health.h"
 #include "refined/goe_kind.h"
 #include "refined/goe_model.h"
@@ -27,7 +28,7 @@
 #define TOO_SOON_SHARE 0.08f   /* of the time constant: sooner, differences of boxes are their linearization's */
 #define LOST_S 0.5f            /* without rows, after which a known range is not taken as known */
 #define VAGUE2 4.0f            /* (sigma of 1/Z0 times the way along Z)^2: below 1 is possible for an obstacle ahead */
-#define BEYOND2 9.0f           /* squared sigmas of 1/Z0 below 0 */
+#define DOUBTED_SIGMAS2 4.0f   /* of what an extent exceeds the predicted one by, from which on nothing is clear */
 #define FADE_MAX 0.95f         /* of what a box's error keeps from image to image, where it is not remembered */
 
 /* --------------------------------------------------------------------------------------------------------------- time -- */
@@ -71,6 +72,10 @@ static void doubt(goe_filter_t *filter, const goe_observation_t *obs) {
 static void find_rows(goe_filter_t *filter, goe_observation_t *obs, goe_rows_t *rows) {
     rows->white_rad = obs->white_rad;
     goe_model_rows(filter, obs, rows);
+    obs->grown2 = goe_growth_find(obs, rows);
+    if (rows->count > 0) {
+        filter->answer.outgrown = obs->grown2 > DOUBTED_SIGMAS2;
+    }
     goe_rows_end(rows, obs);
 #if GOE_AUGMENTED
     goe_mover_columns(obs, rows);
@@ -157,18 +162,6 @@ static bool starts_to_move(goe_filter_t *filter, const goe_observation_t *obs, c
 #endif
 }
 
-/* Whether the obstacle is followed as a moving one, and 1/Z0 is clearly negative: the state then explains all growth as motion. */
-static bool is_beyond(const goe_filter_t *filter, const goe_observation_t *obs) {
-#if GOE_AUGMENTED
-    const float q = filter->state[GOE_INVERSE_RANGE];
-    return filter->mover.followed && q < 0.0f && q * q > BEYOND2 * obs->range_variance;
-#else
-    (void)filter;
-    (void)obs;
-    return false;
-#endif
-}
-
 /* Whether the image shows the obstacle where the state cannot have it: behind the camera; or anywhere, by its sigma. No image corrects
  * that: a state behind the camera gives no rows, and a vague one takes nothing from them. If images know a range that was passed, it
  * may be right, and the image wrong; not for long. */
@@ -177,7 +170,7 @@ static bool is_lost(const goe_filter_t *filter, const goe_observation_t *obs) {
     const float z = goe_observation_reference(obs).z;
     const bool passed = z < 0.0f && (obs->range_variance > known2 || filter->due_s > LOST_S);
     const bool vague = obs->range_variance * goe_square(obs->camera_m.z) > VAGUE2;
-    return goe_filter_has_started(filter) && (passed || vague || is_beyond(filter, obs));
+    return goe_filter_has_started(filter) && (passed || vague);
 }
 
 /* What the rows bring; its locals are not on the stack while they are made. */

@@ -1,0 +1,33 @@
+/* Growth. SPDX-License-Identifier: MIT */
+#include "refined/goe_growth.h"
+
+#include "maths/goe_scalar.h"
+#include "refined/goe_touch.h"
+
+#if GOE_WITH_FILTER
+
+#define AHEAD_MIN 0.7f /* of Z0: nearer, the line of sight may have turned, and another face be in view */
+
+/* The height if a box shows it, as it does not change with the direction of view; otherwise the width. */
+float goe_growth_find(const goe_observation_t *obs, const goe_rows_t *rows) {
+    const bool tall = goe_sides_see(obs->sides, GOE_SIDE_TOP | GOE_SIDE_BOTTOM);
+    const goe_feature_t low = tall ? GOE_POINT_TOP : GOE_POINT_LEFT;
+    const goe_feature_t high = tall ? GOE_POINT_BASE_NEAR : GOE_POINT_RIGHT;
+    const float ahead = goe_observation_reference(obs).z;
+    const float size = goe_touch_size(obs, tall ? GOE_BOX_TOP : GOE_BOX_LEFT, 2.0f * obs->state[GOE_HALF]);
+    const float share2 = 2.0f * goe_square(obs->settings->detector.box_noise_rel) +
+                         obs->range_variance * goe_square(obs->camera_m.z / ahead);
+    float variance = share2 * goe_square(size);
+    float excess = 0.0f;
+    unsigned ends = 0;
+    for (size_t i = 0; i < rows->remembered; i++) { /* the sides of a box, or left and right */
+        if (rows->feature[i] == low || rows->feature[i] == high) {
+            excess = rows->matrix->row[i][GOE_RESIDUAL] - excess; /* the low end comes first */
+            variance += rows->variance[i];
+            ends++;
+        }
+    }
+    return ends == 2u && ahead > AHEAD_MIN && excess > 0.0f ? goe_square(excess) / variance : 0.0f;
+}
+
+#endif

@@ -1,0 +1,17 @@
+/* Whether the obstacle is larger in an image than it can be at its range. SPDX-License-Identifier: MIT
+ *
+ * An obstacle that comes closer while its direction stays the same moves, or is much nearer than the state has it. Direction then says
+ * "far", growth says "near", and a state far away takes each step of the growth for an error of the detector. */
+#ifndef GOE_GROWTH_H
+#define GOE_GROWTH_H
+
+#include "refined/goe_observation.h"
+
+#define GOE_GROWN_SIGMAS2 9.0f /* from here on it contradicts an obstacle that stands still */
+
+/* (R34): by how much width or height exceeds the predicted one, (in sigmas)^2. 0 if it does not, if the obstacle is cut by the image's
+ * border, or if the line of sight may have turned far. Of the model's rows, before what is remembered is taken off. */
+/*@ requires goe_observation_is_open(obs) && goe_rows_hold(rows); */
+float goe_growth_find(const goe_observation_t *obs, const goe_rows_t *rows);
+
+#endif
