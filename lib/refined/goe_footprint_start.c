@@ -172,7 +172,7 @@ static float first_range_m(const goe_observation_t *obs, const sight_t *sight, b
     return goe_larger(ground_m > 0.0f ? ground_m : prior_m, RANGE_MIN_M);
 }
 
-/* One sigma of the half width, which what is hidden behind the border may double, or exceed by an assumed width. */
+/* One sigma of the half width: the part behind the border may double it, or exceed it by an assumed width. */
 static float half_freedom(const goe_observation_t *obs, const sight_t *sight, float q) {
     if (!sight->cut) {
         return HALF_FREEDOM * sight->size;

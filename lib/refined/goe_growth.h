@@ -10,8 +10,8 @@
 #define GOE_GROWN_SIGMAS2 9.0f /* from here on it contradicts an obstacle that stands still */
 
 /* (R34): by how much width or height exceeds the predicted one, (in sigmas)^2. 0 if it does not, if the obstacle is cut by the image's
- * border, or if the line of sight may have turned far. Of the model's rows, before what is remembered is taken off. */
-/*@ requires goe_observation_is_open(obs) && goe_rows_hold(rows); */
+ * border, or if the line of sight may have turned far. Of the model's rows, before the remembered
+ * errors are taken off. */
 float goe_growth_find(const goe_observation_t *obs, const goe_rows_t *rows);
 
 #endif

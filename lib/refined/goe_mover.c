@@ -270,8 +270,10 @@ bool goe_mover_judge(goe_filter_t *filter, const goe_observation_t *obs, const f
         return false;
     }
     if (outgrown || goe_xz_dot(fit.velocity_m_s, fit.velocity_m_s) > goe_square(SPEED_MAX_M_S)) {
-        fit.velocity_m_s.x = fit.velocity_m_s.z = 0.0f;
-        fit.spread[0] = fit.spread[2] = goe_square(SPEED_SD_M_S);
+        fit.velocity_m_s.x = 0.0f;
+        fit.velocity_m_s.z = 0.0f;
+        fit.spread[0] = goe_square(SPEED_SD_M_S);
+        fit.spread[2] = goe_square(SPEED_SD_M_S);
     }
     follow(filter, &fit);
     return true;

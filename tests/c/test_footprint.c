@@ -316,8 +316,8 @@ static void a_start_matches_one_box(void) {
     CHECK_CLOSE(1.0e-6, 0.25 - 20.0 * 0.1 / 6.0, x[GOE_GROUND]);
 }
 
-/* GIVEN a box of which the image's border hides one side THEN the filter starts from the visible part, and the border may hide as much again,
- * or an assumed width; and the class gives the range by the height alone. No side at all, or none of a width, starts nothing. */
+/* GIVEN a box of which the image's border hides one side THEN the filter starts from the visible part. The border may hide as much again,
+ * or an assumed width; and the class gives the range by the height alone. No side at all, or a width of 0, starts nothing. */
 static void a_start_needs_one_side(void) {
     goe_triangle_t root;
     float x[GOE_STATES];

@@ -59,7 +59,7 @@ static double growth(void) {
     return (double)goe_growth_find(&sighting.sight, &sighting.rows);
 }
 
-/* GIVEN a box that is larger than predicted THEN its excess counts in sigmas of the detector's errors, of the range and of the rows: the height's,
+/* [(R34)] GIVEN a box that is larger than predicted THEN its excess counts in sigmas of the detector's errors, of the range and of the rows: the height's,
  * or the width's where a level side is missing; one that is smaller, or as predicted, is none. */
 static void an_excess_counts_in_sigmas(void) {
     static const double factors[] = {0.5, 0.9, 1.0, 1.1, 1.5, 3.0};
@@ -81,7 +81,7 @@ static void an_excess_counts_in_sigmas(void) {
     }
 }
 
-/* GIVEN an obstacle that is near, whose line of sight may have turned, or of which one end is missing THEN nothing counts. */
+/* [(R34)] GIVEN an obstacle that is near, whose line of sight may have turned, or of which one end is missing THEN nothing counts. */
 static void what_cannot_be_compared_is_no_growth(void) {
     see(0.72, 2.0, 2.0);
     TEST_ASSERT_TRUE(growth() > 9.0);
@@ -94,7 +94,7 @@ static void what_cannot_be_compared_is_no_growth(void) {
     CHECK_SAME(0.0f, (float)growth());
 }
 
-/* GIVEN a cut box THEN its error is that of a cut one: a size does not count that the border has made. */
+/* [(R34)] GIVEN a cut box THEN its error is that of a cut one: a size does not count that the border has made. */
 static void a_cut_box_is_no_growth(void) {
     see(0.9, 1.0, 2.0);
     TEST_ASSERT_TRUE(growth() > 9.0);
@@ -102,7 +102,7 @@ static void a_cut_box_is_no_growth(void) {
     TEST_ASSERT_TRUE(growth() < 1.0);
 }
 
-/* GIVEN left and right as points THEN the width counts, as that of a box. */
+/* [(R34)] GIVEN left and right as points THEN the width counts, as that of a box. */
 static void points_show_the_width(void) {
     goe_point_t *left = &sighting.sight.point[GOE_POINT_LEFT];
     goe_point_t *right = &sighting.sight.point[GOE_POINT_RIGHT];

@@ -72,7 +72,7 @@ static int unwarned(const char *what, double slowest_m_s, double fastest_m_s, in
     return late;
 }
 
-/* [GOE_WITH_TARGET_MOTION, (R34), (R35)] GIVEN a collision course with an obstacle that moves, so that it keeps its direction and grows THEN the
+/* [GOE_WITH_TARGET_MOTION, (R34), (R35)] GIVEN a collision course with an obstacle that moves: it keeps its direction, and grows THEN the
  * warning comes in time, and no "clear" takes it back. Without the growth, the obstacle seems to be far away: 13 of these 500 flights have
  * no warning in time, and 15 a "clear". */
 static void a_constant_direction_hides_no_motion(void) {

@@ -178,7 +178,7 @@ static void a_level_plane_touches_the_nearest_point(void) {
     CHECK_CLOSE(1.0e-5, 0.0, by[GOE_BEARING]);
 }
 
-/* [(R27a)] GIVEN a camera with a lens that looks 60 degrees down WHEN the foot is ahead of it and the head of a tall cylinder is not THEN the
+/* [(R27)] GIVEN a camera with a lens that looks 60 degrees down WHEN the foot is ahead of it and the head of a tall cylinder is not THEN the
  * top gives no row, and left and right say nothing about either height, as where the head is hidden; a low one gives all rows. */
 static void a_head_behind_the_camera_counts_as_hidden(void) {
     for (int tall = 0; tall < 2; tall++) {

@@ -166,17 +166,22 @@ def order_after(before: float, r: dict[str, float]) -> float:
 
 
 def test_orders_are_those_of_the_decision_rule(flown: dict[str, Any]) -> None:
-    seen = set()
+    """Nothing is clear while the obstacle is larger in the image than it can be at its range: a report does not say so, but a
+    static obstacle seldom is."""
+    seen: dict[float, int] = {}
+    doubted = 0
     for lines in flown["flights"]:
         before = float(NOTHING_KNOWN)
         for r in reports(lines):
-            expected = {order_after(before, r)}
-            if r["age_s"] > 2.0 and before != GO_AROUND:  # of detections without an answer
-                expected.add(float(UNCERTAIN))
-            assert r["order"] in expected
+            expected = order_after(before, r)
+            old = r["age_s"] > 2.0 and before != GO_AROUND  # of detections without an answer
+            outgrown = r["order"] == UNCERTAIN and expected in (CLEAR, IN_DOUBT) and before != GO_AROUND
+            assert r["order"] == expected or outgrown or (old and r["order"] == UNCERTAIN)
+            doubted += outgrown and not old
             before = r["order"]
-            seen.add(before)
-    assert seen == {NOTHING_KNOWN, CLEAR, IN_DOUBT, GO_AROUND, UNCERTAIN}
+            seen[before] = seen.get(before, 0) + 1
+    assert set(seen) == {NOTHING_KNOWN, CLEAR, IN_DOUBT, GO_AROUND, UNCERTAIN}
+    assert doubted < 0.1 * (seen[CLEAR] + seen[IN_DOUBT])
 
 
 def test_bad_command_lines(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:

@@ -171,11 +171,20 @@ class PrismFilter:
             return sight.height_m / foot[1] * (1 + NEAR_SIDE * size)
         return errors.prior_width_m / size
 
+    def _at_border(self, sight: Sight, left: float, right: float) -> tuple[float, float]:
+        """Raw coordinates of the visible part's ends, focal lengths."""
+        camera = sight.camera
+        border = (-camera.cx / camera.fx, (max(camera.width, 2 * camera.cx) - camera.cx) / camera.fx)
+        return (left if np.isfinite(left) else border[0], right if np.isfinite(right) else border[1])
+
     def start(self, in_t: Sight) -> bool:
-        """Starts with the first image that measures left and right; Z then points at the middle between them."""
+        """Starts with the first image that measures left or right; Z then points at the middle between them. The image's
+        border ends the visible part."""
         left, top, right, bottom = in_t.side
-        if not np.isfinite(left + right):
+        cut = not np.isfinite(left + right)
+        if not np.isfinite([left, right]).any():
             return False
+        left, right = self._at_border(in_t, left, right)
         x, y = 0.5 * (left + right), 0.5 * (top + bottom)
         ray = self._ray(in_t, x, y if np.isfinite(y) else 0.0)
         if ray is None:
@@ -186,6 +195,8 @@ class PrismFilter:
         head = self._ray(sight, x, top) if np.isfinite(top) else None
         foot = self._ray(sight, x, bottom) if np.isfinite(bottom) else None
         size = (right - left) / (1 + x * x)
+        if size <= 0:
+            return False
         range_m = self._first_range_m(sight, size, foot)
         if not RANGE_MIN_M <= range_m <= RANGE_MAX_M:
             return False
@@ -197,6 +208,8 @@ class PrismFilter:
             state[G] = foot[1] - sight.height_m / range_m
         self.state = state
         sd = self._prior_sd(size)
+        if cut:
+            sd[W] = max(0.5 * size, self.errors.prior_width_m / range_m)
         self._divide(np.diag(sd**2))
         self.memory = [Memory(0.0, np.zeros(COUNT), 0.0) for _ in range(4)]
         self.flown_m, self.last_m = 0.0, in_t.moved_m  # along the path since the start
