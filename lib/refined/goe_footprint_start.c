@@ -17,6 +17,7 @@
 #define GROUND_SIGMAS 3.0f   /* by which the foot must lie below the horizon to give the range */
 #define FOOT_SHARE 0.6f      /* of box_noise_rel of the width, in that sigma */
 #define NEAR_SIDE 0.5f       /* a box's foot is nearer than the middle by half the width */
+#define CUT_MAX 0.3f         /* width of a box that starts although one side is missing: larger, no border has cut it */
 #define RANGE_MIN_M 1.0f     /* of a first guess */
 #define FARTHER_MAX 5.0f     /* times that a class may place the obstacle farther than the settings */
 #define RANGE_MAX_M 1.0e6f   /* the same */
@@ -137,7 +138,7 @@ static bool see(const goe_observation_t *obs, sight_t *sight) {
         return see_points(obs, sight);
     }
     see_box(obs, sight);
-    return sight->size > 0.0f;
+    return sight->size > 0.0f && !(sight->cut && sight->size > CUT_MAX);
 }
 
 /* Angular height, 0 if not visible. */

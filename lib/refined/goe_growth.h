@@ -9,9 +9,8 @@
 
 #define GOE_GROWN_SIGMAS2 9.0f /* from here on it contradicts an obstacle that stands still */
 
-/* (R34): by how much width or height exceeds the predicted one, (in sigmas)^2. 0 if it does not, if the obstacle is cut by the image's
- * border, or if the line of sight may have turned far. Of the model's rows, before the remembered
- * errors are taken off. */
+/* (R34): by how much width or height exceeds the predicted one, (in sigmas)^2. 0 if it does not, or if the line of sight may have turned
+ * far. A cut box has the errors of one. Of the model's rows, before the remembered errors are taken off. */
 float goe_growth_find(const goe_observation_t *obs, const goe_rows_t *rows);
 
 #endif

@@ -317,7 +317,7 @@ static void a_start_matches_one_box(void) {
 }
 
 /* GIVEN a box of which the image's border hides one side THEN the filter starts from the visible part. The border may hide as much again,
- * or an assumed width; and the class gives the range by the height alone. No side at all, or a width of 0, starts nothing. */
+ * or an assumed width; and the class gives the range by the height alone. No side at all, a width of 0, or one of more than a quarter of the image starts nothing. */
 static void a_start_needs_one_side(void) {
     goe_triangle_t root;
     float x[GOE_STATES];
@@ -325,7 +325,7 @@ static void a_start_needs_one_side(void) {
     memset(&kind, 0, sizeof kind);
     any = check_random_start("border");
     for (int wide = 0; wide < 2; wide++) {
-        const double width = wide == 1 ? 0.6 : 0.02;
+        const double width = wide == 1 ? 0.28 : 0.02;
         see_box(0.1f, -0.1f, 0.1f + (float)width, 0.25f);
         sighting.sight.state = x;
         sighting.sight.kind = &kind;
@@ -349,6 +349,10 @@ static void a_start_needs_one_side(void) {
         sides.px[GOE_BOX_RIGHT] = sides.px[GOE_BOX_LEFT];
         TEST_ASSERT_FALSE(goe_footprint_start(&sighting.sight, x, &root, &by_kind));
     }
+    see_box(-0.2f, -0.1f, 0.2f, 0.25f);
+    TEST_ASSERT_TRUE(goe_footprint_start(&sighting.sight, x, &root, &by_kind));
+    sides.usable = GOE_SIDE_LEFT | GOE_SIDE_BOTTOM; /* too wide for a part */
+    TEST_ASSERT_FALSE(goe_footprint_start(&sighting.sight, x, &root, &by_kind));
 }
 
 /* GIVEN a box off the axis THEN the state's axes are turned towards its middle, at the middle of its height, or at the horizon where

@@ -76,6 +76,21 @@ static void a_bit_that_is_no_side_is_none(void) {
     TEST_ASSERT_EQUAL_HEX(GOE_SIDE_LEFT, view.sides.usable);
 }
 
+/* [camera.width_px, goe_box_t.sides] GIVEN a left or right side that is not measured, whatever it holds THEN the visible part ends at the
+ * image's border there; without the camera's width that lies as far from the principal point as the other. */
+static void a_missing_side_ends_at_the_border(void) {
+    camera.cx_px = 450.0f;
+    for (int known = 0; known < 2; known++) {
+        camera.width_px = known == 1 ? WIDTH_PX : 0.0f;
+        see(NAN, 300.0f, 600.0f, 500.0f, GOE_SIDES_ALL & ~(unsigned)GOE_SIDE_LEFT);
+        CHECK_SAME(0.0f, view.sides.px[GOE_BOX_LEFT]);
+        CHECK_SAME(600.0f, view.sides.px[GOE_BOX_RIGHT]);
+        see(400.0f, 300.0f, NAN, 500.0f, GOE_SIDES_ALL & ~(unsigned)GOE_SIDE_RIGHT);
+        CHECK_SAME(400.0f, view.sides.px[GOE_BOX_LEFT]);
+        CHECK_SAME(known == 1 ? WIDTH_PX : 900.0f, view.sides.px[GOE_BOX_RIGHT]);
+    }
+}
+
 /* [camera.border_rel, camera.height_px, camera.width_px]
  * GIVEN a side nearer to its border than the share of the width THEN it does not count, and no other side is the worse. */
 static void a_side_at_the_border_is_not_measured(void) {
@@ -204,6 +219,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_bit_that_is_no_side_is_none);
     RUN_TEST(a_side_at_the_border_is_not_measured);
+    RUN_TEST(a_missing_side_ends_at_the_border);
     RUN_TEST(a_border_that_is_not_known_is_none);
     RUN_TEST(a_box_is_cut_by_left_and_right_alone);
     RUN_TEST(sides_out_of_order_do_not_count);

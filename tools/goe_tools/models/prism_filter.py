@@ -75,6 +75,7 @@ GROUND_SIGMAS = 3.0  # least distance of the foot below the horizon for a range 
 FOOT_SHARE = 0.6  # of box_noise_rel of the width, part of that sigma
 NEAR_SIDE = 0.5  # of the width: the foot is nearer than the middle
 RANGE_MIN_M, RANGE_MAX_M = 1.0, 1e6
+CUT_MAX = 0.3  # width of a box that starts although one side is missing
 NO_ALTIMETER_M = 50.0  # from this sigma of the height on the first box determines it
 HEADING_ARM = 0.08  # rad/(m/s): a yaw bias looks like a velocity bias
 GROUND_MIN = 1e-6  # units of Z0
@@ -195,7 +196,7 @@ class PrismFilter:
         head = self._ray(sight, x, top) if np.isfinite(top) else None
         foot = self._ray(sight, x, bottom) if np.isfinite(bottom) else None
         size = (right - left) / (1 + x * x)
-        if size <= 0:
+        if size <= 0 or (cut and size > CUT_MAX):
             return False
         range_m = self._first_range_m(sight, size, foot)
         if not RANGE_MIN_M <= range_m <= RANGE_MAX_M:
