@@ -166,8 +166,8 @@ def order_after(before: float, r: dict[str, float]) -> float:
 
 
 def test_orders_are_those_of_the_decision_rule(flown: dict[str, Any]) -> None:
-    """Nothing is clear while the obstacle is larger in the image than it can be at its range: a report does not say so, but a
-    static obstacle seldom is."""
+    """Nothing is clear while the obstacle is larger in the image than it can be at its range. A report does not state
+    this, but an obstacle that stands still seldom is so large."""
     seen: dict[float, int] = {}
     doubted = 0
     for lines in flown["flights"]:

@@ -172,20 +172,16 @@ class PrismFilter:
             return sight.height_m / foot[1] * (1 + NEAR_SIDE * size)
         return errors.prior_width_m / size
 
-    def _at_border(self, sight: Sight, left: float, right: float) -> tuple[float, float]:
-        """Raw coordinates of the visible part's ends, focal lengths."""
-        camera = sight.camera
-        border = (-camera.cx / camera.fx, (max(camera.width, 2 * camera.cx) - camera.cx) / camera.fx)
-        return (left if np.isfinite(left) else border[0], right if np.isfinite(right) else border[1])
-
     def start(self, in_t: Sight) -> bool:
-        """Starts with the first image that measures left or right; Z then points at the middle between them. The image's
-        border ends the visible part."""
+        """Starts with the first image that measures left or right; Z then points at the middle between them. The border
+        ends the visible part."""
         left, top, right, bottom = in_t.side
         cut = not np.isfinite(left + right)
         if not np.isfinite([left, right]).any():
             return False
-        left, right = self._at_border(in_t, left, right)
+        fx, cx = in_t.camera.fx, in_t.camera.cx
+        left = left if np.isfinite(left) else -cx / fx
+        right = right if np.isfinite(right) else max(in_t.camera.width - cx, cx) / fx
         x, y = 0.5 * (left + right), 0.5 * (top + bottom)
         ray = self._ray(in_t, x, y if np.isfinite(y) else 0.0)
         if ray is None:
