@@ -4,7 +4,7 @@
 
 #include "refined/goe_observation.h"
 
-/* Turns the filter's axes so that Z points at the obstacle. False if neither a box's left and right nor two ends are measured. */
+/* Turns the filter's axes so that Z points at the obstacle. False if neither a side of a box, left or right, nor two ends are measured. */
 bool goe_footprint_face(goe_filter_t *filter, const goe_view_t *view);
 
 /* First guess: state and root from one image, in axes that face the obstacle. False if it is out of range. by_kind: the range is that

@@ -179,8 +179,8 @@ static bool is_moving(goe_filter_t *filter, const fit_t *fit, bool outgrown, flo
     return goe_count_image(&m->images) >= MOVES_IMAGES && m->unlike_s >= MOVES_S;
 }
 
-/* (R35): one over the sigma of a velocity's component: five times as uncertain as the images have it, or as any velocity of what moves on
- * the ground. */
+/* (R35): one over the sigma of a component of the velocity: the smaller of five sigmas by the images and of SPEED_SD_M_S, which covers
+ * what moves on the ground. */
 static float root_of(float variance) { return goe_larger(1.0f / sqrtf(SPREAD_GROWN * variance), 1.0f / SPEED_SD_M_S); }
 
 /* From the velocity that the images showed; as it was linearized at a wrong place, with more than its uncertainty; the latency is open

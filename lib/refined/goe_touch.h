@@ -60,7 +60,7 @@ float goe_touch_variance(const goe_observation_t *obs, size_t side, float size);
 void goe_touch_open(const goe_observation_t *obs, float height_m, goe_solid_t *solid);
 
 /* Adds the row of a side, (R27), and returns its derivatives by the states as goe_rows_add() does: those by GOE_GROUND and GOE_TOP
- * are set, the others are the model's. Null if the side is not visible, or the touching point is not ahead. */
+ * are set, the others are the model's. Null if the side is not visible: neither end of it is ahead, or, of a level side, not its own. */
 /*@ requires goe_observation_is_open(obs) && goe_solid_is_closed(solid) && goe_rows_hold(rows);
     requires side < GOE_BOX_SIDES && rows->count < GOE_ROWS_MAX && \valid(touch) && \valid(gradient); */
 float *goe_touch_add(goe_rows_t *rows, const goe_observation_t *obs, const goe_solid_t *solid, size_t side,
