@@ -59,7 +59,7 @@ typedef struct {
     float attitude_walk_sd_deg;  /* random walk of the attitude error; 0 to 30 deg/s^0.5; default 0 */
     float height_bias_sd_m;      /* constant error of pose.height_m; 1e-3 to 1e3 m; default 0.5 */
     float position_walk_sd_m;    /* random walk of the aircraft's position; 0 to 100 m/s^0.5; default 0.05 */
-    float position_white_sd_m;   /* error of each position axis, new in each image; used with boxes; 0 to 100 m; default 0 */
+    float position_white_sd_m;   /* error of each position axis, new in each image; 0 to 100 m; default 0 */
     float height_white_sd_m;     /* error of pose.height_m, new in each image; 0 to 1e3 m; default 0.5 */
     float terrain_slope_sd;      /* slope of the ground between aircraft and obstacle at first sight; 0 to 1; default 0.01 */
     float terrain_height_sd_m;   /* height error of the obstacle's ground; 0 to 1e3 m; default 2 */

@@ -46,7 +46,7 @@
     X(navigation.attitude_walk_sd_deg, REAL, "deg/s^0.5", 0.0f, 30.0f, 0.0f, "random walk of the attitude error") \
     X(navigation.height_bias_sd_m, REAL, "m", 1.0e-3f, 1.0e3f, 0.5f, "constant error of pose.height_m") \
     X(navigation.position_walk_sd_m, REAL, "m/s^0.5", 0.0f, 100.0f, 0.05f, "random walk of the aircraft's position") \
-    X(navigation.position_white_sd_m, REAL, "m", 0.0f, 100.0f, 0.0f, "error of each position axis, new in each image; used with boxes") \
+    X(navigation.position_white_sd_m, REAL, "m", 0.0f, 100.0f, 0.0f, "error of each position axis, new in each image") \
     X(navigation.height_white_sd_m, REAL, "m", 0.0f, 1.0e3f, 0.5f, "error of pose.height_m, new in each image") \
     X(navigation.terrain_slope_sd, REAL, "", 0.0f, 1.0f, 0.01f, "slope of the ground between aircraft and obstacle at first sight") \
     X(navigation.terrain_height_sd_m, REAL, "m", 0.0f, 1.0e3f, 2.0f, "height error of the obstacle's ground") \

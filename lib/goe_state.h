@@ -131,12 +131,11 @@ typedef struct {
 #endif
 } goe_axes_t;
 
-/* refined/goe_box_start.c: the box that the images before saw; goe_model.c: its last two. */
+/* refined/goe_box_start.c: the box that the images before saw; goe_model.c: its last one. */
 typedef struct {
     float extent[2];     /* lateral ones of two faces, focal lengths; or the orientation of one, rad, and nothing */
     goe_flag_t both;     /* of two faces */
     uint8_t agreeing;    /* images in a row */
-    goe_flag_t stand_in; /* footprint: base corners were visible, so it substitutes for a box */
     uint8_t near_images; /* in which an undetected near corner still counts as missed */
 } goe_candidate_t;
 

@@ -6,7 +6,6 @@
 
 #include "maths/goe_exp.h"
 #include "maths/goe_scalar.h"
-#include "refined/goe_shift.h"
 #include "refined/goe_side_memory.h"
 #include "refined/goe_touch.h"
 
@@ -18,11 +17,10 @@
 #define FORCED_SIGMAS2 18.0f /* squared sigmas of the shear from which on it is no disc */
 #define SIDE_SHAPE                                                                                                     \
     0.05f /* one sigma of what corners move the points left and right by, of the width, if it may be no disc */
-#define SHAPE_TURN 0.3f     /* sine of the turn of the line of sight in which this fades to 1/e */
-#define RIM_SHAPE 0.1f      /* ... of how far the top lies off the rim's nearest point, along Z; of the width */
-#define STAND_IN_SHAPE 0.1f /* shape_error_rel that is added while it substitutes for a box */
-#define STAND_IN_PLACE 0.1f /* of the width, by which the box's middle may lie off */
-#define BASE_NOISE 2.0f     /* variance of a base corner's y as range of the middle, over its own */
+#define SHAPE_TURN 0.3f   /* sine of the turn of the line of sight in which this fades to 1/e */
+#define RIM_SHAPE 0.1f    /* ... of how far the top lies off the rim's nearest point, along Z; of the width */
+#define CORNER_SHAPE 0.1f /* shape_error_rel that is added where base corners show that it is no ellipse */
+#define BASE_NOISE 2.0f   /* variance of a base corner's y as range of the middle, over its own */
 
 /* Memories: of a box's sides, by goe_box_side_t, and of left and right as points. */
 enum { SHAPE_LEFT = GOE_BOX_SIDES, SHAPE_RIGHT, MEMORIES };
@@ -88,7 +86,7 @@ static void add_side(const goe_observation_t *obs, const goe_solid_t *o, size_t 
     }
     set_place(obs, o, &t.contact, &g, by);
     by[GOE_INVERSE_RANGE] += g.y * obs->height_m;
-    goe_shift_note(rows, &g, -obs->position_sd * obs->state[GOE_INVERSE_RANGE]);
+    *goe_rows_last_variance(rows) += 2.0f * goe_square(obs->shift * g.z); /* opposite sides share it */
     remember(rows, side);
 }
 
@@ -167,8 +165,7 @@ static void add_points(const goe_observation_t *obs, const goe_solid_t *o, bool 
     goe_feature_t right;
     const bool wide = goe_observation_ends(obs->point, &left, &right);
     const float width = wide ? obs->point[right].x - obs->point[left].x : 2.0f * o->ellipse.half / o->center.z;
-    const float shape_rel =
-        obs->settings->detector.shape_error_rel + (obs->base || obs->stand_in ? STAND_IN_SHAPE : 0.0f);
+    const float shape_rel = obs->settings->detector.shape_error_rel + (obs->base ? CORNER_SHAPE : 0.0f);
     const float more = goe_square(shape_rel * width) + goe_square(obs->outline_share * width);
     if (!sides) {
         add_edge(obs, o, left, -1.0f, more, rows);
@@ -191,7 +188,6 @@ void goe_footprint_rows(const goe_observation_t *obs, goe_rows_t *rows) {
     for (size_t side = 0; side < GOE_BOX_SIDES; side++) {
         add_side(obs, &solid, side, rows);
     }
-    rows->shifts = sides && obs->position_sd > 0.0f;
     add_points(obs, &solid, sides, rows);
 }
 
@@ -225,10 +221,8 @@ void goe_footprint_learn(goe_filter_t *filter, goe_rows_t *rows) {
         const float *row = rows->matrix->row[i];
         const float weight = rows->weight[i];
         const float attitude = white * white * (row[0] * row[0] + row[1] * row[1] + row[2] * row[2]);
-        goe_side_memory_learn(&filter->side[rows->side[i]], row, weight,
-                              attitude + weight * weight * goe_shift_shared(rows, i, i));
+        goe_side_memory_learn(&filter->side[rows->side[i]], row, weight, attitude);
     }
-    goe_shift_whiten(rows);
 }
 
 void goe_footprint_follow(goe_filter_t *filter, const float change[GOE_UNKNOWNS]) {
@@ -255,10 +249,6 @@ void goe_footprint_shape(const goe_filter_t *filter, goe_shape_t *shape) {
     width->value = 2.0f * x[GOE_HALF] * scale_m;
     width->by[GOE_INVERSE_RANGE] = -scale_m * width->value;
     width->by[GOE_HALF] = 2.0f * scale_m;
-    if (filter->candidate.stand_in) {
-        shape->place_m2 = goe_square(STAND_IN_PLACE * width->value);
-        shape->roof_m2 = shape->place_m2;
-    }
 }
 
 /* ------------------------------------------------------------------------------------------------------ depth -- */

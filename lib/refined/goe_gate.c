@@ -8,7 +8,6 @@
 
 #include "maths/goe_angle.h"
 #include "maths/goe_scalar.h"
-#include "refined/goe_shift.h"
 
 #if GOE_WITH_FILTER
 
@@ -81,9 +80,6 @@ static float innovation(const known_t *known, const goe_rows_t *rows, size_t row
         weight[c + 2] = a[GOE_STATE_COLUMN + c + 2] - other * b[GOE_STATE_COLUMN + c + 2];
         weight[c + 3] = a[GOE_STATE_COLUMN + c + 3] - other * b[GOE_STATE_COLUMN + c + 3];
         weight[c + 4] = a[GOE_STATE_COLUMN + c + 4] - other * b[GOE_STATE_COLUMN + c + 4];
-    }
-    if (rows->shifts) {
-        attitude += goe_shift_variance(rows, row, middle, other) / (white * white);
     }
     const float residual = a[GOE_RESIDUAL] - other * b[GOE_RESIDUAL];
     const float own = rows->variance[row] + other * rows->variance[middle];

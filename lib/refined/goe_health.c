@@ -95,15 +95,11 @@ static bool is_captured(goe_filter_t *filter, goe_verdict_t verdict) {
     return captured;
 }
 
-/* The top alone hangs on nothing else. What its side's error was found to be hangs on the top before. */
+/* A box's detector may find now this corner of the roof, now that. The top alone hangs on nothing else. */
 static void free_top(goe_filter_t *filter) {
     const float *x = filter->state;
-    const float extent = goe_filter_traits(filter)->is_ellipse
-                             ? 2.0f * x[GOE_HALF] /* its width */
-                             : goe_larger(x[GOE_FRONT_X], goe_absolute(x[GOE_DEPTH_DIFFERENCE]));
-    const float size = goe_larger(goe_absolute(x[GOE_TOP]), extent);
-    goe_filter_inflate(filter, GOE_TOP, TOP_FREED * size);
-    memset(&filter->side[GOE_BOX_TOP], 0, sizeof filter->side[GOE_BOX_TOP]);
+    const float extent = goe_larger(x[GOE_FRONT_X], goe_absolute(x[GOE_DEPTH_DIFFERENCE]));
+    goe_filter_inflate(filter, GOE_TOP, TOP_FREED * goe_larger(goe_absolute(x[GOE_TOP]), extent));
     filter->health.refused[GOE_POINT_TOP] = 0;
 }
 
@@ -133,7 +129,7 @@ static void count_restart(goe_health_t *health) {
 bool goe_health_judge(goe_filter_t *filter, goe_model_t asked, goe_verdict_t verdict) {
     goe_health_t *health = &filter->health;
     const bool captured = is_captured(filter, verdict);
-    if (health->refused[GOE_POINT_TOP] >= REFUSED_TOPS) {
+    if (goe_filter_is_box(filter) && health->refused[GOE_POINT_TOP] >= REFUSED_TOPS) {
         free_top(filter);
     }
     if (!captured && !(health->recent_nis > RECENT_MAX) && is_sane(filter)) {

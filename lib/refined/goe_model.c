@@ -30,7 +30,6 @@ bool goe_model_start(goe_filter_t *filter, const goe_observation_t *obs) {
     goe_kind_start(filter, obs, by_kind);
     memset(filter->walk_s, 0, sizeof filter->walk_s);
     filter->due_s = 0.0f;
-    filter->candidate.stand_in = false;
     return true;
 }
 
@@ -48,7 +47,6 @@ bool goe_model_change(goe_filter_t *filter, const goe_observation_t *obs) {
     if (goe_filter_traits(filter)->is_ellipse && obs->sides->usable != 0) {
         goe_ground_meet_box(filter);
     }
-    filter->candidate.stand_in = filter->candidate.stand_in || (obs->base && !obs->is_round);
     if (goe_filter_is_box(filter)) {
         return goe_box_change(filter, obs);
     }
@@ -61,7 +59,6 @@ void goe_model_rows(const goe_filter_t *filter, goe_observation_t *obs, goe_rows
         obs->two_faces = !goe_filter_traits(filter)->one_face;
         goe_box_rows(obs, rows);
     } else {
-        obs->stand_in = filter->candidate.stand_in;
         goe_footprint_rows(obs, rows);
     }
 }

@@ -154,12 +154,11 @@ unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *sett
     obs->is_round = goe_filter_has_started(filter) ? filter->kind.is_round : starts_round(settings->model, obs->kind);
     obs->height_m = filter->datum.height_m;
     obs->fade = 0.0f;
-    obs->position_sd = 0.0f;
+    obs->shift = 0.0f;
     take_noise(obs, filter, &view->image->noise);
     obs->outline_share = settings->detector.point_noise_rel;
     obs->depth_variance = 0.0f;
     obs->two_faces = false;
-    obs->stand_in = false;
     note_pace(obs, filter, view->motion);
     return put_in_order(obs);
 }
@@ -266,7 +265,6 @@ void goe_observation_prior(const goe_observation_t *obs, const float state[GOE_S
 
 void goe_rows_clear(goe_rows_t *rows, goe_matrix_t *matrix) {
     rows->matrix = matrix;
-    rows->shifts = false;
     rows->remembered = 0;
     rows->count = 0;
 }

@@ -17,23 +17,22 @@ typedef struct {
     float height_m;    /* camera above ground: by the changes of down, see goe_datum_t */
     const goe_sides_t *sides;
     const goe_kind_t *kind;
-    float height_sd_m;       /* one sigma of its error above the obstacle's ground, without its slope */
-    float since_s;           /* the image before */
-    float fade;              /* what the error of a box's side keeps since the image used before */
-    float white_rad;         /* one sigma of the image's own attitude error */
+    float height_sd_m; /* one sigma of its error above the obstacle's ground, without its slope */
+    float since_s;     /* the image before */
+    float fade;        /* what the error of a box's side keeps since the image used before */
+    float white_rad;   /* one sigma of the image's own attitude error, and of its position's, which looks like it */
     float point_px, side_px; /* ... of a point, and of a box's side */
     float outline_share;     /* one sigma of left, right and top beyond the pixel noise, of their width */
-    float position_sd;       /* ... of the image's own position error, m, with what the uncertain range adds */
-    float range_variance;    /* of GOE_INVERSE_RANGE */
-    float depth_variance;    /* box: of GOE_DEPTH_DIFFERENCE */
-    float grown2;            /* (excess of width or height over the predicted one, in sigmas)^2 */
-    bool two_faces;          /* box: both were visible, its length is estimated */
-    bool stand_in;           /* footprint: it substitutes for a box */
-    bool is_round;           /* by its class, or by the settings */
-    bool base;               /* both outer base corners are visible */
-    bool edge;               /* an edge of the base is visible */
-    uint8_t number;          /* of the camera */
-    uint8_t passed;          /* first guesses that were too near */
+    float shift;          /* ... of the image's own position error, units of Z0, with what the uncertain range adds */
+    float range_variance; /* of GOE_INVERSE_RANGE */
+    float depth_variance; /* box: of GOE_DEPTH_DIFFERENCE */
+    float grown2;         /* (excess of width or height over the predicted one, in sigmas)^2 */
+    bool two_faces;       /* box: both were visible, its length is estimated */
+    bool is_round;        /* by its class, or by the settings */
+    bool base;            /* both outer base corners are visible */
+    bool edge;            /* an edge of the base is visible */
+    uint8_t number;       /* of the camera */
+    uint8_t passed;       /* first guesses that were too near */
 #if GOE_AUGMENTED
     float turn_cos, turn_sin;   /* of the state's axes from T */
     float elapsed_s;            /* since the filter's start */
@@ -62,10 +61,8 @@ typedef struct {
     uint8_t series[GOE_ROWS_MAX]; /* of residuals, see goe_scatter_t */
     uint8_t side[GOE_ROWS_MAX];   /* of an upright box: goe_box_side_t */
     size_t count;
-    size_t remembered;             /* the first of them are those of a box's sides, whose errors are remembered */
-    float shift[GOE_BOX_SIDES][3]; /* of these: by unit errors of the image's own position, which all rows share */
-    float white_rad;               /* one sigma of the nuisances */
-    bool shifts;                   /* there are such errors */
+    size_t remembered; /* the first of them are those of a box's sides, whose errors are remembered */
+    float white_rad;   /* one sigma of the nuisances */
 } goe_rows_t;
 
 /*@ predicate goe_rows_hold(goe_rows_t *rows) =

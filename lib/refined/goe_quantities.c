@@ -216,7 +216,7 @@ static bool is_position(const goe_quantities_t *q, goe_xz_t from, float share) {
 
 static unsigned known_extents(const goe_filter_t *filter, const goe_quantities_t *q) {
     unsigned known = 0;
-    if ((q->box || !filter->candidate.stand_in) && is_extent(q, GOE_WIDTH, 0.0f)) {
+    if (is_extent(q, GOE_WIDTH, 0.0f)) {
         known |= GOE_HAS_WIDTH;
     }
     if (q->box && !goe_filter_traits(filter)->one_face && is_extent(q, GOE_LENGTH, 0.0f)) {
@@ -382,12 +382,9 @@ static void set_velocity(const goe_filter_t *filter, const goe_settings_t *setti
 #endif
 }
 
-/* (R37): the highest point of a roof from above is a far corner, and no image shows how far while one face is visible, or a
- * footprint substitutes for the box. */
+/* (R37): the highest point of a roof from above is a far corner, and no image shows how far while one face is visible. */
 static void doubt_far_roof(const goe_filter_t *filter, bool highest, goe_shape_t *shape) {
-    const bool is_substitute = goe_filter_traits(filter)->is_ellipse && filter->candidate.stand_in && highest;
-    const bool is_face = goe_filter_traits(filter)->one_face && (filter->datum.boxes || highest);
-    if (is_substitute || is_face) {
+    if (goe_filter_traits(filter)->one_face && (filter->datum.boxes || highest)) {
         const float size_m = goe_larger(shape->quantity[GOE_WIDTH].value, shape->quantity[GOE_LENGTH].value);
         shape->roof_m2 = goe_square(FAR_ROOF * size_m);
     }

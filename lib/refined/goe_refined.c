@@ -128,7 +128,9 @@ static void note_time(goe_filter_t *filter, goe_observation_t *obs) {
     if (obs->sides->usable != 0) {
         obs->outline_share = outline_share(detector, obs->fade);
     }
-    obs->position_sd = obs->settings->navigation.position_white_sd_m * sqrtf(1.0f + relative2);
+    obs->shift =
+        obs->settings->navigation.position_white_sd_m * obs->state[GOE_INVERSE_RANGE] * sqrtf(1.0f + relative2);
+    obs->white_rad = sqrtf(goe_square(obs->white_rad) + goe_square(obs->shift / goe_observation_ahead(obs)));
 }
 
 /* False if the image does not start the filter. */

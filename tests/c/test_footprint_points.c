@@ -228,14 +228,12 @@ static void each_feature_alone_gives_its_row(void) {
     }
 }
 
-/* GIVEN a noise model of the shape or of the size THEN it is added to the rows' variance as a share of the width; so is a tenth where the
- * footprint substitutes for a box. */
+/* GIVEN a noise model of the shape or of the size THEN it is added to the rows' variance as a share of the width. */
 static void shape_and_size_noise_are_shares_of_the_width(void) {
     static const struct {
         float shape, size;
-        bool stand_in;
         double added; /* squared share */
-    } cases[] = {{0.0f, 0.0f, false, 0.0}, {0.12f, 0.05f, false, 0.0169}, {0.02f, 0.05f, true, 0.0169}};
+    } cases[] = {{0.0f, 0.0f, 0.0}, {0.12f, 0.05f, 0.0169}};
     float plain[3] = {0.0f};
     any = check_random_start("variance");
     any_footprint();
@@ -247,7 +245,6 @@ static void shape_and_size_noise_are_shares_of_the_width(void) {
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         sighting.settings.detector.shape_error_rel = cases[i].shape;
         sighting.sight.outline_share = cases[i].size;
-        sighting.sight.stand_in = cases[i].stand_in;
         make_rows();
         for (size_t row = 0; row < 3; row++) {
             plain[row] = i == 0 ? sighting.rows.variance[row] : plain[row];
@@ -279,25 +276,22 @@ static void a_base_corner_gives_the_range_within_a_width(void) {
 }
 
 /* [goe_image_t.box]
- * GIVEN a box THEN its sides alone are remembered and share the error of the own position; left, right and top as points are not read,
+ * GIVEN a box THEN its sides alone are remembered; left, right and top as points are not read,
  * and the base corners' rows are those without a box. */
 static void a_box_replaces_the_points_but_base_corners(void) {
     any = check_random_start("box and corners");
     any_footprint();
     measure(GOE_POINT_BASE_LEFT);
     measure(GOE_POINT_BASE_RIGHT);
-    sighting.sight.position_sd = 0.3f;
     make_rows();
     const goe_rows_t corners = sighting.rows;
     const goe_matrix_t matrix = sighting.matrix;
-    TEST_ASSERT_FALSE(corners.shifts);
     sides.usable = GOE_SIDES_ALL;
     sides.px[GOE_BOX_LEFT] = sides.px[GOE_BOX_TOP] = -20.0f;
     sides.px[GOE_BOX_RIGHT] = sides.px[GOE_BOX_BOTTOM] = 20.0f;
     sighting.sight.sides = &sides;
     sighting.sight.point[GOE_POINT_TOP].usable = true;
     make_rows();
-    TEST_ASSERT_TRUE(sighting.rows.shifts);
     TEST_ASSERT_EQUAL_size_t(GOE_BOX_SIDES, sighting.rows.remembered);
     TEST_ASSERT_EQUAL_size_t(4, corners.count);
     TEST_ASSERT_EQUAL_size_t(GOE_BOX_SIDES + 2, sighting.rows.count); /* the sides show the edges over the corners */

@@ -223,64 +223,6 @@ static void an_unsure_state_opens_the_gate(void) {
     }
 }
 
-/* GIVEN an own position that may be off by many pixels in a row THEN that row may be, too; WHEN all rows share it THEN it is in none
- * of their differences, and an outlier among them is found. */
-static void the_own_position_s_error_opens_the_gate(void) {
-    for (int shared = 0; shared < 2; shared++) {
-        for (int reported = 0; reported < 2; reported++) {
-            setUp();
-            memset(rows.shift, 0, sizeof rows.shift);
-            rows.shifts = reported != 0;
-            rows.count = rows.remembered = GOE_BOX_SIDES; /* so many of a box: along x, x, y, x */
-            for (size_t i = 0; i < rows.count; i++) {
-                rows.shift[i][1] = shared || i == 0 ? 0.01f : 0.0f;
-            }
-            *residual(0) = (float)(15.0 / FOCAL_PX);
-            apply();
-            TEST_ASSERT_EQUAL_HEX32(reported && !shared ? 0u : 1u << rows.feature[0], verdict.refused);
-        }
-    }
-}
-
-/* Normalized residual of the left point, 3 px off, as Huber's weight gives it, if each row has an error of the image's own position
- * in it, along one axis; the attitude's own is white_deg. */
-static double sigmas_of_left(double white_deg, size_t axis, double own_sigmas, double others_sigmas) {
-    setUp();
-    rows.white_rad = (float)(white_deg * RAD_PER_DEG);
-    rows.shifts = own_sigmas > 0.0 || others_sigmas > 0.0;
-    memset(rows.shift, 0, sizeof rows.shift);
-    rows.count = rows.remembered = 4; /* of a box: left, right, top, foot */
-    memset(&matrix, 0, sizeof matrix);
-    for (size_t i = 0; i < rows.count; i++) {
-        rows.feature[i] = (uint8_t)i;
-        rows.variance[i] = (float)(SIGMA * SIGMA);
-        rows.axis[i] = i == 0 || i == 1 ? GOE_ALONG_X : GOE_ALONG_Y;
-        matrix.row[i][i == 0 || i == 1 ? 0 : 1] = 1.0f;
-        rows.shift[i][axis] = (float)(SIGMA * (i == 0 ? own_sigmas : others_sigmas));
-    }
-    settings.filter.gate_sigma = 100.0f;
-    settings.filter.huber_sigma = 0.5f;
-    *residual(0) = (float)(6.0 * SIGMA);
-    const goe_matrix_t before = matrix;
-    apply();
-    const double weight = weight_of(0, &before) * SIGMA;
-    return 0.5 / (weight * weight);
-}
-
-/* GIVEN sides of a box and an image with an own position error THEN it widens the possible error of a side, however well the attitude is
- * known; an equal motion of both is not between them. */
-static void an_own_position_error_opens_the_gate(void) {
-    for (size_t n = 0; n < 6; n++) {
-        const double white_deg = n % 2 == 0 ? 1.0e-4 : 0.03;
-        const size_t axis = n / 2;
-        CHECK_CLOSE(0.02, 6.0 / sqrt(2.0),
-                    sigmas_of_left(white_deg, axis, 0.0, 0.0)); /* the difference of two points */
-        CHECK_CLOSE(0.02, 6.0 / sqrt(2.0 + 9.0), sigmas_of_left(white_deg, axis, 3.0, 0.0));
-        CHECK_CLOSE(0.02, 6.0 / sqrt(2.0), sigmas_of_left(white_deg, axis, 3.0, 3.0));
-        CHECK_CLOSE(0.02, 6.0 / sqrt(2.0 + 4.0), sigmas_of_left(white_deg, axis, 5.0, 3.0));
-    }
-}
-
 /* GIVEN a single row along an axis THEN it is judged, too, by itself. */
 static void a_row_alone_is_judged(void) {
     rows.count = 1;
@@ -342,8 +284,6 @@ int main(void) {
     RUN_TEST(the_limits_are_settings);
     RUN_TEST(correlated_errors_count_less);
     RUN_TEST(an_unsure_state_opens_the_gate);
-    RUN_TEST(the_own_position_s_error_opens_the_gate);
-    RUN_TEST(an_own_position_error_opens_the_gate);
     RUN_TEST(a_row_alone_is_judged);
     RUN_TEST(of_a_track_adrift_nothing_is_refused);
     RUN_TEST(a_drift_of_the_attitude_opens_the_gate);

@@ -55,7 +55,6 @@ static void make_any(goe_phase_t phase) {
     filter.phase = (uint8_t)phase;
     filter.phase_images = 100;
     filter.known = 0xFFu;
-    filter.candidate.stand_in = check_random_bits(&any) % 2u != 0u;
     settings.filter.top_is_highest = check_random_bits(&any) % 2u != 0u;
     filter.axes.turn_cos = (float)cos(turn);
     filter.axes.turn_sin = (float)sin(turn);
@@ -187,24 +186,6 @@ static double below2(void) {
     return below / (range + below);
 }
 
-/* On purpose: the middle of a footprint that substitutes for a box may differ from the box's, and so does the roof's corner below the top,
- * which is the far one if it is the highest. */
-static double beyond_stand_in(int value) {
-    goe_quantities_t q;
-    goe_quantities_find(&filter, &settings, &motion, &q);
-    const double width = (double)q.value[GOE_WIDTH];
-    switch (value) {
-        case GOE_ORIENTATION:
-        case GOE_WIDTH:
-        case GOE_LENGTH:
-            return 0.0;
-        case GOE_HEIGHT:
-            return squared((settings.filter.top_is_highest ? 2.0 : 0.1) * width) * below2();
-        default:
-            return squared(0.1 * width);
-    }
-}
-
 /* (R37): the ends of one face may be those of two. */
 static double beyond_face(int value) {
     goe_quantities_t q;
@@ -233,7 +214,7 @@ static double beyond_ellipse(int value) {
 
 static double beyond_of(int value) {
     if (filter.phase == GOE_PHASE_FOOTPRINT) {
-        return beyond_ellipse(value) + (filter.candidate.stand_in ? beyond_stand_in(value) : 0.0);
+        return beyond_ellipse(value);
     }
     return filter.phase == GOE_PHASE_BOX_FACE ? beyond_face(value) : 0.0;
 }
@@ -374,7 +355,6 @@ static void a_hazard_meets_the_near_side_of_a_footprint(void) {
         double circle[VALUES];
         goe_aspect_t aspect;
         make_any(GOE_PHASE_FOOTPRINT);
-        filter.candidate.stand_in = false;
         be_uncertain(CERTAIN);
         goe_ellipse_face_camera(&filter, goe_filter_camera(&filter, &motion), &aspect);
         towards = aspect.towards;
@@ -503,7 +483,6 @@ static void errors_of_own_motion_are_on_the_diagonal(void) {
         float now[GOE_QUANTITIES][GOE_QUANTITIES];
         float ahead[GOE_QUANTITIES][GOE_QUANTITIES];
         make_any(phases[n % 3]);
-        filter.candidate.stand_in = false;
         be_uncertain(CERTAIN);
         settings.navigation.velocity_bias_sd_m_s = 0.2f;
         settings.navigation.position_walk_sd_m = 0.1f;
@@ -530,7 +509,6 @@ static void the_altimeters_error_is_not_between_camera_and_top(void) {
     any = check_random_start("altimeter");
     for (int n = 0; n < 3; n++) {
         make_any(phases[n]);
-        filter.candidate.stand_in = false;
         be_uncertain(CERTAIN);
         inverse_set(&filter.root, GOE_GROUND, GOE_GROUND, 0.5 * (double)filter.state[GOE_INVERSE_RANGE]);
         goe_quantities_covariance(&filter, &settings, &motion, false, 0.0f, now);
@@ -539,7 +517,6 @@ static void the_altimeters_error_is_not_between_camera_and_top(void) {
         CHECK_CLOSE(1.0e-3, 0.0, (double)ahead[GOE_HEIGHT][GOE_HEIGHT] - beyond_of(GOE_HEIGHT));
         /* and the range moves the height over the altimeter's zero, which is the height less the ground's offset */
         make_any(phases[n]);
-        filter.candidate.stand_in = false;
         be_uncertain(CERTAIN);
         const double q = (double)filter.state[GOE_INVERSE_RANGE];
         inverse_set(&filter.root, GOE_INVERSE_RANGE, GOE_INVERSE_RANGE, 0.01 * q);

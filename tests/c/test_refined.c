@@ -949,26 +949,6 @@ static void a_forced_line_without_corners_informs_nothing(void) {
     }
 }
 
-/* GIVEN one face of a box, without a reported orientation yet WHEN an ellipse substitutes for it THEN its width is not
- * reported. */
-static void a_stand_in_gives_no_width(void) {
-    bool stood_in = false;
-    scene.path = SCENE_STRAIGHT;
-    scene.x0_m = 0.0;
-    scene.z0_m = 180.0;
-    scene.alpha_deg = 0.0;
-    settings.detector.point_noise_px = 2.0f;
-    start();
-    for (int k = 0; k < IMAGES; k++) {
-        fly(k, k + 1);
-        if (estimate.model == GOE_MODEL_PRISM) {
-            TEST_ASSERT_EQUAL_HEX32(0u, estimate.valid & GOE_HAS_WIDTH);
-            stood_in = true;
-        }
-    }
-    TEST_ASSERT_TRUE(stood_in);
-}
-
 /* [goe_refined.c] GIVEN a track of more images than are counted THEN the count stays at its largest value. */
 static void the_count_of_images_saturates(void) {
     start();
@@ -1218,7 +1198,6 @@ int main(void) {
     RUN_TEST(a_forced_disc_stays_a_disc);
     RUN_TEST(a_forced_line_is_a_box_and_no_ellipse_before_it);
     RUN_TEST(a_forced_line_without_corners_informs_nothing);
-    RUN_TEST(a_stand_in_gives_no_width);
     RUN_TEST(the_count_of_images_saturates);
     RUN_TEST(nothing_answers_before_the_box);
     RUN_TEST(an_answer_follows_the_motion_while_nothing_is_detected);

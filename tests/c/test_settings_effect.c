@@ -60,7 +60,7 @@ static const effect_t effects[] = {
     {"navigation.height_bias_sd_m", CHIMNEY, 5.0f, GROWS, SHOWN(sigma.height_m)},
     {"navigation.velocity_bias_sd_m_s", CHIMNEY, 1.0f, GROWS, SHOWN(sigma.z0_m)},
     {"navigation.position_walk_sd_m", CHIMNEY, 0.5f, GROWS, SHOWN(sigma.z0_m)},
-    {"navigation.position_white_sd_m", BOXES, 1.0f, GROWS, SHOWN(sigma.z0_m)},
+    {"navigation.position_white_sd_m", CHIMNEY, 1.0f, GROWS, SHOWN(sigma.z0_m)},
     {"navigation.height_white_sd_m", CHIMNEY, 5.0f, GROWS, SHOWN(sigma.height_m)},
     {"navigation.terrain_slope_sd", CHIMNEY, 0.2f, GROWS, SHOWN(sigma.height_m)},
     {"navigation.terrain_height_sd_m", CUT, 20.0f, GROWS, SHOWN(sigma.height_m)},

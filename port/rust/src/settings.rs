@@ -61,11 +61,11 @@ pub struct Navigation {
     pub height_bias_sd_m: f32,
     /// Random walk of the own position, m per square root of a second; 0 to 100; default 0.05.
     pub position_walk_sd_m: f32,
-    /// Error of the own position that is new in each image, each axis, m; 0 to 100; default 0. Upright boxes only.
+    /// Error of the own position that is new in each image, each axis, m; 0 to 100; default 0.
     pub position_white_sd_m: f32,
-    /// Error of the height that is new in each image, m; 0 to 1e3; default 0.
+    /// Error of the height that is new in each image, m; 0 to 1e3; default 0.5.
     pub height_white_sd_m: f32,
-    /// Slope of the ground that the height is above, m per m flown; 0 to 1; default 0.
+    /// Slope of the ground that the height is above, m per m flown; 0 to 1; default 0.01.
     pub terrain_slope_sd: f32,
     /// How far the obstacle's ground may lie off that which the height is above, m; 0 to 1e3; default 2. Boxes only.
     pub terrain_height_sd_m: f32,

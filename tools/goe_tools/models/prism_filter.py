@@ -14,6 +14,10 @@ m - F (x' - x) if the state becomes x', with the remaining variance V.
     whiten      r <- r - m  J <- J - F  N = V + white
     update      k = V/(N + common variance of the image's rows)    m <- m + k r    F <- F + k J    V <- V - k V
 
+The image's own position error, p per axis, looks like an attitude error of p/Z, Z the distance of the middle along the
+axes: it adds to the white attitude error, which the image's rows share. Its part along Z, which opposite sides share,
+adds 2 (p dr/dZ)^2 to each side's own variance.
+
 The depth d comes last. P is the covariance of the other states if d were known, and z d' the effect of an error d' of
 d on them, so
 
@@ -30,7 +34,7 @@ updated one.
 If the residuals of a track are larger than configured, or correlated from image to image, the filter widens its sigmas:
 it multiplies the variance by ``Scatter.factor``.
 
-Not modeled: the library's reaction to sides that repeatedly do not fit, which is to free the top or to restart."""
+Not modeled: the library's reaction to sides that repeatedly do not fit, which is to restart."""
 
 from __future__ import annotations
 
@@ -43,7 +47,7 @@ from .altimeter import Altimeter
 from .model import undistort
 from .prism import (
     BX,
-    PX,
+    PZ,
     STATES,
     A,
     D,
@@ -119,15 +123,13 @@ class Memory:
 
 @dataclass
 class Rows:
-    """The n rows of an image. Variances per row; ``about`` and ``shift`` give the common errors of attitude and
-    position."""
+    """The n rows of an image; variances per row."""
 
     side: np.ndarray  # (n,)
     residual: np.ndarray
     slope: np.ndarray  # (n, 10)
     own: np.ndarray
-    about: np.ndarray  # (n, 3) derivative by the image's attitude error, the state's axes
-    shift: np.ndarray  # (n, 3) by unit errors of the image's position
+    about: np.ndarray  # (n, 3) by unit errors of the image's attitude, which all rows share; the state's axes
 
 
 @dataclass
@@ -312,10 +314,9 @@ class PrismFilter:
         if not residual:
             return rows
         more = len(residual)
-        none = np.zeros((more, 3))
         return Rows(
             np.append(rows.side, np.full(more, -1)), np.append(rows.residual, residual), np.vstack([rows.slope, slope]),
-            np.append(rows.own, np.ones(more)), np.vstack([rows.about, none]), np.vstack([rows.shift, none]),
+            np.append(rows.own, np.ones(more)), np.vstack([rows.about, np.zeros((more, 3))]),
         )  # fmt: skip
 
     def _rows(self, sight: Sight, q_variance: float) -> Rows | None:
@@ -334,9 +335,10 @@ class PrismFilter:
         ahead = max(1 - sight.moved_m[2] * self.state[Q], AHEAD_MIN)
         own += (slope[:, Q] * sight.moved_m[2] * q_variance / ahead) ** 2
         position_sd = errors.position_white_sd_m * np.sqrt(1 + q_variance / self.state[Q] ** 2)
+        own += 2 * (position_sd * slope[:, PZ]) ** 2
+        white = np.hypot(np.radians(errors.attitude_white_sd_deg), position_sd * self.state[Q] / ahead)
         residual = np.array([sight.side[row.side] - row.predicted for row in rows])
-        about = slope[:, :3] @ sight.axes_from_body.T
-        return Rows(side, residual, slope[:, :COUNT], own, about, position_sd * slope[:, PX:])
+        return Rows(side, residual, slope[:, :COUNT], own, white * slope[:, :3] @ sight.axes_from_body.T)
 
     def _whiten(self, sight: Sight, span_s: float, rows: Rows | None) -> None:
         errors = self.errors
@@ -352,9 +354,8 @@ class PrismFilter:
     def _innovation2(self, rows: Rows, weight: np.ndarray) -> float:
         """Normalized square of a weighted sum of residuals, without the contribution of a walk along Z."""
         slope = weight @ rows.slope
-        white = np.radians(self.errors.attitude_white_sd_deg)
         variance = slope @ (self.settled + np.diag(self.gained)) @ slope + weight**2 @ rows.own
-        variance += white**2 * np.sum((weight @ rows.about) ** 2) + np.sum((weight @ rows.shift) ** 2)
+        variance += np.sum((weight @ rows.about) ** 2)
         return float((weight @ rows.residual) ** 2 / variance)
 
     def _judge(self, rows: Rows) -> np.ndarray:
@@ -377,19 +378,19 @@ class PrismFilter:
                 result[row] = self._innovation2(rows, unit[row] - unit[middle] if common else unit[row])
         return result
 
-    def _learn(self, rows: Rows, shared: np.ndarray) -> None:
+    def _learn(self, rows: Rows) -> None:
         for i, side in enumerate(rows.side):
             memory = self.memory[side]
-            gain = memory.variance / (rows.own[i] + shared[i, i])
+            gain = memory.variance / (rows.own[i] + rows.about[i] @ rows.about[i])
             memory.value += gain * rows.residual[i]
             memory.by = memory.by + gain * rows.slope[i]
             memory.variance -= gain * memory.variance
             memory.measured = True
 
-    def _update(self, rows: Rows, shared: np.ndarray, estimate_depth: bool) -> float:
+    def _update(self, rows: Rows, estimate_depth: bool) -> float:
         """Returns the normalized square of the residuals (nis) as expected with the depth as it is, or estimated."""
         count = COUNT if estimate_depth else D
-        slope, noise = rows.slope[:, :count], shared + np.diag(rows.own)
+        slope, noise = rows.slope[:, :count], rows.about @ rows.about.T + np.diag(rows.own)
         covariance = self.full_covariance() if estimate_depth else self.covariance
         expected = slope @ covariance @ slope.T + noise
         gain = np.linalg.solve(expected, slope @ covariance).T
@@ -438,7 +439,7 @@ class PrismFilter:
         self.refused = int((~kept).sum())
         self.doubted = int((kept & (ratio > self.errors.huber_sigma**2)).sum())
         factor = np.minimum(self.errors.huber_sigma / np.sqrt(np.maximum(ratio, 1e-30)), 1.0)
-        names = ("side", "residual", "slope", "own", "about", "shift")
+        names = ("side", "residual", "slope", "own", "about")
         rows.own = rows.own / factor
         poor = 2 * self.refused >= len(kept)
         self.scatter.take(rows.side, np.where(kept, rows.residual / np.sqrt(rows.own), 0.0))
@@ -446,13 +447,11 @@ class PrismFilter:
         if not kept.any():
             self.scatter.take_fit(RATIO_MOST)
             return False
-        white = np.radians(self.errors.attitude_white_sd_deg)
-        self._learn(rows, white**2 * rows.about @ rows.about.T + rows.shift @ rows.shift.T)
+        self._learn(rows)
         self._doubt_height()
         self._age(span_s)
         rows = self._height_rows(rows)
-        shared = white**2 * rows.about @ rows.about.T + rows.shift @ rows.shift.T
-        nis = self._update(rows, shared, knows_depth(sight, self.state))
+        nis = self._update(rows, knows_depth(sight, self.state))
         self.scatter.take_fit(RATIO_MOST if poor else nis / len(rows.side))
         self.settled, self.gained = self.full_covariance(), np.zeros(COUNT)
         self.known = bool(np.sqrt(self.settled[Q, Q]) <= RANGE_SHARE * self.state[Q])

@@ -69,7 +69,7 @@ class Story:
         return max(int(np.searchsorted(self.time_s, time_s + 1e-9, side="right")) - 1, 0)
 
     def first_look(self, track: Track) -> int:
-        """The initial moment: midway through the images with estimates, once there is a width; or the last one."""
+        """The initial moment: midway through the images with estimates, where there is a width; or the last one."""
         answered, sized = (
             np.flatnonzero(f) for f in (track.answers.answered, np.isfinite(track.answers.column["width_m"]))
         )
@@ -77,7 +77,9 @@ class Story:
             return len(self.time_s) - 1
         first, last = track.time_s[answered[0]], track.time_s[answered[-1]]
         from_s = track.time_s[sized[0]] if len(sized) else first
-        return self.at(max(first + FIRST_LOOK * (last - first), from_s + SIZED_FOR * (last - first)))
+        at_s = max(first + FIRST_LOOK * (last - first), from_s + SIZED_FOR * (last - first))
+        sized_s = track.time_s[sized]
+        return self.at(min(sized_s[sized_s >= at_s], default=at_s))
 
     def chosen(self, key: int | None) -> Track:
         """The obstacle with this id, or the one with most estimates."""

@@ -110,7 +110,7 @@ class Navigation(_Group):
     position_walk_sd_m: float = real("navigation.position_walk_sd_m")
     """Random walk of the own position, m per square root of a second."""
     position_white_sd_m: float = real("navigation.position_white_sd_m")
-    """Error of the own position that is new in each image, each axis, m. Upright boxes only."""
+    """Error of the own position that is new in each image, each axis, m."""
     height_white_sd_m: float = real("navigation.height_white_sd_m")
     """Error of the height that is new in each image, m; 0: points take each image's height as it is."""
     terrain_slope_sd: float = real("navigation.terrain_slope_sd")
