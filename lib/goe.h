@@ -128,8 +128,8 @@ typedef enum {
                                 * returns it, too, the settings have changed: call goe_init */
 } goe_status_t;
 
-/* goe_estimator_t.fault_counts[-status] counts the faults GOE_BEHIND_CAMERA to GOE_NO_HEIGHT. fault_counts[0] counts the
- * tracks that ended because the autopilot's filter jumped by an unknown amount. Counters saturate. */
+/* goe_estimator_t.fault_counts[-status] counts the faults GOE_BEHIND_CAMERA to GOE_NO_HEIGHT. fault_counts[0] counts resets of
+ * unknown size and jumps without a reset. Counters saturate. */
 #define GOE_FAULT_COUNTS 16
 
 /* Whether goe_update() took the image: bit 35 + status, set for -15, -14 and -9 to 4. Of a refused image goe stores only
@@ -142,7 +142,7 @@ typedef enum {
 
 /* Pose of the aircraft AT THE TIME OF EXPOSURE. A jump of the autopilot's filter is not motion. [A27] Supply the filter's reset
  * counter and, if known, the jump: new minus old position, summed since the last image that was taken. A jump of unknown size,
- * also of attitude, starts a new track. height_m may jump or not. */
+ * also of attitude, starts a new track. height_m may jump or not. The filter compensates jumps without a reset, too. */
 typedef struct {
     int64_t time_us;         /* any origin; strictly increasing; GOE_TIME_UNKNOWN is refused */
     float position_ned_m[3]; /* the vehicle's reference point, each +-1e6; choose an origin within 10 km */
@@ -281,7 +281,7 @@ GOE_NODISCARD goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator
  *             GOE_NOT_INITIALIZED and GOE_CORRUPTED. With any other negative status it is the last estimate, marked stale
  * Returns GOE_OK, a positive status, GOE_BEHIND_CAMERA to GOE_NO_HEIGHT (except GOE_BAD_HEIGHT), GOE_BAD_ARGUMENT,
  * GOE_NOT_INITIALIZED, GOE_CORRUPTED. Faults of images are counted. The solution's status has priority over a feature's.
- * Cost: at most 60000 instructions, 2048 bytes of stack; 81000 with lens distortion; window: 5500.
+ * Cost: at most 58000 instructions, 2048 bytes of stack; 78000 with lens distortion; window: 5500.
  * The window method's figure excludes lens distortion. */
 goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, goe_estimate_t *estimate);
 

@@ -20,7 +20,7 @@
 #include "refined/goe_report.h"
 #include "window/goe_window.h"
 
-#define RESETS GOE_OK /* fault_counts[0] counts tracks that an unknown filter reset ended */
+#define RESETS GOE_OK /* fault_counts[0] counts jumps that the image before did not know the size of */
 #define SURE_SIGMA 2.0f
 #define REFUSED_MAX_US 1000000000u /* 1000 s, the range of goe_intent_t.since_image_s */
 #define ASIDE_MIN 1.7320508f       /* tangent of 60 degrees */
@@ -147,14 +147,6 @@ static goe_status_t report_refined(goe_estimator_t *estimator, const goe_view_t 
     return (estimator->estimate.valid & GOE_HAS_POSITION) ? GOE_STALE : GOE_CONVERGING;
 }
 
-/* North and east of an older answer are those of the autopilot's filter before its reset. */
-static void move_center(goe_estimate_t *estimate, const float delta_ned_m[3]) {
-    if (estimate->valid & GOE_HAS_CENTER) {
-        estimate->center_north_m += delta_ned_m[0];
-        estimate->center_east_m += delta_ned_m[1];
-    }
-}
-
 static goe_status_t update_refined(goe_estimator_t *estimator, const goe_view_t *view, goe_faults_t *faults) {
     const goe_settings_t *settings = &estimator->settings;
     unsigned swapped;
@@ -175,7 +167,7 @@ static goe_status_t take_refined(goe_estimator_t *estimator, const goe_view_t *v
 
 /* --------------------------------------------------------------------------------------------------------- the chain -- */
 
-/* The autopilot's filter jumped: by a known amount the answer moves along, by an unknown one the track ends. */
+/* The autopilot's filter jumped: by a known amount the ground moves along, by an unknown one the track ends. */
 static void follow_reset(goe_estimator_t *estimator, const goe_pose_t *pose) {
     if (!goe_is_set(&pose->reset_delta_known)) {
         forget_track(estimator);
@@ -184,10 +176,23 @@ static void follow_reset(goe_estimator_t *estimator, const goe_pose_t *pose) {
     }
 #if GOE_WITH_FILTER
     if (goe_uses_filter(estimator)) {
-        move_center(&estimator->estimate, pose->reset_delta_ned_m);
         goe_ground_move(&estimator->filter, pose->reset_delta_ned_m[2]);
     }
 #endif
+}
+
+/* North and east of an older answer move with T's origin. */
+static void follow_motion(goe_estimator_t *estimator, goe_view_t *view) {
+    goe_estimate_t *estimate = &estimator->estimate;
+    const float north_m = estimator->motion.origin_ne_m[0];
+    const float east_m = estimator->motion.origin_ne_m[1];
+    if (goe_motion_follow(&estimator->motion, &estimator->settings, view)) {
+        goe_count_cause(estimator->fault_counts, RESETS);
+    }
+    if (estimate->valid & GOE_HAS_CENTER) {
+        estimate->center_north_m += estimator->motion.origin_ne_m[0] - north_m;
+        estimate->center_east_m += estimator->motion.origin_ne_m[1] - east_m;
+    }
 }
 
 /* Whether the track may begin again: it began with an earlier image, T's heading is the nose's, no position is known, and the nose
@@ -221,7 +226,7 @@ static GOE_NOINLINE void align_after_turn(goe_estimator_t *estimator, goe_view_t
         memcpy(faults->fault_counts, fault_counts, sizeof fault_counts);
         faults->first = GOE_OK;
         forget_track(estimator);
-        goe_motion_follow(&estimator->motion, &estimator->settings, view);
+        (void)goe_motion_follow(&estimator->motion, &estimator->settings, view);
         goe_align_points(view->camera, view, faults);
     }
 }
@@ -234,7 +239,7 @@ static void open_view(goe_estimator_t *estimator, const goe_image_t *image, cons
     view->motion = &estimator->motion;
     view->camera = camera;
     view->camera_to_body = estimator->camera_to_body[image->camera];
-    goe_motion_follow(&estimator->motion, &estimator->settings, view);
+    follow_motion(estimator, view);
     if (may_begin_again(estimator, view)) {
         align_after_turn(estimator, view, faults);
     } else {

@@ -45,7 +45,7 @@ typedef enum { GOE_AUGMENTED_LATENCY, GOE_AUGMENTED_VELOCITY_X, GOE_AUGMENTED_VE
 
 /* image/goe_ego_motion.c: own motion over the track. */
 typedef struct {
-    int64_t time_us;                /* latest image of the track */
+    int64_t time_us;                /* latest image of the track; GOE_TIME_UNKNOWN: none was taken, and nothing holds */
     int64_t start_time_us;          /* its first one */
     float heading_cos, heading_sin; /* of T's Z axis, from north */
     float origin_ne_m[2];           /* camera at the track's first image, moved along with compensated resets */
@@ -53,11 +53,11 @@ typedef struct {
     float height_m;                 /* camera above ground, latest image: as given, plus the next one */
     float height_jump_m;            /* sum of the jumps of down that the given height followed */
     float ground_m;                 /* down of the ground, by the latest image's height as given */
-    goe_flag_t started;             /* a first image was taken; the fields above hold */
     goe_flag_t detected;            /* a feature was visible: T and its origin stay */
     uint8_t reset_count;
 #if GOE_AUGMENTED
-    goe_flag_t paced;                     /* the fields below hold */
+    uint8_t paced; /* not 0: the fields below hold; 1, and images in a row that lay where they led */
+    uint8_t leaps; /* images in a row that lay far off */
     float rate_rad_s[3], velocity_m_s[2]; /* T axes; since the mark ... */
     float rate_before_rad_s[3];           /* ... and before it: free of the latest attitude's own error */
     float mark_attitude[4], mark_m[2];    /* attitude and place, T axes, at mark_us: where they count from */

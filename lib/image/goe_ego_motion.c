@@ -12,8 +12,16 @@
 #define PACE_SPAN_S 0.09f        /* of the poses that give rate and velocity: nearer ones give their noise */
 #define PACE_SPAN_MIN_S 0.045f   /* ... since the latest mark */
 #define PACE_SPAN_MAX_US 600000u /* farther ones give a mean */
-#define PACE_COSINE_MIN 0.9f     /* of half the angle between them: more is no flight, but a jump */
-#define LEVEL_NOSE_MIN 1.0e-3f   /* horizontal part of the nose's unit vector below which it has no heading */
+#define PACE_SPAN_MAX_S ((float)PACE_SPAN_MAX_US * GOE_S_PER_US)
+#define PACE_COSINE_MIN 0.9f   /* of half the angle between them: more is no flight, but a jump */
+#define LEVEL_NOSE_MIN 1.0e-3f /* horizontal part of the nose's unit vector below which it has no heading */
+#define LEAP_MIN_M 8.0f        /* beyond the predicted place: less is the error of many positions */
+#define LEAP_MIN_S 0.1f        /* ... or of a time */
+#define LEAP_MIN_M_S2 40.0f    /* ... or an aircraft's acceleration */
+#define LEAPS_MAX 3            /* in a row: of more, the velocity is wrong */
+#define STEADY_SHARE 0.25f     /* of a leap: an image that lies nearer to the predicted place confirms the velocity */
+#define STEADY_IMAGES 8 /* in a row that do so, before any leaps: positions that are held from fix to fix do not */
+#define MOVING_M_S 1.0f /* least velocity that predicts a place: positions that are held have none */
 
 /* T's Z axis in (north, east): the set heading, or where the nose points. */
 static void fix_heading(goe_motion_t *motion, const goe_settings_t *settings, const float body_to_ned[9]) {
@@ -34,7 +42,7 @@ static void fix_heading(goe_motion_t *motion, const goe_settings_t *settings, co
 float goe_motion_heading_deg(const goe_motion_t *motion) {
     const float c = motion->heading_cos;
     const float s = motion->heading_sin;
-    if (!motion->started) {
+    if (motion->time_us == GOE_TIME_UNKNOWN) {
         return 0.0f;
     }
     const float half_deg = goe_arctan_rad(s, c < 0.0f ? -c : c) * GOE_DEG_PER_RAD;
@@ -60,7 +68,6 @@ static void begin_track(goe_motion_t *motion, const goe_settings_t *settings, co
     motion->start_time_us = motion->time_us;
     motion->origin_ne_m[0] = position[0];
     motion->origin_ne_m[1] = position[1];
-    motion->started = true;
 }
 
 /* jump_m: known jump of the autopilot's down, 0 if there is none. The given height and down place the ground. If the ground
@@ -94,7 +101,50 @@ static void turn_into_trajectory(const goe_motion_t *motion, const float body_to
     }
 }
 
+/* The camera's place by the pose, T axes. */
+static void place_camera(goe_motion_t *motion, const float position[3]) {
+    const float north = position[0] - motion->origin_ne_m[0];
+    const float east = position[1] - motion->origin_ne_m[1];
+    motion->dx_m = motion->heading_cos * east - motion->heading_sin * north;
+    motion->dz_m = motion->heading_cos * north + motion->heading_sin * east;
+}
+
 #if GOE_AUGMENTED
+/* An image that confirms the velocity counts, another one ends the row. */
+static void count_steady(goe_motion_t *motion, bool confirmed) {
+    motion->leaps = 0;
+    if (!confirmed) {
+        motion->paced = motion->paced > 0u ? 1u : 0u;
+    } else if (motion->paced <= STEADY_IMAGES) {
+        motion->paced++;
+    }
+}
+
+/* A jump that no reset announced, and that no aircraft flies, is not motion. It is as large as the way from the place
+ * to which the velocity leads. */
+static bool undo_leap(goe_motion_t *motion, const float before_m[2], float since_s) {
+    const float *v = motion->velocity_m_s;
+    const float x_m = before_m[0] + v[0] * since_s;
+    const float z_m = before_m[1] + v[1] * since_s;
+    const float leap_m[2] = {motion->dx_m - x_m, motion->dz_m - z_m};
+    const float leap2 = goe_square(leap_m[0]) + goe_square(leap_m[1]);
+    const float speed_m_s = sqrtf(goe_square(v[0]) + goe_square(v[1]));
+    const float least2 = goe_square(LEAP_MIN_M + LEAP_MIN_S * speed_m_s + LEAP_MIN_M_S2 * since_s * since_s);
+    const bool predicted = motion->paced > 0u && since_s < PACE_SPAN_MAX_S && speed_m_s > MOVING_M_S;
+    float leap_ne_m[2];
+    if (!predicted || leap2 <= least2 || motion->paced <= STEADY_IMAGES || motion->leaps >= LEAPS_MAX) {
+        count_steady(motion, predicted && leap2 < STEADY_SHARE * STEADY_SHARE * least2);
+        return false;
+    }
+    motion->leaps++;
+    goe_motion_turn(motion, leap_m, leap_ne_m);
+    motion->origin_ne_m[0] += leap_ne_m[0];
+    motion->origin_ne_m[1] += leap_ne_m[1];
+    motion->dx_m = x_m;
+    motion->dz_m = z_m;
+    return true;
+}
+
 /* now = turn mark, in NED: the vector part of `turn` over its scalar part, which is half the angle. */
 static bool half_turn(const float now[4], const float mark[4], float half_ned[3]) {
     const float scalar = now[0] * mark[0] + now[1] * mark[1] + now[2] * mark[2] + now[3] * mark[3];
@@ -124,17 +174,17 @@ static void set_mark(goe_motion_t *motion, const float attitude[4], const float 
     motion->mark_us = motion->time_us;
 }
 
-/* The motion by the poses since the mark; body_m: of the vehicle, T axes, as the arms of two cameras differ. A known
- * jump of the autopilot's filter is not in them. first: no image before it fixed T. */
+/* The motion by the poses since the mark; body_m: of the vehicle, T axes, as the arms of two cameras differ. A jump is not in
+ * them. first: no image before it fixed T. */
 static void find_pace(goe_motion_t *motion, const float attitude[4], const float body_m[2], bool first) {
     float half[3];
     const float since_s = goe_time_between_s(motion->mark_us, motion->time_us, PACE_SPAN_MAX_US);
     if (!first && since_s < PACE_SPAN_MIN_S) {
         return;
     }
-    motion->paced =
-        !first && since_s < (float)PACE_SPAN_MAX_US * GOE_S_PER_US && half_turn(attitude, motion->mark_attitude, half);
-    if (motion->paced) {
+    const bool paced = !first && since_s < PACE_SPAN_MAX_S && half_turn(attitude, motion->mark_attitude, half);
+    motion->paced = paced && motion->paced > 0u ? motion->paced : paced;
+    if (paced) {
         turn_rate(motion, half, since_s);
         motion->velocity_m_s[0] = (body_m[0] - motion->mark_m[0]) / since_s;
         motion->velocity_m_s[1] = (body_m[1] - motion->mark_m[1]) / since_s;
@@ -142,48 +192,62 @@ static void find_pace(goe_motion_t *motion, const float attitude[4], const float
         memset(motion->rate_rad_s, 0, sizeof motion->rate_rad_s);
         memset(motion->rate_before_rad_s, 0, sizeof motion->rate_before_rad_s);
     }
-    if (!motion->paced || since_s >= PACE_SPAN_S) {
+    if (!paced || since_s >= PACE_SPAN_S) {
         set_mark(motion, attitude, body_m);
     }
 }
-#endif
 
-void goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe_view_t *view) {
-    const goe_pose_t *pose = &view->image->pose;
-    float body_to_ned[9];
-    float position[3];
-    goe_rotation_from_quaternion(pose->attitude, body_to_ned);
-    camera_position(view->camera, pose, body_to_ned, position);
-#if GOE_AUGMENTED
-    const bool first = !motion->detected;
-    if (motion->mark_us == motion->time_us) { /* a span ended before: its rate has no part of this image's own error */
-        memcpy(motion->rate_before_rad_s, motion->rate_rad_s, sizeof motion->rate_rad_s);
-    }
-#endif
-    const bool jumped = goe_motion_reset(motion, pose);
-    motion->reset_count = pose->reset_count;
-    motion->time_us = pose->time_us;
-    if (!motion->detected) {
-        begin_track(motion, settings, body_to_ned, position);
-    } else if (jumped) {
-        for (int i = 0; i < 2; i++) {
-            motion->origin_ne_m[i] += pose->reset_delta_ned_m[i];
-        }
-    }
-    follow_height(motion, pose, position[2], jumped ? pose->reset_delta_ned_m[2] : 0.0f);
-    const float north = position[0] - motion->origin_ne_m[0];
-    const float east = position[1] - motion->origin_ne_m[1];
-    motion->dx_m = motion->heading_cos * east - motion->heading_sin * north;
-    motion->dz_m = motion->heading_cos * north + motion->heading_sin * east;
-    turn_into_trajectory(motion, body_to_ned, view);
-#if GOE_AUGMENTED
-    if (settings->method != GOE_METHOD_FILTER) {
-        return;
-    }
+/* For the filter: frees the own motion of a jump that no reset announced, and follows its rate and velocity. before_m, before_us: camera
+ * and time of the image before. Returns whether there was a jump. */
+static GOE_NOINLINE bool follow_pace(goe_motion_t *motion, const goe_pose_t *pose, const float position[3],
+                                     const float before_m[2], int64_t before_us) {
     const float arm_n = position[0] - pose->position_ned_m[0];
     const float arm_e = position[1] - pose->position_ned_m[1];
+    const bool leapt = undo_leap(motion, before_m, goe_time_between_s(before_us, motion->time_us, PACE_SPAN_MAX_US));
+    if (motion->mark_us == before_us) { /* a span ended there: its rate has no part of this image's own error */
+        memcpy(motion->rate_before_rad_s, motion->rate_rad_s, sizeof motion->rate_rad_s);
+    }
     const float body_m[2] = {motion->dx_m - (motion->heading_cos * arm_e - motion->heading_sin * arm_n),
                              motion->dz_m - (motion->heading_cos * arm_n + motion->heading_sin * arm_e)};
-    find_pace(motion, pose->attitude, body_m, first);
+    find_pace(motion, pose->attitude, body_m, !motion->detected);
+    return leapt;
+}
 #endif
+
+/* Fixes T and its origin, or moves the origin along with a known jump. */
+static void place_origin(goe_motion_t *motion, const goe_settings_t *settings, const float body_to_ned[9],
+                         const float position[3], const float jump_m[3]) {
+    if (!motion->detected) {
+        begin_track(motion, settings, body_to_ned, position);
+        return;
+    }
+    motion->origin_ne_m[0] += jump_m[0];
+    motion->origin_ne_m[1] += jump_m[1];
+}
+
+bool goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe_view_t *view) {
+    static const float NO_JUMP[3] = {0.0f, 0.0f, 0.0f};
+    const goe_pose_t *pose = &view->image->pose;
+    const float *jump_m = goe_motion_reset(motion, pose) ? pose->reset_delta_ned_m : NO_JUMP;
+    float body_to_ned[9];
+    float position[3];
+    bool leapt = false;
+#if GOE_AUGMENTED
+    const float before_m[2] = {motion->dx_m, motion->dz_m};
+    const int64_t before_us = motion->time_us;
+#endif
+    goe_rotation_from_quaternion(pose->attitude, body_to_ned);
+    camera_position(view->camera, pose, body_to_ned, position);
+    motion->reset_count = pose->reset_count;
+    motion->time_us = pose->time_us;
+    place_origin(motion, settings, body_to_ned, position, jump_m);
+    follow_height(motion, pose, position[2], jump_m[2]);
+    place_camera(motion, position);
+    turn_into_trajectory(motion, body_to_ned, view);
+#if GOE_AUGMENTED
+    if (settings->method == GOE_METHOD_FILTER) {
+        leapt = follow_pace(motion, pose, position, before_m, before_us);
+    }
+#endif
+    return leapt;
 }

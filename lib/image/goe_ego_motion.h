@@ -6,15 +6,16 @@
 
 /* Takes the pose of view->image: fixes T and its origin up to the first image that shows a feature, compensates a reset of known
  * delta, and sets dx_m, dz_m (displacement of the camera since that image, T axes). view->camera and its rotation must be set;
- * view->camera_to_trajectory is set: the rotation of this image's rays into T. */
-void goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe_view_t *view);
+ * view->camera_to_trajectory is set: the rotation of this image's rays into T. Returns whether it also compensated a jump that
+ * no reset announced. */
+bool goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe_view_t *view);
 
 /* Of T's Z axis, clockwise from north, -180 to 180 degrees; 0 before the track's first image. */
 float goe_motion_heading_deg(const goe_motion_t *motion);
 
 /* Whether the autopilot's filter jumped since the image before. */
 static inline bool goe_motion_reset(const goe_motion_t *motion, const goe_pose_t *pose) {
-    return motion->started && pose->reset_count != motion->reset_count;
+    return motion->time_us != GOE_TIME_UNKNOWN && pose->reset_count != motion->reset_count;
 }
 
 /* (X, Z) in T, relative to T's origin, to north and east. */

@@ -177,9 +177,9 @@ static void a_corrupted_track_begins_again(void) {
     image.pose.time_us = estimator.motion.time_us; /* refused */
     CHECK_STATUS(GOE_CORRUPTED, goe_update(&estimator, &image, &estimate));
     TEST_ASSERT_EQUAL_MEMORY(&nothing, &estimate, sizeof estimate);
-    TEST_ASSERT_FALSE(estimator.motion.started);
+    TEST_ASSERT_TRUE(estimator.motion.time_us == GOE_TIME_UNKNOWN);
     fly(IMAGES, IMAGES + 1);
-    TEST_ASSERT_TRUE(estimator.motion.started);
+    TEST_ASSERT_TRUE(estimator.motion.time_us != GOE_TIME_UNKNOWN);
     fly(IMAGES + 1, 2 * IMAGES);
     TEST_ASSERT_TRUE((estimate.valid & GOE_HAS_POSITION) != 0u);
 }
@@ -189,7 +189,7 @@ static void a_track_that_is_nowhere_begins_again(void) {
     start();
     estimator.motion.origin_ne_m[0] = check_from_bits(0xFF800000u);
     CHECK_STATUS(GOE_CORRUPTED, goe_update(&estimator, &image, &estimate));
-    TEST_ASSERT_FALSE(estimator.motion.started);
+    TEST_ASSERT_TRUE(estimator.motion.time_us == GOE_TIME_UNKNOWN);
 }
 
 /* ... also while there is no answer that would show it. */
@@ -202,7 +202,7 @@ static void a_track_that_is_nowhere_and_knows_nothing_begins_again(void) {
     scene_image(&scene, 1, &image, NULL);
     scene_hide_points(&image);
     CHECK_STATUS(GOE_CORRUPTED, goe_update(&estimator, &image, &estimate));
-    TEST_ASSERT_FALSE(estimator.motion.started);
+    TEST_ASSERT_TRUE(estimator.motion.time_us == GOE_TIME_UNKNOWN);
 }
 
 /* [A20] GIVEN covariance and hazard of an answer that is no number THEN they are none, either. */
