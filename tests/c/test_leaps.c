@@ -11,7 +11,7 @@
 #define IMAGES 40
 #define FIRST 12 /* image that jumps */
 #define FLIGHTS 400
-#define CLEAR_MAX 2
+#define CLEAR_MAX 1
 
 static scene_t scene;
 static goe_settings_t settings;
@@ -146,7 +146,7 @@ static void a_hard_manoeuvre_is_no_jump(void) {
     }
 }
 
-/* [goe_ego_motion.c] GIVEN a velocity that proves wrong, as every image jumps anew THEN after three of them it is given up, and the positions count. */
+/* [goe_ego_motion.c] GIVEN a velocity that proves wrong, as every image jumps again THEN after three of them it is given up, and the positions count. */
 static void a_wrong_velocity_is_given_up(void) {
     start(&jumped);
     for (int k = 0; k < IMAGES; k++) {
@@ -161,8 +161,8 @@ static void a_wrong_velocity_is_given_up(void) {
     CHECK_CLOSE(2.0, scene.speed_mps + 20.0 * 8.0, (double)jumped.motion.velocity_m_s[1]);
 }
 
-/* [A27] GIVEN flights towards an obstacle in the way, in which one position in 30 is off by up to 20 m along each axis THEN every warning comes in time,
- * and hardly any image is "clear" in the last 5 s (15 if the jumps count as motion). */
+/* [A27] GIVEN flights towards an obstacle in the way, in which one position in 30 is off by up to 20 m along each axis THEN every warning comes
+ * in time, and hardly any flight is "clear" in the last 5 s. */
 static void a_wrong_position_now_and_then_costs_no_warning(void) {
     check_random_t any = check_random_start("wrong positions");
     int late = 0;
@@ -170,6 +170,7 @@ static void a_wrong_position_now_and_then_costs_no_warning(void) {
     for (int n = 0; n < FLIGHTS; n++) {
         drawn_t drawn = drawn_flight(&scene, &any);
         double first_s = 0.0;
+        bool cleared = false;
         drawn.boxes = drawn.boxes || n % 2 == 0;
         const goe_intent_t intent = {{(float)scene.speed_mps, 0.0f, 0.0f}, 15.0f, 10.0f, 0.0f, 0.0f};
         settings = scene_settings(&scene);
@@ -179,18 +180,21 @@ static void a_wrong_position_now_and_then_costs_no_warning(void) {
             goe_image_t image;
             const double left_s = drawn_left_s(&scene, k);
             drawn_image(&drawn, &scene, &any, k, &image);
+            const double north_m = check_random_between(&any, -20.0, 20.0); /* one after the other, in any compiler */
+            const double east_m = check_random_between(&any, -20.0, 20.0);
             if (check_random_between(&any, 0.0, 30.0) < 1.0) {
-                move(&image, check_random_between(&any, -20.0, 20.0), check_random_between(&any, -20.0, 20.0));
+                move(&image, north_m, east_m);
             }
             (void)goe_update(&jumped, &image, &after);
             const goe_decision_t decision = goe_decide(&jumped, &intent, NULL, NULL);
             first_s = decision == GOE_DECISION_ACT ? fmax(first_s, left_s) : first_s;
-            clear += decision == GOE_DECISION_CLEAR && left_s < 5.0;
+            cleared = cleared || (decision == GOE_DECISION_CLEAR && left_s < 5.0);
         }
+        clear += cleared;
         late += first_s < DRAWN_AHEAD_S;
     }
     check_report("late warnings", late);
-    check_report("images that are clear within 5 s", clear);
+    check_report("flights with a \"clear\" within 5 s", clear);
     TEST_ASSERT_EQUAL_INT(0, late);
     TEST_ASSERT_TRUE(clear <= CLEAR_MAX);
 }

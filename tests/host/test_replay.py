@@ -288,13 +288,13 @@ def test_refined_box() -> None:
         assert abs(number(last, name) - float(truth[column])) < 2.0 * number(last, name.replace("_m", "_sd_m"))
 
 
-def test_refined_footprint_in_place_of_a_box_has_no_width() -> None:
-    """Before its orientation is known, a box is estimated as an ellipse, whose width would equal neither of its
-    sides."""
+def test_refined_footprint_in_place_of_a_box_has_its_width_across() -> None:
+    """Before its orientation is known, a box is estimated as an ellipse, whose width is that across the line of sight:
+    here the front's, 15 m."""
     alone, first = replay(CORNER, *LEVEL)[:2]
     assert (alone["status"], alone["model"]) == ("converging", "none")
     assert (first["status"], first["model"]) == ("ok", "prism")
-    assert first["z0_m"] != "" and first["width_m"] == first["width_sd_m"] == ""
+    assert abs(float(first["width_m"]) - 15.0) < 2.0 * float(first["width_sd_m"]) < 10.0
 
 
 def test_refined_forced_model() -> None:
