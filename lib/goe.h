@@ -142,7 +142,7 @@ typedef enum {
 
 /* Pose of the aircraft AT THE TIME OF EXPOSURE. A jump of the autopilot's filter is not motion. [A27] Supply the filter's reset
  * counter and, if known, the jump: new minus old position, summed since the last image that was taken. A jump of unknown size,
- * also of attitude, starts a new track. height_m may jump or not. The filter compensates jumps without a reset, too. */
+ * also of attitude, starts a new track. height_m may jump or not. The filter compensates jumps without a reset. */
 typedef struct {
     int64_t time_us;         /* any origin; strictly increasing; GOE_TIME_UNKNOWN is refused */
     float position_ned_m[3]; /* the vehicle's reference point, each +-1e6; choose an origin within 10 km */
@@ -285,7 +285,7 @@ GOE_NODISCARD goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator
  * The window method's figure excludes lens distortion. */
 goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, goe_estimate_t *estimate);
 
-/* Ends the track; keeps settings and counters. Call it before another obstacle, or when features are over 80 degrees from Z.
+/* Ends the track; keeps settings and counters. Call it before another obstacle, after a teleport, or with features over 80 degrees from Z.
  * Returns GOE_OK, GOE_BAD_ARGUMENT, GOE_NOT_INITIALIZED, GOE_CORRUPTED.
  * Cost: at most 1640 instructions, 64 bytes of stack. */
 goe_status_t goe_reset(goe_estimator_t *estimator);

@@ -20,7 +20,7 @@
 #include "refined/goe_report.h"
 #include "window/goe_window.h"
 
-#define RESETS GOE_OK /* fault_counts[0] counts jumps that the image before did not know the size of */
+#define RESETS GOE_OK /* fault_counts[0] counts resets of unknown size and jumps without a reset */
 #define SURE_SIGMA 2.0f
 #define REFUSED_MAX_US 1000000000u /* 1000 s, the range of goe_intent_t.since_image_s */
 #define ASIDE_MIN 1.7320508f       /* tangent of 60 degrees */

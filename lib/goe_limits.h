@@ -20,7 +20,7 @@
 #define GOE_WITH_HAZARD 1 /* goe_hazard, goe_decide, goe_rule_default, goe_earliest_tcpa_s */
 #endif
 #ifndef GOE_WITH_TARGET_MOTION
-#define GOE_WITH_TARGET_MOTION 1 /* filter: corrects pose latency; estimates the velocity of a moving obstacle */
+#define GOE_WITH_TARGET_MOTION 1 /* filter: corrects pose latency and jumps without a reset; estimates velocities */
 #endif
 #if !GOE_WITH_WINDOW && !GOE_WITH_FILTER
 #error "GOE_WITH_WINDOW or GOE_WITH_FILTER must be 1"

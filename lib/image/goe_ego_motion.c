@@ -120,8 +120,8 @@ static void count_steady(goe_motion_t *motion, bool confirmed) {
     }
 }
 
-/* A jump that no reset announced, and that no aircraft flies, is not motion. It is as large as the way from the place
- * to which the velocity leads. */
+/* A jump that no reset announced, and that no aircraft flies, is not motion. The jump is the way from the predicted place to the given
+ * one. */
 static bool undo_leap(goe_motion_t *motion, const float before_m[2], float since_s) {
     const float *v = motion->velocity_m_s;
     const float x_m = before_m[0] + v[0] * since_s;
@@ -175,9 +175,10 @@ static void set_mark(goe_motion_t *motion, const float attitude[4], const float 
 }
 
 /* The motion by the poses since the mark; body_m: of the vehicle, T axes, as the arms of two cameras differ. A jump is not in
- * them. first: no image before it fixed T. */
-static void find_pace(goe_motion_t *motion, const float attitude[4], const float body_m[2], bool first) {
+ * them. */
+static void find_pace(goe_motion_t *motion, const float attitude[4], const float body_m[2]) {
     float half[3];
+    const bool first = !motion->detected; /* no image before fixed T */
     const float since_s = goe_time_between_s(motion->mark_us, motion->time_us, PACE_SPAN_MAX_US);
     if (!first && since_s < PACE_SPAN_MIN_S) {
         return;
@@ -209,7 +210,7 @@ static GOE_NOINLINE bool follow_pace(goe_motion_t *motion, const goe_pose_t *pos
     }
     const float body_m[2] = {motion->dx_m - (motion->heading_cos * arm_e - motion->heading_sin * arm_n),
                              motion->dz_m - (motion->heading_cos * arm_n + motion->heading_sin * arm_e)};
-    find_pace(motion, pose->attitude, body_m, !motion->detected);
+    find_pace(motion, pose->attitude, body_m);
     return leapt;
 }
 #endif
