@@ -11,19 +11,19 @@ static bool same(float a, uint32_t bits) { return goe_bits(a) == bits; }
 
 /* (1 + 2^-12)^2 - (1 + 2^-11) is 2^-24 exactly, and 0 if the product is rounded first. */
 static bool contracts(void) {
-    volatile float given_a = 1.000244140625f;
-    volatile float given_b = 1.00048828125f;
-    const float a = given_a;
-    const float b = given_b;
+    volatile float probe_a = 1.000244140625f;
+    volatile float probe_b = 1.00048828125f;
+    const float a = probe_a;
+    const float b = probe_b;
     return !same(a * a - b, 0u);
 }
 
 /* (2^25 + 1) - 2^25 is 0 in floats and 1 if reordered. */
 static bool reassociates(void) {
-    volatile float given_large = 33554432.0f;
-    volatile float given_one = 1.0f;
-    const float large = given_large;
-    const float one = given_one;
+    volatile float probe_large = 33554432.0f;
+    volatile float probe_one = 1.0f;
+    const float large = probe_large;
+    const float one = probe_one;
     return !same((large + one) - large, 0u);
 }
 
@@ -35,14 +35,14 @@ static bool reassociates(void) {
  * compiler that may skip a division does not merge it with the others. */
 static bool reciprocates(void) {
     static const uint32_t right[QUOTIENTS] = {0x3DF9C190u, 0x3E2ED44Bu, 0x3E895DA9u};
-    volatile float given_five = 5.0f;
-    volatile float given_seven = 7.0f;
-    volatile float given_eleven = 11.0f;
-    volatile float given_divisor = DIVISOR;
-    volatile int given_count = QUOTIENTS; /* so that the loop stays one */
-    const float dividend[QUOTIENTS] = {given_five, given_seven, given_eleven};
-    const float divisor = given_divisor;
-    const int count = given_count;
+    volatile float probe_five = 5.0f;
+    volatile float probe_seven = 7.0f;
+    volatile float probe_eleven = 11.0f;
+    volatile float probe_divisor = DIVISOR;
+    volatile int probe_count = QUOTIENTS; /* so that the loop stays one */
+    const float dividend[QUOTIENTS] = {probe_five, probe_seven, probe_eleven};
+    const float divisor = probe_divisor;
+    const int count = probe_count;
     const float first = dividend[0] / divisor;
     const float second = dividend[1] / divisor;
     const float third = dividend[2] / divisor;
@@ -57,8 +57,8 @@ static bool reciprocates(void) {
 /* Vector units may flush where the scalar unit does not (Helium always does): so also in a loop that invites them. */
 static bool flushes(void) {
     volatile float smallest_normal = 1.17549435e-38f;
-    volatile float given_half = 0.5f;
-    const float half = given_half;
+    volatile float probe_half = 0.5f;
+    const float half = probe_half;
     const float subnormal = smallest_normal * half;
     float values[8];
     uint32_t off = 0u;
@@ -76,21 +76,21 @@ static bool flushes(void) {
 
 /* 1e38 * 10 overflows float but not a wider register; 1 + 2^-24 rounds back to 1 in float. */
 static bool exceeds(void) {
-    volatile float given_large = 1.0e38f;
-    volatile float given_ten = 10.0f;
-    volatile float given_half_ulp = 5.9604645e-08f;
-    const float large = given_large;
-    const float ten = given_ten;
-    const float half_ulp = given_half_ulp;
+    volatile float probe_large = 1.0e38f;
+    volatile float probe_ten = 10.0f;
+    volatile float probe_half_ulp = 5.9604645e-08f;
+    const float large = probe_large;
+    const float ten = probe_ten;
+    const float half_ulp = probe_half_ulp;
     return goe_magnitude((large * ten) / ten) < GOE_INFINITY_BITS || !same((1.0f + half_ulp) + half_ulp, 0x3F800000u);
 }
 
 /* Ties go to even: 1 + 2^-24 down, 1 + 3 2^-24 up, the same below zero. */
 static bool misrounds(void) {
-    volatile float given_tie_down = 5.9604645e-08f;
-    volatile float given_tie_up = 1.7881393e-07f;
-    const float up = given_tie_up;
-    return !same(1.0f + given_tie_down, 0x3F800000u) || !same(1.0f + up, 0x3F800002u) || !same(-1.0f - up, 0xBF800002u);
+    volatile float probe_tie_down = 5.9604645e-08f;
+    volatile float probe_tie_up = 1.7881393e-07f;
+    const float up = probe_tie_up;
+    return !same(1.0f + probe_tie_down, 0x3F800000u) || !same(1.0f + up, 0x3F800002u) || !same(-1.0f - up, 0xBF800002u);
 }
 
 #define MANTISSA_BITS 23u
@@ -105,8 +105,8 @@ static bool misrounds(void) {
 static bool root_is_nearest(uint32_t square_bits) {
     float square;
     memcpy(&square, &square_bits, sizeof square);
-    volatile float given = square;
-    const uint32_t root_bits = goe_bits(sqrtf(given));
+    volatile float probe = square;
+    const uint32_t root_bits = goe_bits(sqrtf(probe));
     const bool subnormal = square_bits < HIDDEN_BIT;
     if (subnormal && root_bits == 0u) {
         return true; /* flushed, not misrounded */

@@ -6,13 +6,13 @@
 #include "goe_settings_list.h"
 #include "maths/goe_scalar.h"
 
-enum { GOE_KIND_REAL, GOE_KIND_COUNT, GOE_KIND_TRUTH, GOE_KIND_CHOICE };
+enum { SETTING_REAL, SETTING_COUNT, SETTING_TRUTH, SETTING_CHOICE };
 
 /* Arrays side by side, as entries of mixed sizes would be padded; names one after the other. Counts, truth values and choices
  * are exact in a float. */
 #define NAME(field, kind, unit, low, high, value, text) #field "\0"
 #define PLACE(field, kind, unit, low, high, value, text) (uint16_t)offsetof(goe_settings_t, field),
-#define KIND(field, kind, unit, low, high, value, text) (uint8_t)GOE_KIND_##kind,
+#define KIND(field, kind, unit, low, high, value, text) (uint8_t)SETTING_##kind,
 #define RANGE(field, kind, unit, low, high, value, text) {(float)(low), (float)(high), (float)(value)},
 
 static const char names[] = GOE_SETTINGS(NAME);
@@ -32,13 +32,13 @@ static void write_field(unsigned char *field, uint8_t kind, float value) {
     const goe_method_t choice = (goe_method_t)count;
     const bool truth = count != 0;
     switch (kind) {
-        case GOE_KIND_REAL:
+        case SETTING_REAL:
             memcpy(field, &value, sizeof value);
             break;
-        case GOE_KIND_COUNT:
+        case SETTING_COUNT:
             memcpy(field, &count, sizeof count);
             break;
-        case GOE_KIND_TRUTH:
+        case SETTING_TRUTH:
             memcpy(field, &truth, sizeof truth);
             break;
         default:
@@ -53,13 +53,13 @@ static float read_field(const unsigned char *field, uint8_t kind) {
     int count;
     goe_method_t choice;
     switch (kind) {
-        case GOE_KIND_REAL:
+        case SETTING_REAL:
             memcpy(&value, field, sizeof value);
             return value;
-        case GOE_KIND_COUNT:
+        case SETTING_COUNT:
             memcpy(&count, field, sizeof count);
             return (float)count;
-        case GOE_KIND_TRUTH: /* not read as a bool: it may be neither */
+        case SETTING_TRUTH: /* not read as a bool: it may be neither */
             return (float)*field;
         default:
             memcpy(&choice, field, sizeof choice);

@@ -4,7 +4,7 @@
 
 #include "hazard/goe_affine.h"
 
-/* The intent as an obstacle that moves sees it. The others take this one. */
+/* The relative intent: the own velocity minus the obstacle's, if this one is valid. */
 goe_intent_t goe_conflict_relative(const goe_estimator_t *estimator, const goe_intent_t *intent);
 
 /* How long after the latest image the obstacle will be nearest, s, roughly: velocities, the own one and the obstacle's, add their

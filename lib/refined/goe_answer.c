@@ -13,8 +13,8 @@
 
 #define REACH_MAX_M 1.0e6f /* as all positions */
 
-/* Half of the visible extent about the reference point, m, also while the width is not valid; and of a footprint, the way to the middle
- * of a circle of that reach that begins where it does, T axes. */
+/* The reach of an answer: half of the visible extent about the reference point, m, also while the width is not valid. nearer_m: the way
+ * from the middle of a footprint to the middle of a circle of that reach with the same near side, T axes. */
 static float reach_of(const goe_filter_t *filter, goe_xz_t *nearer_m) {
     const float *x = filter->state;
     memset(nearer_m, 0, sizeof *nearer_m);

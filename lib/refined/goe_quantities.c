@@ -238,7 +238,7 @@ static unsigned known_now(const goe_filter_t *filter, const goe_quantities_t *q,
 
 /* --------------------------------------------------------------------------------------------------------- quantities -- */
 
-/* Orientation and length are 0 but of a box. */
+/* Whether the model has the quantity: only a box has an orientation and a length; the shape of a footprint leaves them 0. */
 static bool has(const goe_quantities_t *q, int quantity) {
     return q->box || (quantity != GOE_ORIENTATION && quantity != GOE_LENGTH);
 }

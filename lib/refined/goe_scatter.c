@@ -11,14 +11,15 @@
 #define CHANCE 0.07f         /* one sigma that the mean of NIS and the correlation have over their memory */
 #define CORRELATION_MAX 0.9f /* beyond it the sums are not informative */
 
-static float clipped(float residual) {
-    if (goe_within(residual, RESIDUAL_MAX)) {
-        return residual;
+/* A normalized residual for the sums of the scatter: limited, and 0 if it is not finite. */
+static float clipped(float normalized) {
+    if (goe_within(normalized, RESIDUAL_MAX)) {
+        return normalized;
     }
-    if (goe_magnitude(residual) >= GOE_INFINITY_BITS) {
+    if (goe_magnitude(normalized) >= GOE_INFINITY_BITS) {
         return 0.0f;
     }
-    return residual > 0.0f ? RESIDUAL_MAX : -RESIDUAL_MAX;
+    return normalized > 0.0f ? RESIDUAL_MAX : -RESIDUAL_MAX;
 }
 
 /* A refused row joins nothing. */
