@@ -10,10 +10,13 @@
 #include "goe_flight_maths.h"
 
 #define THIN_US 20000
-#define GAP_MAX_US 500000 /* over a longer gap nothing is interpolated */
+#define GAP_MAX_US 500000                                /* over a longer gap nothing is interpolated */
+#define NEAR_S (2.0f * GAP_MAX_US * GOE_FLIGHT_S_PER_US) /* samples farther apart say nothing of a bend */
+#define CHANGES 8                                        /* of the rate, from sample to sample, that count */
 #define NONE (-1)
 #define NORM_MIN 0.5f
-#define MISSED_BY_CUBIC 0.2f /* of what bends the straight line, one sigma: recorded flights, samples 200 ms apart */
+#define MISSED_BY_CUBIC                                                                                                \
+    0.2f /* of what the rms change of the rate bends the straight line, one sigma: recorded flights, 200 ms */
 #define MISSED_BY_PARABOLA 0.5f
 
 void goe_flight_history_clear(goe_flight_history_t *history) { memset(history, 0, sizeof *history); }
@@ -140,7 +143,7 @@ static knot_t knot(const goe_flight_history_t *h, int back, const goe_flight_his
         k.q[i] = sign * sample->q[i];
     }
     k.at_s = goe_flight_between_s(sample->time_us, from->time_us);
-    k.known = goe_flight_within(k.at_s, 2.0f * GAP_MAX_US * GOE_FLIGHT_S_PER_US);
+    k.known = goe_flight_within(k.at_s, NEAR_S);
     return k;
 }
 
@@ -149,6 +152,59 @@ static float bend(const knot_t *outer, const knot_t *middle, const knot_t *to, i
     const float before = (middle->q[i] - outer->q[i]) / (middle->at_s - outer->at_s);
     const float behind = (to->q[i] - middle->q[i]) / (to->at_s - middle->at_s);
     return (before - behind) * (to->at_s - middle->at_s) / (to->at_s - outer->at_s);
+}
+
+/* Of the turn between two attitudes, |2 vec(a* b)|^2, by |vec|^2 = 1 - dot^2; without cancellation for small turns. */
+static float turn_square(const float a[4], const float b[4]) {
+    const float sign = dot(a, b) < 0.0f ? -1.0f : 1.0f;
+    float square = 0.0f;
+    for (int i = 0; i < 4; i++) {
+        square += goe_flight_square(a[i] - sign * b[i]);
+    }
+    return 4.0f * square;
+}
+
+static float root_mean_deg(float integral, float time_s) {
+    return time_s > 0.0f ? sqrtf(integral / time_s) * GOE_FLIGHT_DEG_PER_RAD : 0.0f;
+}
+
+static float rate_rms_deg_s(const goe_flight_history_t *h) {
+    float turns = 0.0f; /* integral of the rate's square */
+    float time_s = 0.0f;
+    for (int back = 0; back + 1 < count_of(h, ATTITUDES); back++) {
+        const goe_flight_history_attitude_t *newer = &h->attitude[place(h->attitude_next, back)];
+        const goe_flight_history_attitude_t *older = &h->attitude[place(h->attitude_next, back + 1)];
+        const float step_s = goe_flight_between_s(newer->time_us, older->time_us);
+        turns += turn_square(newer->q, older->q) / step_s;
+        time_s += step_s;
+    }
+    return root_mean_deg(turns, time_s);
+}
+
+/* rms of the rate's change with time, over the latest samples. The error of the interpolation follows it, not the change at the image:
+ * where three samples happen to lie on a line, the attitude between them does not. */
+static float change_rms_deg_s2(const goe_flight_history_t *h) {
+    float changes = 0.0f; /* integral of the square */
+    float time_s = 0.0f;
+    for (int back = 1; back + 1 < count_of(h, ATTITUDES) && back <= CHANGES; back++) {
+        const goe_flight_history_attitude_t *middle = &h->attitude[place(h->attitude_next, back)];
+        const knot_t newer = knot(h, back - 1, middle);
+        const knot_t older = knot(h, back + 1, middle);
+        if (newer.known && older.known) {
+            const float between_s = 0.5f * (newer.at_s - older.at_s);
+            const float to_newer = 1.0f / newer.at_s;
+            const float to_older = 1.0f / older.at_s;
+            float square = 0.0f;
+            for (int i = 0; i < 4; i++) {
+                const float ahead = (newer.q[i] - middle->q[i]) * to_newer;
+                const float behind = (older.q[i] - middle->q[i]) * to_older;
+                square += goe_flight_square(ahead - behind);
+            }
+            changes += 4.0f * square / between_s; /* an angle is twice its quaternion's vector */
+            time_s += between_s;
+        }
+    }
+    return root_mean_deg(changes, time_s);
 }
 
 /* Between two samples the cubic with slopes from the adjacent samples; if one of these is missing the parabola, without
@@ -163,7 +219,6 @@ static void blend_attitude(const goe_flight_history_t *h, const bracket_t *brack
     const float f = bracket->share;
     const float step_s = newer.at_s;
     const bool between = step_s > 0.0f;
-    float bent = 0.0f;
     for (int i = 0; i < 4; i++) {
         float first = between && before.known ? step_s * bend(&before, &older, &newer, i) : 0.0f;
         float last = between && after.known ? step_s * bend(&after, &newer, &older, i) : 0.0f;
@@ -171,7 +226,6 @@ static void blend_attitude(const goe_flight_history_t *h, const bracket_t *brack
         last = after.known ? last : -first;
         const float off = f * (1.0f - f) * ((1.0f - f) * first - f * last);
         pose->q[i] = older.q[i] + f * (newer.q[i] - older.q[i]) + off;
-        bent += off * off;
     }
     const float norm =
         sqrtf(dot(pose->q, pose->q)); /* neighbors are within half a turn: at least 0.7 but for the bend */
@@ -180,30 +234,7 @@ static void blend_attitude(const goe_flight_history_t *h, const bracket_t *brack
         pose->q[i] = usable ? pose->q[i] / norm : older.q[i];
     }
     const float missed = before.known && after.known ? MISSED_BY_CUBIC : MISSED_BY_PARABOLA;
-    pose->spread_deg = missed * 2.0f * sqrtf(bent) * GOE_FLIGHT_DEG_PER_RAD;
-}
-
-/* Of the turn between two attitudes, |2 vec(a* b)|^2, by |vec|^2 = 1 - dot^2; without cancellation for small turns. */
-static float turn_square(const float a[4], const float b[4]) {
-    const float sign = dot(a, b) < 0.0f ? -1.0f : 1.0f;
-    float square = 0.0f;
-    for (int i = 0; i < 4; i++) {
-        square += goe_flight_square(a[i] - sign * b[i]);
-    }
-    return 4.0f * square;
-}
-
-static float rate_rms_deg_s(const goe_flight_history_t *h) {
-    float turns = 0.0f; /* integral of the rate's square */
-    float time_s = 0.0f;
-    for (int back = 0; back + 1 < count_of(h, ATTITUDES); back++) {
-        const goe_flight_history_attitude_t *newer = &h->attitude[place(h->attitude_next, back)];
-        const goe_flight_history_attitude_t *older = &h->attitude[place(h->attitude_next, back + 1)];
-        const float step_s = goe_flight_between_s(newer->time_us, older->time_us);
-        turns += turn_square(newer->q, older->q) / step_s;
-        time_s += step_s;
-    }
-    return time_s > 0.0f ? sqrtf(turns / time_s) * GOE_FLIGHT_DEG_PER_RAD : 0.0f;
+    pose->spread_deg = missed * 0.5f * f * (1.0f - f) * step_s * step_s * change_rms_deg_s2(h);
 }
 
 goe_flight_status_t goe_flight_history_at(const goe_flight_history_t *history, uint32_t time_us,

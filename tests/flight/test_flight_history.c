@@ -111,6 +111,28 @@ static void a_bent_flight_is_followed(void) {
     TEST_ASSERT_TRUE(parabola_deg < 0.25);
 }
 
+/* The reported error follows the bend of the whole history. The same sine, sampled so that every other sample is a zero crossing: around
+ * these, three samples lie on a line, and the attitude between them is off all the same. */
+static void samples_on_a_line_do_not_lower_the_reported_error(void) {
+    double least_deg = 1.0e9;
+    double most_deg = 0.0;
+    for (int k = 0; k < 40; k++) {
+        const double half = 0.5 * RAD_PER_DEG * 10.0 * sin(2.0 * 3.14159265358979 * 0.25 * k);
+        const float q[4] = {(float)cos(half), 0.0f, (float)sin(half), 0.0f};
+        const float ned_m[3] = {0.0f, 0.0f, 0.0f};
+        TEST_ASSERT_TRUE(goe_flight_history_add_attitude(&history, 250000u * (uint32_t)k, q));
+        TEST_ASSERT_TRUE(goe_flight_history_add_position(&history, 250000u * (uint32_t)k, ned_m));
+        if (k > 5) {
+            TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_history_at(&history, 250000u * (uint32_t)k - 125000u, &pose));
+            least_deg = fmin(least_deg, (double)pose.spread_deg);
+            most_deg = fmax(most_deg, (double)pose.spread_deg);
+        }
+    }
+    check_report("least reported error, degrees", least_deg);
+    check_report("most reported error, degrees", most_deg);
+    TEST_ASSERT_TRUE(least_deg > 0.5 * most_deg && most_deg < 5.0);
+}
+
 static void samples_are_thinned_to_20_ms(void) {
     feed(0u, 1000u, 2000, 10.0);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_SAMPLES, history.attitude_count);
@@ -270,6 +292,7 @@ int main(void) {
     RUN_TEST(slow_samples_too);
     RUN_TEST(the_clock_may_wrap);
     RUN_TEST(a_bent_flight_is_followed);
+    RUN_TEST(samples_on_a_line_do_not_lower_the_reported_error);
     RUN_TEST(samples_are_thinned_to_20_ms);
     RUN_TEST(nothing_is_known_before_both);
     RUN_TEST(old_samples_are_refused);
