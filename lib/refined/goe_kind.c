@@ -145,7 +145,7 @@ void goe_kind_test(goe_filter_t *filter, const goe_observation_t *obs) {
     for (size_t i = 0; i < KIND_SIZES; i++) {
         if (filter->kind.size_m[i] > 0.0f) {
             const float squared = difference2(filter, reciprocal, i);
-            filter->kind.usable |= squared < DOUBT_SIGMAS2 ? (uint8_t)(1u << i) : (uint8_t)0u;
+            filter->kind.usable = (uint8_t)(filter->kind.usable | (squared < DOUBT_SIGMAS2 ? 1u << i : 0u));
             off = squared > WRONG_SIGMAS2 || off;
         }
     }

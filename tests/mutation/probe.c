@@ -283,7 +283,7 @@ static void hostile(void) {
             if (one_in(3)) {
                 float *const parts[] = {image.pose.position_ned_m, &image.pose.height_m, image.pose.attitude,
                                         &image.left.u_px,          &image.top.u_px,      &image.base_near.u_px,
-                                        &image.box.left_px,        &image.box.top_px,    &image.noise.attitude_deg};
+                                        &image.box.left_px,        &image.box.top_px,    &image.noise.attitude_sd_deg};
                 spoil(parts[below(9)], 8u);
             }
             if (one_in(20)) {

@@ -51,6 +51,21 @@ def test_a_goal_that_is_missed_fails(made_up: Path, capsys: pytest.CaptureFixtur
     assert "absent: left out: no such compiler" in said.err
 
 
+def test_a_part_that_does_not_build_fails_and_the_others_run(
+    made_up: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(amount: Amount) -> Result:
+        raise RuntimeError("probe.c: no such member")
+
+    runs = {"broken": broken, "good": lambda amount: GOOD}
+    monkeypatch.setattr(command, "MODULES", dict.fromkeys(runs, "a description"))
+    monkeypatch.setattr(command, "runner", runs.__getitem__)
+    assert main(["evidence", "--quick", "--only", "broken", "--only", "good", "--record", str(made_up)]) == 1
+    said = capsys.readouterr()
+    assert "| good | lines | 10 of 10 |" in said.out
+    assert "broken: FAILED: probe.c: no such member" in said.err and "no figures of broken" in said.err
+
+
 def test_long_keeps_its_rows_and_those_of_others(made_up: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["evidence", "--long", "--only", "bad", "--record", str(made_up)]) == 1
     assert main(["evidence", "--long", "--only", "good", "--record", str(made_up)]) == 0

@@ -101,6 +101,7 @@ def run(arguments: argparse.Namespace) -> int:
         return 0
     amount = Amount(arguments.long, arguments.jobs, arguments.updates)
     ran: list[Kept] = []
+    failed: list[str] = []
     for name in arguments.only or MODULES:
         print(f"evidence: {name}: {MODULES[name]}", file=sys.stderr)
         try:
@@ -108,9 +109,15 @@ def run(arguments: argparse.Namespace) -> int:
         except NotHereError as error:
             print(f"evidence: {name}: left out: {error}", file=sys.stderr)
             continue
+        except RuntimeError as error:  # what it needs does not build or run: no reason to lose the other parts
+            print(f"evidence: {name}: FAILED: {error}", file=sys.stderr)
+            failed.append(name)
+            continue
         print(f"evidence: {name}: {ran[-1].seconds:.0f} s, details in build/evidence/{name}.txt", file=sys.stderr)
         if arguments.long:
             kept[name] = ran[-1]
             write(arguments.record, kept.values())
     print(table(ran))
-    return 1 if any(row.met is False for entry in ran for row in entry.rows) else 0
+    if failed:
+        print(f"evidence: no figures of {', '.join(failed)}: see above", file=sys.stderr)
+    return 1 if failed or any(row.met is False for entry in ran for row in entry.rows) else 0

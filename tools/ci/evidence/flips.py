@@ -117,7 +117,7 @@ def build() -> None:
     ):
         made = subprocess.run(["cmake", *command], cwd=ROOT, capture_output=True, text=True, check=False)
         if made.returncode != 0:
-            raise NotHereError(f"cmake {' '.join(command)}: {made.stdout[-2000:]}{made.stderr[-2000:]}")
+            raise RuntimeError(f"cmake {' '.join(command)}: {made.stdout[-2000:]}{made.stderr[-2000:]}")
 
 
 def fly(program: Path, flight: int, options: Iterable[str]) -> str:
@@ -126,7 +126,7 @@ def fly(program: Path, flight: int, options: Iterable[str]) -> str:
         [str(program), "--flight", str(flight), *options], capture_output=True, text=True, check=False
     )
     if done.returncode not in (0, 1):
-        raise NotHereError(f"{program.name}: {done.stderr[-2000:]}")
+        raise RuntimeError(f"{program.name}: {done.stderr[-2000:]}")
     return done.stdout
 
 

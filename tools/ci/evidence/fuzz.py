@@ -290,7 +290,7 @@ def run(amount: Amount) -> Result:
     try:
         state = run_long(updates, amount.jobs, keep) if amount.long else run_quick(amount.jobs, keep)
     except BrokenError as error:
-        raise NotHereError(f"the targets cannot be built: {error}") from None
+        raise RuntimeError(f"the targets cannot be built: {error}") from None
     rows = rows_of(state, updates)
     if not amount.long:  # the goals of a long run do not apply to a quick one
         rows = [

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from goe_tools.places import ROOT
 
-from .parts import Amount, NotHereError
+from .parts import Amount
 from .record import Result, Row
 
 QUICK_S = 60
@@ -43,6 +43,6 @@ def run(amount: Amount) -> Result:
         words = [sys.executable, "-m", "bench", "lies", *size, "--seed", str(SEED), "--jobs", str(amount.jobs)]
         done = subprocess.run([*words, "--json", str(path)], cwd=ROOT, capture_output=True, text=True, check=False)
         if not path.exists():
-            raise NotHereError(f"python -m bench lies: {done.stderr.strip()[-500:]}")
+            raise RuntimeError(f"python -m bench lies: {done.stderr.strip()[-500:]}")
         found = json.loads(path.read_text(encoding="utf-8"))
     return Result(rows_of(found["counts"], found["mixes"]), done.stdout)
