@@ -801,6 +801,11 @@ static void close_sectors(const goe_flight_t *flight, uint16_t sector_cm[GOE_FLI
     }
 }
 
+/* By how much an obstacle may be nearer than its estimate: two sigmas; a suspect one may be anywhere ahead. */
+static float nearer_m(const goe_flight_slot_t *slot, const float away_ne_m[2]) {
+    return slot->suspect ? POSITION_MAX_M : 2.0f * goe_flight_slot_sd_along_m(slot, away_ne_m[0], away_ne_m[1]);
+}
+
 goe_flight_status_t goe_flight_sectors(const goe_flight_t *flight, uint32_t max_cm,
                                        uint16_t sector_cm[GOE_FLIGHT_SECTORS]) {
     const goe_flight_status_t status = sector_cm ? check_ready(flight) : GOE_FLIGHT_BAD_ARGUMENT;
@@ -818,7 +823,8 @@ goe_flight_status_t goe_flight_sectors(const goe_flight_t *flight, uint32_t max_
         const goe_flight_slot_t *slot = &flight->slot[i];
         if (slot->used && (slot->valid & GOE_HAS_POSITION) != 0u && !is_passed_over(flight, slot)) {
             const float away[2] = {slot->center_ne_m[0] - own->ned_m[0], slot->center_ne_m[1] - own->ned_m[1]};
-            goe_flight_geometry_enter_circle(sector_cm, max_cm, away, goe_flight_slot_radius_m(slot));
+            goe_flight_geometry_enter_circle(sector_cm, max_cm, away, goe_flight_slot_radius_m(slot),
+                                             nearer_m(slot, away));
         }
     }
     return attitude && own ? GOE_FLIGHT_OK : GOE_FLIGHT_NO_POSE;

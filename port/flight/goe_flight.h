@@ -513,8 +513,8 @@ goe_flight_status_t goe_flight_obstacle(const goe_flight_t *flight, int slot, go
 
 /* Finds the distance of the nearest obstacle in each sector; sector i is centered on the bearing 5 i degrees. Values in cm:
  *   - at most max_cm: the distance of an obstacle with a position; while unplaced is not 0 there may be a nearer one
- *   - max_cm + 1: nothing was detected in the sector up to max_cm: no obstacle whose estimated outline is nearer, no detection
- *     of an obstacle without a width, and none of those that unplaced counts. The latest complete image of a live camera shows the flat ground at max_cm there, at the
+ *   - max_cm + 1: nothing was detected in the sector up to max_cm: no obstacle whose estimated outline is nearer by less
+ *     than two sigmas, no suspect obstacle, [F8] no detection of an obstacle without a width, and none of those that unplaced counts. The latest complete image of a live camera shows the flat ground at max_cm there, at the
  *     attitude of its exposure; so it also shows any nearer obstacle that is as high as the aircraft
  *   - GOE_FLIGHT_SECTOR_UNKNOWN: all other sectors
  * Time is that of the latest assessment or of the newest sample, whichever is later.

@@ -204,27 +204,30 @@ void goe_flight_geometry_close_sectors(uint16_t sector_cm[GOE_FLIGHT_SECTORS], c
     }
 }
 
-static void enter(uint16_t *sector_cm, uint32_t cm) {
-    if (cm < *sector_cm) {
-        *sector_cm = (uint16_t)cm;
+/* A distance enters if it is the nearest. GOE_FLIGHT_SECTOR_UNKNOWN ends that the sector is clear. */
+static void enter(uint16_t *sector_cm, uint16_t cm, uint32_t max_cm) {
+    if (cm < *sector_cm || *sector_cm > max_cm) {
+        *sector_cm = cm;
     }
 }
 
 void goe_flight_geometry_enter_circle(uint16_t sector_cm[GOE_FLIGHT_SECTORS], uint32_t max_cm, const float away_ne_m[2],
-                                      float radius_m) {
+                                      float radius_m, float nearer_m) {
     const float square = away_ne_m[0] * away_ne_m[0] + away_ne_m[1] * away_ne_m[1];
     const float outside = square - radius_m * radius_m;
     const float near_cm = goe_flight_larger(sqrtf(square) - radius_m, 0.0f) * CM_PER_M;
-    if (near_cm > (float)max_cm) {
+    const bool beyond = near_cm > (float)max_cm;
+    if (beyond && near_cm - nearer_m * CM_PER_M > (float)max_cm) {
         return;
     }
-    const uint32_t cm = near_cm >= (float)TOUCH_MIN ? (uint32_t)near_cm : TOUCH_MIN;
+    const uint32_t within_cm = near_cm >= (float)TOUCH_MIN && !beyond ? (uint32_t)near_cm : TOUCH_MIN;
+    const uint16_t cm = beyond ? GOE_FLIGHT_SECTOR_UNKNOWN : (uint16_t)within_cm;
     const float half_deg = outside > 0.0f ? goe_flight_atan2_deg(radius_m, sqrtf(outside)) : 180.0f;
     const float bearing_deg = goe_flight_atan2_deg(away_ne_m[1], away_ne_m[0]);
     for (int i = 0; i < GOE_FLIGHT_SECTORS; i++) {
         const float off_deg = apart_deg(bearing_deg, (float)i * SECTOR_DEG);
         if (goe_flight_within(off_deg, half_deg + 0.5f * SECTOR_DEG)) {
-            enter(&sector_cm[i], cm);
+            enter(&sector_cm[i], cm, max_cm);
         }
     }
 }

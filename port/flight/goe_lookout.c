@@ -16,7 +16,6 @@
 #define RISE_INSIDE 0.4f  /* of a probability by sigma: 1 from 1.25 sigma inside a limit on ... */
 #define RISE_OUTSIDE 0.2f /* ... 0 from 2.5 sigma outside of it on */
 #define SD_MIN_M2 0.25f
-#define SHORT_M2 1.0e-6f
 #define SLOW_M2_S2 0.01f
 #define SOON_S 0.01f /* left before the obstacle ahead is reached */
 
@@ -30,16 +29,6 @@ float goe_flight_lookout_age_s(const goe_flight_slot_t *slot, uint32_t now_us) {
 
 float goe_flight_lookout_drift_m(const goe_flight_t *flight, const goe_flight_slot_t *slot, uint32_t now_us) {
     return flight->settings.stale_growth_m_s * goe_flight_lookout_age_s(slot, now_us);
-}
-
-/* One sigma of the kept place along a vector. */
-static float sd_along_m(const goe_flight_slot_t *slot, float north_m, float east_m) {
-    const float *ne_m2 = slot->covariance_ne_m2;
-    const float square = goe_flight_square(north_m) + goe_flight_square(east_m);
-    const float most_m2 = ne_m2[0] + ne_m2[2];
-    const float along_m2 = goe_flight_square(north_m) * ne_m2[0] + 2.0f * north_m * east_m * ne_m2[1] +
-                           goe_flight_square(east_m) * ne_m2[2];
-    return sqrtf(goe_flight_larger(square > SHORT_M2 ? along_m2 / square : most_m2, SD_MIN_M2));
 }
 
 /* Probability that a distance lies below a limit: two straight lines, nowhere more than 0.01 below the normal distribution's. */
@@ -75,9 +64,10 @@ static void foresee_kept(const goe_flight_t *flight, const goe_flight_slot_t *sl
     const float speed_m_s = sqrtf(speed2);
     memset(hazard, 0, sizeof *hazard);
     hazard->tcpa_s = goe_flight_larger(closest_s - radius_m / speed_m_s, closest_s > 0.0f ? SOON_S : 0.0f);
-    hazard->tcpa_sd_s = closest_s > 0.0f ? sd_along_m(slot, v[0], v[1]) / speed_m_s : 0.0f;
+    hazard->tcpa_sd_s = closest_s > 0.0f ? goe_flight_slot_sd_along_m(slot, v[0], v[1]) / speed_m_s : 0.0f;
     hazard->dcpa_m = goe_flight_larger(off_m, 0.0f);
-    hazard->dcpa_sd_m = closest_s > 0.0f ? sd_along_m(slot, -v[1], v[0]) : sd_along_m(slot, off_n_m, off_e_m);
+    hazard->dcpa_sd_m = closest_s > 0.0f ? goe_flight_slot_sd_along_m(slot, -v[1], v[0])
+                                         : goe_flight_slot_sd_along_m(slot, off_n_m, off_e_m);
     hazard->conflict_probability = below(limit_m, off_m, hazard->dcpa_sd_m);
     if ((slot->valid & GOE_HAS_HEIGHT) != 0u) {
         pass_over(flight, slot, own_ned_m[2] + closest_s * v[2], hazard);

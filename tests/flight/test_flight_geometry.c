@@ -155,7 +155,7 @@ static void a_circle_enters_the_sectors_that_it_touches(void) {
                                (float)(distance_m * sin(bearing / DEG_PER_RAD))};
         const double half = DEG_PER_RAD * asin(radius_m / distance_m);
         close_sectors();
-        goe_flight_geometry_enter_circle(sector_cm, MAX_CM, away, (float)radius_m);
+        goe_flight_geometry_enter_circle(sector_cm, MAX_CM, away, (float)radius_m, 0.0f);
         for (int i = 0; i < GOE_FLIGHT_SECTORS; i++) {
             const double off = fabs(remainder(5.0 * i - bearing, 360.0));
             if (off < half + 2.4) {
@@ -174,15 +174,35 @@ static void the_nearest_counts_and_distant_ones_do_not(void) {
     const float inside_m[2] = {1.0f, 0.0f};
     close_sectors();
     sector_cm[0] = MAX_CM + 1u;
-    goe_flight_geometry_enter_circle(sector_cm, MAX_CM, far_m, 2.0f);
-    goe_flight_geometry_enter_circle(sector_cm, MAX_CM, near_m, 2.0f);
-    goe_flight_geometry_enter_circle(sector_cm, MAX_CM, far_m, 2.0f);
-    goe_flight_geometry_enter_circle(sector_cm, MAX_CM, beyond_m, 2.0f);
+    goe_flight_geometry_enter_circle(sector_cm, MAX_CM, far_m, 2.0f, 0.0f);
+    goe_flight_geometry_enter_circle(sector_cm, MAX_CM, near_m, 2.0f, 0.0f);
+    goe_flight_geometry_enter_circle(sector_cm, MAX_CM, far_m, 2.0f, 0.0f);
+    goe_flight_geometry_enter_circle(sector_cm, MAX_CM, beyond_m, 2.0f, 0.0f);
     TEST_ASSERT_EQUAL_UINT16(1800u, sector_cm[0]);
     TEST_ASSERT_EQUAL_UINT16(GOE_FLIGHT_SECTOR_UNKNOWN, sector_cm[36]);
-    goe_flight_geometry_enter_circle(sector_cm, MAX_CM, inside_m, 2.0f);
+    goe_flight_geometry_enter_circle(sector_cm, MAX_CM, inside_m, 2.0f, 0.0f);
     for (int i = 0; i < GOE_FLIGHT_SECTORS; i++) {
         TEST_ASSERT_EQUAL_UINT16(1u, sector_cm[i]);
+    }
+}
+
+/* A circle that may be nearer than max_cm clears nothing, and takes no distance away. */
+static void a_circle_that_may_be_near_makes_clear_sectors_unknown(void) {
+    const float far_m[2] = {(float)MAX_CM / 100.0f + 30.0f, 0.0f};
+    const float near_m[2] = {0.0f, 20.0f};
+    const float behind_m[2] = {0.0f, (float)MAX_CM / 100.0f + 30.0f};
+    for (int k = 0; k < 2; k++) {
+        for (int i = 0; i < GOE_FLIGHT_SECTORS; i++) {
+            sector_cm[i] = MAX_CM + 1u;
+        }
+        goe_flight_geometry_enter_circle(sector_cm, MAX_CM, near_m, 2.0f, 0.0f);
+        goe_flight_geometry_enter_circle(sector_cm, MAX_CM, far_m, 2.0f, k == 0 ? 27.9f : 28.1f);
+        goe_flight_geometry_enter_circle(sector_cm, MAX_CM, behind_m, 2.0f, 1.0e6f);
+        TEST_ASSERT_EQUAL_UINT16(k == 0 ? MAX_CM + 1u : GOE_FLIGHT_SECTOR_UNKNOWN, sector_cm[0]);
+        TEST_ASSERT_EQUAL_UINT16(1800u, sector_cm[18]);
+        TEST_ASSERT_EQUAL_UINT16(MAX_CM + 1u, sector_cm[36]);
+        goe_flight_geometry_enter_circle(sector_cm, MAX_CM, far_m, 40.0f, 0.0f);
+        TEST_ASSERT_TRUE(sector_cm[0] <= MAX_CM);
     }
 }
 
@@ -348,6 +368,7 @@ int main(void) {
     RUN_TEST(the_date_line_is_no_edge);
     RUN_TEST(a_circle_enters_the_sectors_that_it_touches);
     RUN_TEST(the_nearest_counts_and_distant_ones_do_not);
+    RUN_TEST(a_circle_that_may_be_near_makes_clear_sectors_unknown);
     RUN_TEST(the_view_turns_with_the_camera);
     RUN_TEST(a_clear_sector_shows_any_obstacle_in_it);
     RUN_TEST(bearings_contain_every_pixel_and_no_more);

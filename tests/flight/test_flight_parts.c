@@ -211,6 +211,26 @@ static void an_obstacle_without_a_width_closes_its_box(void) {
     TEST_ASSERT_TRUE(closed >= 2 && clear_sectors() > 2);
 }
 
+/* [F8] GIVEN an obstacle beyond the distance WHEN two of its sigmas reach into it, or it is suspect THEN its sectors are not clear. */
+static void an_obstacle_that_may_be_nearer_is_not_clear(void) {
+    (void)flown_fly(&flown, 2.0);
+    goe_flight_slot_t *slot = &flown.flight.slot[0];
+    const goe_flight_history_position_t *own = &flown.flight.history.position[0];
+    TEST_ASSERT_TRUE((slot->valid & GOE_HAS_POSITION) != 0u && flown.flight.history.position_count > 0);
+    const double north = (double)(slot->center_ne_m[0] - own->ned_m[0]);
+    const double east = (double)(slot->center_ne_m[1] - own->ned_m[1]);
+    const int sector = (int)lround(atan2(east, north) * 180.0 / 3.14159265358979 / 5.0 + 144.0) % GOE_FLIGHT_SECTORS;
+    const uint32_t max_cm = (uint32_t)(50.0 * hypot(north, east)); /* half of the way */
+    TEST_ASSERT_TRUE(max_cm > 1000u && max_cm < 6000u);
+    for (int k = 0; k < 4; k++) {
+        slot->covariance_ne_m2[0] = slot->covariance_ne_m2[2] = k == 1 ? 1600.0f : 1.0f;
+        slot->covariance_ne_m2[1] = 0.0f;
+        slot->suspect = k == 2;
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_sectors(&flown.flight, max_cm, sector_cm));
+        TEST_ASSERT_EQUAL_UINT16(k == 0 || k == 3 ? max_cm + 1u : GOE_FLIGHT_SECTOR_UNKNOWN, sector_cm[sector]);
+    }
+}
+
 /* GIVEN a track WHEN its id shows another obstacle elsewhere THEN that one is unplaced and its bearing is not clear, until the track has its
  * position. */
 static void a_detection_that_is_elsewhere_is_unplaced(void) {
@@ -290,6 +310,7 @@ int main(void) {
     RUN_TEST(a_view_ends_without_an_assessment);
     RUN_TEST(clear_is_what_an_image_showed);
     RUN_TEST(an_obstacle_without_a_width_closes_its_box);
+    RUN_TEST(an_obstacle_that_may_be_nearer_is_not_clear);
     RUN_TEST(a_detection_that_is_elsewhere_is_unplaced);
     RUN_TEST(without_ids_parts_are_as_good_as_one_call);
     RUN_TEST(a_reset_of_the_heading_clears_nothing);
