@@ -43,11 +43,11 @@ static void judge_calm(goe_flight_slip_t *slip, float step_s) {
 
 bool goe_flight_slip_jumped(goe_flight_slip_t *slip, const float off_ned_m[3], float step_s, float jump_ned_m[3]) {
     float sum_m[3];
-    const bool near = step_s > 0.0f && step_s <= STEP_MAX_S;
-    for (int i = 0; i < 3 && near; i++) {
+    const bool usable = step_s > 0.0f && step_s <= STEP_MAX_S;
+    for (int i = 0; i < 3 && usable; i++) {
         sum_m[i] = slip->ned_m[i] * (1.0f - step_s / MEMORY_S) + off_ned_m[i];
     }
-    if (!near || !goe_flight_all_finite(sum_m, 3)) {
+    if (!usable || !goe_flight_all_finite(sum_m, 3)) {
         goe_flight_slip_clear(slip);
         return false;
     }
