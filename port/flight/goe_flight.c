@@ -13,7 +13,6 @@
 #include "goe_marks.h"
 #include "goe_parts.h"
 #include "goe_reaction.h"
-#include "goe_slip.h"
 #include "goe_table.h"
 
 #define TAG 0x474F4546u
@@ -113,7 +112,6 @@ static bool has_camera(const goe_flight_t *flight, int number) {
 static void forget(goe_flight_t *flight) {
     goe_flight_history_clear(&flight->history);
     memset(&flight->marks, 0, sizeof flight->marks);
-    goe_flight_slip_clear(&flight->slip);
     memset(&flight->clock, 0, sizeof flight->clock);
     memset(&flight->waiting, 0, sizeof flight->waiting);
     memset(flight->parts, 0, sizeof flight->parts);
@@ -323,6 +321,16 @@ static bool has_bad_delta(const goe_flight_t *flight, const goe_flight_position_
            !goe_flight_all_within(p->reset_delta_ned_m, 3, POSITION_MAX_M);
 }
 
+/* Distance of the position from its prediction by the velocity: an unknown jump, as well as it can be known. The kept
+ * obstacles move along. */
+static void guess_jump(const goe_flight_t *flight, const goe_flight_position_t *sample, float jump_ned_m[3]) {
+    const goe_flight_history_position_t *newest = goe_flight_history_newest_position(&flight->history);
+    for (int i = 0; newest && i < 3; i++) {
+        const float s = goe_flight_between_s(sample->time_us, newest->time_us);
+        jump_ned_m[i] = sample->position_ned_m[i] - newest->ned_m[i] - s * flight->velocity_ned_m_s[i];
+    }
+}
+
 static void move_places(goe_flight_t *flight, const float jump_ned_m[3]) {
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         goe_flight_slot_shift(&flight->slot[i], jump_ned_m);
@@ -330,52 +338,19 @@ static void move_places(goe_flight_t *flight, const float jump_ned_m[3]) {
     goe_flight_reaction_shift(&flight->reaction, jump_ned_m);
 }
 
-static void follow_known_jump(goe_flight_t *flight, const float jump_ned_m[3]) {
-    goe_flight_history_shift(&flight->history, jump_ned_m);
-    move_places(flight, jump_ned_m);
-    goe_flight_count(&flight->counters.resets);
-}
-
-/* An unknown jump is what the velocity before does not predict, as well as it can be known: that of the sample may have jumped, too. The
- * kept obstacles move along. */
-static void follow_unknown_jump(goe_flight_t *flight, const goe_flight_position_t *sample) {
-    const goe_flight_history_position_t *newest = goe_flight_history_newest_position(&flight->history);
-    if (newest) {
-        float jump_ned_m[3];
-        const float *before_m_s = flight->velocity_ned_m_s;
-        goe_flight_slip_between(newest, before_m_s, before_m_s, sample, jump_ned_m);
-        move_places(flight, jump_ned_m);
-    }
-    lose_everything(flight);
-}
-
-/* A jump that no mark announces has the size of the slip. */
-static void follow_slip(goe_flight_t *flight, const goe_flight_position_t *sample) {
-    float off_ned_m[3];
-    float jump_ned_m[3];
-    const goe_flight_history_position_t *newest = goe_flight_history_newest_position(&flight->history);
-    if (!newest) {
-        goe_flight_slip_clear(&flight->slip);
-        return;
-    }
-    goe_flight_slip_between(newest, flight->velocity_ned_m_s, sample->velocity_ned_m_s, sample, off_ned_m);
-    const float step_s = goe_flight_between_s(sample->time_us, newest->time_us);
-    if (goe_flight_slip_jumped(&flight->slip, off_ned_m, step_s, jump_ned_m) &&
-        goe_flight_marks_add(&flight->marks, jump_ned_m)) {
-        follow_known_jump(flight, jump_ned_m);
-    }
-}
-
-static void follow_jumps(goe_flight_t *flight, const goe_flight_position_t *sample) {
+static void follow_reset(goe_flight_t *flight, const goe_flight_position_t *sample) {
     float jump_ned_m[3] = {0.0f, 0.0f, 0.0f};
     const bool counters = !(flight->settings.resets > 0.5f);
     const goe_flight_marks_change_t change = goe_flight_marks_position(&flight->marks, sample, counters, jump_ned_m);
     if (change == GOE_FLIGHT_MARKS_UNKNOWN) {
-        follow_unknown_jump(flight, sample);
+        guess_jump(flight, sample, jump_ned_m);
+        move_places(flight, jump_ned_m);
+        lose_everything(flight);
     } else if (change == GOE_FLIGHT_MARKS_JUMP) {
-        follow_known_jump(flight, jump_ned_m);
+        goe_flight_history_shift(&flight->history, jump_ned_m);
+        move_places(flight, jump_ned_m);
+        goe_flight_count(&flight->counters.resets);
     }
-    follow_slip(flight, sample);
 }
 
 /* The ground by the best source of this sample. */
@@ -408,7 +383,7 @@ goe_flight_status_t goe_flight_position(goe_flight_t *flight, const goe_flight_p
     if (newest && !is_newer(flight->history.position_count, &newest->time_us, sample->time_us)) {
         return refuse_time(flight);
     }
-    follow_jumps(flight, sample);
+    follow_reset(flight, sample);
     advance(flight, sample->time_us);
     (void)goe_flight_history_add_position(&flight->history, sample->time_us, sample->position_ned_m);
     flight->history.stale = 0;

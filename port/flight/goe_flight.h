@@ -27,11 +27,7 @@
  *             frame and an assessment return GOE_FLIGHT_CORRUPTED. [F3] An estimator that returns GOE_CORRUPTED starts again; if its
  *             settings are lost, it takes those of another slot. Until it has a position again, the slot keeps its position, hazard
  *             and warning, marked suspect. [F4] The rest (poses, clocks, positions, the active order) is not sealed.
- * Jumps       Positions that leave the way of the velocity by more than 2.2 m within a second, along the ground or vertically, have
- *             jumped if the velocity has agreed with them for a second before. The layer takes this for a reset of known size, also
- *             if the jump takes a second, and again when the positions jump back. [F6] A velocity that no longer agrees counts for 3 s,
- *             then the positions count; one that never agrees counts for nothing. [F7]
- * Cost        On a Cortex-M4F (gcc), in instructions: a sample at most 1,440; a frame 47,000 for each obstacle in it; an assessment
+ * Cost        On a Cortex-M4F (gcc), in instructions: a sample at most 1,270; a frame 47,000 for each obstacle in it; an assessment
  *             30,100 with one obstacle and 23,200 for each further one with a position. While there is a hazard or an order, an
  *             assessment also examines paths: at most 4 times (4 + 4 GOE_FLIGHT_SLOTS), each against every obstacle.
  *             goe_flight_obstacle() 980; goe_flight_sectors() 9,500 with one obstacle; goe_flight_init() 12,700 for each
@@ -297,7 +293,7 @@ typedef struct {
     uint16_t renumbered; /* tracks that took over a new id */
     uint16_t evicted; /* tracks that ended because a new obstacle took their slot */
     uint16_t full;    /* confirmed detections that found no slot */
-    uint16_t resets;  /* known jumps, and jumps without a reset */
+    uint16_t resets;  /* known jumps */
     uint16_t lost;    /* unknown resets and restarts: all tracks ended */
 } goe_flight_counters_t;
 
@@ -328,13 +324,6 @@ typedef struct { /* goe_marks.c: the autopilot's reset counters */
     goe_flag_t attitude_known, position_known; /* a first mark has come */
     float jumps_ned_m[3];                /* sum of all known jumps, limited to 1e6 */
 } goe_flight_marks_t;
-
-typedef struct { /* goe_slip.c */
-    float ned_m[3];  /* distance of the positions from the way that the velocity gives, of the latest second */
-    float calm_s;    /* for so long it has been small */
-    float doubted_s; /* and for so long it has not been small for a second */
-    goe_flag_t jumping;
-} goe_flight_slip_t;
 
 typedef struct { /* goe_clock.c: sender's clock to autopilot's */
     uint32_t offset_us;    /* autopilot's minus sender's, by goe_flight_timesync(); or the least in this interval */
@@ -423,7 +412,6 @@ typedef struct {
     float attitude_white_sd_deg; /* setting of the estimator */
     goe_flight_history_t history;
     goe_flight_marks_t marks;
-    goe_flight_slip_t slip;
     goe_flight_clock_t clock;
     goe_flight_reaction_t reaction;
     goe_flight_counters_t counters; /* public */
@@ -514,7 +502,7 @@ goe_flight_status_t goe_flight_obstacle(const goe_flight_t *flight, int slot, go
 /* Finds the distance of the nearest obstacle in each sector; sector i is centered on the bearing 5 i degrees. Values in cm:
  *   - at most max_cm: the distance of an obstacle with a position; while unplaced is not 0 there may be a nearer one
  *   - max_cm + 1: nothing was detected in the sector up to max_cm: no obstacle whose estimated outline is nearer by less
- *     than two sigmas, no suspect obstacle, [F8] no detection of an obstacle without a width, and none of those that unplaced counts. The latest complete image of a live camera shows the flat ground at max_cm there, at the
+ *     than two sigmas, no suspect obstacle, [F6] no detection of an obstacle without a width, and none of those that unplaced counts. The latest complete image of a live camera shows the flat ground at max_cm there, at the
  *     attitude of its exposure; so it also shows any nearer obstacle that is as high as the aircraft
  *   - GOE_FLIGHT_SECTOR_UNKNOWN: all other sectors
  * Time is that of the latest assessment or of the newest sample, whichever is later.

@@ -20,7 +20,7 @@ static goe_flight_marks_change_t compare(uint32_t before, uint32_t now, bool cou
     return !counters || ((now - before) & 0xFFu) == 1u ? GOE_FLIGHT_MARKS_JUMP : GOE_FLIGHT_MARKS_UNKNOWN;
 }
 
-bool goe_flight_marks_add(goe_flight_marks_t *marks, const float jump_ned_m[3]) {
+static bool add_jump(goe_flight_marks_t *marks, const float jump_ned_m[3]) {
     float sum[3];
     for (int i = 0; i < 3; i++) {
         sum[i] = marks->jumps_ned_m[i] + jump_ned_m[i];
@@ -51,5 +51,5 @@ goe_flight_marks_change_t goe_flight_marks_position(goe_flight_marks_t *marks, c
         const bool jumped = (i < 2 ? horizontal : vertical) == GOE_FLIGHT_MARKS_JUMP;
         jump_ned_m[i] = jumped ? sample->reset_delta_ned_m[i] : 0.0f;
     }
-    return goe_flight_marks_add(marks, jump_ned_m) ? GOE_FLIGHT_MARKS_JUMP : GOE_FLIGHT_MARKS_UNKNOWN;
+    return add_jump(marks, jump_ned_m) ? GOE_FLIGHT_MARKS_JUMP : GOE_FLIGHT_MARKS_UNKNOWN;
 }

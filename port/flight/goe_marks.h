@@ -14,7 +14,4 @@ goe_flight_marks_change_t goe_flight_marks_attitude(goe_flight_marks_t *marks, u
 goe_flight_marks_change_t goe_flight_marks_position(goe_flight_marks_t *marks, const goe_flight_position_t *sample,
                                                     bool counters, float jump_ned_m[3]);
 
-/* Adds a known jump to the sum of jumps. Returns false, and adds nothing, if the sum would be out of range. */
-bool goe_flight_marks_add(goe_flight_marks_t *marks, const float jump_ned_m[3]);
-
 #endif

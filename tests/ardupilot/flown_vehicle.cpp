@@ -204,10 +204,9 @@ void FlownVehicle::take_sample() {
     scripted.q.q3 = attitude.q[2];
     scripted.q.q4 = attitude.q[3];
     const float *ned = position.position_ned_m;
-    jump.z -= climb_m_s / float(FLOWN_POSE_HZ);
     scripted.position = Vector3f(ned[0] + jump.x, ned[1] + jump.y, ned[2] + jump.z);
     const float *v = position.velocity_ned_m_s;
-    scripted.velocity = Vector3f(v[0], v[1], v[2] - climb_m_s);
+    scripted.velocity = Vector3f(v[0], v[1], v[2]);
     scripted.has_terrain = true;
     scripted.terrain_m = position.height_m[GOE_FLIGHT_TERRAIN];
     flown.sample++;

@@ -61,13 +61,12 @@ class FlownVehicle {
     bool steps_database{true};
 
     // the detector
-    int delay;             // samples from exposure to arrival
-    int ahead_us;          // error of the sender's clock
-    bool sends;            // it is alive
-    uint8_t copies;        // obstacles in the image, side by side
-    uint64_t first_us;     // of the vehicle's clock at sample 0
-    Vector3f jump;         // of the position, from now on
-    float climb_m_s{0.0f}; // besides the flight: the velocity has it, and jump.z grows by it
+    int delay;         // samples from exposure to arrival
+    int ahead_us;      // error of the sender's clock
+    bool sends;        // it is alive
+    uint8_t copies;    // obstacles in the image, side by side
+    uint64_t first_us; // of the vehicle's clock at sample 0
+    Vector3f jump;     // of the position, from now on
     unsigned images;
     uint32_t compared; // number of the latest assessment that was compared
 

@@ -682,8 +682,9 @@ static void test_the_sphere_is_at_the_own_height_between_foot_and_top(void) {
     const float top = foot + obstacle.height_m + 2.0f * obstacle.height_sd_m;
     CHECK_CLOSE(0.3, fminf(fmaxf(own, foot), top), up);
     vehicle.compares = false;
+    scripted.vertical_reset_ms = AP_HAL::millis();
     vehicle.flown.detects = false;
-    vehicle.climb_m_s = 500.0f; // far over it
+    vehicle.jump = Vector3f(0.0f, 0.0f, -500.0f); // far over it
     vehicle.fly(0.4);
     TEST_ASSERT_TRUE(scripted.database().at(ID).pos.z < own + 100.0f);
 }

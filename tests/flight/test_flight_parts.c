@@ -211,7 +211,7 @@ static void an_obstacle_without_a_width_closes_its_box(void) {
     TEST_ASSERT_TRUE(closed >= 2 && clear_sectors() > 2);
 }
 
-/* [F8] GIVEN an obstacle beyond the distance WHEN two of its sigmas reach into it, or it is suspect THEN its sectors are not clear. */
+/* [F6] GIVEN an obstacle beyond the distance WHEN two of its sigmas reach into it, or it is suspect THEN its sectors are not clear. */
 static void an_obstacle_that_may_be_nearer_is_not_clear(void) {
     (void)flown_fly(&flown, 2.0);
     goe_flight_slot_t *slot = &flown.flight.slot[0];
