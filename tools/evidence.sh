@@ -6,7 +6,7 @@
 #   tools/evidence.sh --show              prints that record, or the newest release's
 #   tools/evidence.sh --release VERSION   makes tests/evidence/VERSION.json from that record
 #
-# Further options are those of python -m ci evidence --help. Exit status 1: a goal was missed.
+# Further options are those of python -m ci evidence --help. Exit status 1: a goal was missed, or a part did not build or run.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 cd "$root"

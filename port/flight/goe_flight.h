@@ -27,8 +27,8 @@
  *             frame and an assessment return GOE_FLIGHT_CORRUPTED. [F3] An estimator that returns GOE_CORRUPTED starts again; if its
  *             settings are lost, it takes those of another slot. Until it has a position again, the slot keeps its position, hazard
  *             and warning, marked suspect. [F4] The rest (poses, clocks, positions, the active order) is not sealed.
- * Cost        On a Cortex-M4F (gcc), in instructions: a sample at most 1,270; a frame 47,000 for each obstacle in it; an assessment
- *             30,100 with one obstacle and 23,200 for each further one with a position. While there is a hazard or an order, an
+ * Cost        On a Cortex-M4F (gcc), in instructions: a sample at most 1,270; a frame 46,600 for each obstacle in it; an assessment
+ *             29,700 with one obstacle and 23,200 for each further one with a position. While there is a hazard or an order, an
  *             assessment also examines paths: at most 4 times (4 + 4 GOE_FLIGHT_SLOTS), each against every obstacle.
  *             goe_flight_obstacle() 980; goe_flight_sectors() 9,500 with one obstacle; goe_flight_init() 12,700 for each
  *             slot. No loop runs longer than GOE_FLIGHT_SECTORS.
@@ -501,9 +501,10 @@ goe_flight_status_t goe_flight_obstacle(const goe_flight_t *flight, int slot, go
 
 /* Finds the distance of the nearest obstacle in each sector; sector i is centered on the bearing 5 i degrees. Values in cm:
  *   - at most max_cm: the distance of an obstacle with a position; while unplaced is not 0 there may be a nearer one
- *   - max_cm + 1: nothing was detected in the sector up to max_cm: no obstacle whose estimated outline is nearer by less
- *     than two sigmas, no suspect obstacle, [F6] no detection of an obstacle without a width, and none of those that unplaced counts. The latest complete image of a live camera shows the flat ground at max_cm there, at the
- *     attitude of its exposure; so it also shows any nearer obstacle that is as high as the aircraft
+ *   - max_cm + 1: nothing was detected in the sector up to max_cm. No estimated outline is nearer, also if it is moved nearer by two
+ *     sigmas of its position; no obstacle there is suspect; [F6] no obstacle without a width, and none that unplaced counts, was
+ *     detected there. The latest complete image of a live camera shows the flat ground at max_cm there, at the attitude of its
+ *     exposure; so it also shows any nearer obstacle that is as high as the aircraft
  *   - GOE_FLIGHT_SECTOR_UNKNOWN: all other sectors
  * Time is that of the latest assessment or of the newest sample, whichever is later.
  * Obstacles whose top the aircraft passes by more than the clearance, at two sigma, are ignored. For PX4's

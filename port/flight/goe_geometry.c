@@ -204,7 +204,7 @@ void goe_flight_geometry_close_sectors(uint16_t sector_cm[GOE_FLIGHT_SECTORS], c
     }
 }
 
-/* A distance enters if it is the nearest. GOE_FLIGHT_SECTOR_UNKNOWN ends that the sector is clear. */
+/* The nearest distance stays. GOE_FLIGHT_SECTOR_UNKNOWN replaces "clear", and no distance. */
 static void enter(uint16_t *sector_cm, uint16_t cm, uint32_t max_cm) {
     if (cm < *sector_cm || *sector_cm > max_cm) {
         *sector_cm = cm;
@@ -220,7 +220,7 @@ void goe_flight_geometry_enter_circle(uint16_t sector_cm[GOE_FLIGHT_SECTORS], ui
     if (beyond && near_cm - nearer_m * CM_PER_M > (float)max_cm) {
         return;
     }
-    const uint32_t within_cm = near_cm >= (float)TOUCH_MIN && !beyond ? (uint32_t)near_cm : TOUCH_MIN;
+    const float within_cm = goe_flight_larger(near_cm, (float)TOUCH_MIN);
     const uint16_t cm = beyond ? GOE_FLIGHT_SECTOR_UNKNOWN : (uint16_t)within_cm;
     const float half_deg = outside > 0.0f ? goe_flight_atan2_deg(radius_m, sqrtf(outside)) : 180.0f;
     const float bearing_deg = goe_flight_atan2_deg(away_ne_m[1], away_ne_m[0]);

@@ -33,8 +33,8 @@ void goe_flight_geometry_bearings(const goe_flight_camera_t *camera, const float
 /* The sectors of these bearings, and one more on each side, are unknown. */
 void goe_flight_geometry_close_sectors(uint16_t sector_cm[GOE_FLIGHT_SECTORS], const goe_flight_bearings_t *bearings);
 
-/* A circle at a place relative to the aircraft enters the sectors that it touches, by its nearest point. If this is beyond max_cm, and the
- * circle may be nearer by so much that it is not, clear sectors become unknown. */
+/* A circle at a place relative to the aircraft enters the sectors that it touches, by its nearest point. If this point is beyond
+ * max_cm, but not if it is nearer by nearer_m, the clear ones of these sectors become unknown. */
 void goe_flight_geometry_enter_circle(uint16_t sector_cm[GOE_FLIGHT_SECTORS], uint32_t max_cm, const float away_ne_m[2],
                                       float radius_m, float nearer_m);
 

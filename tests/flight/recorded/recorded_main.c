@@ -8,9 +8,8 @@
  * the mast is 70 m ahead, and how often two of its sigmas cover it. Once with the shape configured as round, as the masts are, and once
  * with the default, which knows no shape.
  *
- * Exit status: 0 if interpolation stays within its share of the exact time's median (SHARE_MAX, and for samples 200 ms apart
- * SHARE_COARSE_MAX or SHARE_COARSE_UNKNOWN_MAX), and poses late by 20 and by 100 ms, with a given uncertainty, cover the truth as
- * often as required, or as the exact time
+ * Exit status: 0 if interpolation stays within its share of the exact time's median (SHARE_MAX, and SHARE_COARSE_MAX for samples
+ * 200 ms apart), and poses late by 20 and by 100 ms, with a given uncertainty, cover the truth as often as required, or as the exact time
  * does; 1 otherwise; 77 if there is no such file. */
 #include <math.h>
 #include <stdio.h>
@@ -36,8 +35,6 @@
 #define SHARE_MAX 1.05
 #define SHARE_COARSE_MAX                                                                                               \
     1.25 /* half of the images of a flight that pitches by 24 degrees a second, rms, are hardly informative then */
-#define SHARE_COARSE_UNKNOWN_MAX                                                                                       \
-    1.4142 /* square root of 2: of an unknown shape the range hangs on the attitude, and half of the images say nothing */
 #define COARSE_S 0.15
 #define COVERED_MIN 0.88
 #define COVERED_RESOLVED 0.03 /* by the masts along the shorter flight */
@@ -253,8 +250,8 @@ static int judge_shape(const recorded_flight_t *recording, bool wanders, bool ro
         exact_covered = i == 0 ? covered : exact_covered;
         const bool interpolated = way->gap_s > 0.0 && !(way->late_s > 0.0);
         const bool reported = way->late_s > 0.0 && way->report_us > 1000u;
-        const double coarse_max = round ? SHARE_COARSE_MAX : SHARE_COARSE_UNKNOWN_MAX;
-        bad += interpolated && !(middle_m <= (way->gap_s > COARSE_S ? coarse_max : SHARE_MAX) * exact_m) ? 1 : 0;
+        const double share_max = way->gap_s > COARSE_S ? SHARE_COARSE_MAX : SHARE_MAX;
+        bad += interpolated && !(middle_m <= share_max * exact_m) ? 1 : 0;
         bad += reported && !(covered >= fmin(COVERED_MIN, exact_covered - COVERED_RESOLVED)) ? 1 : 0;
     }
     return bad;
