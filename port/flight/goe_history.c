@@ -12,11 +12,11 @@
 #define THIN_US 20000
 #define GAP_MAX_US 500000                                /* over a longer gap nothing is interpolated */
 #define NEAR_S (2.0f * GAP_MAX_US * GOE_FLIGHT_S_PER_US) /* samples farther apart say nothing of a bend */
-#define CHANGES 8                                        /* of the rate, from sample to sample, that count */
+#define CHANGES 4                                        /* of the rate, from sample to sample, that count */
 #define NONE (-1)
 #define NORM_MIN 0.5f
-#define MISSED_BY_CUBIC                                                                                                \
-    0.2f /* of what the rms change of the rate bends the straight line, one sigma: recorded flights, 200 ms */
+/* Of what the rms change of the rate bends the straight line, one sigma: recorded flights, samples 200 ms apart. */
+#define MISSED_BY_CUBIC 0.2f
 #define MISSED_BY_PARABOLA 0.5f
 
 void goe_flight_history_clear(goe_flight_history_t *history) { memset(history, 0, sizeof *history); }
@@ -187,20 +187,18 @@ static float change_rms_deg_s2(const goe_flight_history_t *h) {
     float changes = 0.0f; /* integral of the square */
     float time_s = 0.0f;
     for (int back = 1; back + 1 < count_of(h, ATTITUDES) && back <= CHANGES; back++) {
-        const goe_flight_history_attitude_t *middle = &h->attitude[place(h->attitude_next, back)];
-        const knot_t newer = knot(h, back - 1, middle);
-        const knot_t older = knot(h, back + 1, middle);
+        const goe_flight_history_attitude_t *from = &h->attitude[place(h->attitude_next, back)];
+        const knot_t older = knot(h, back + 1, from);
+        const knot_t middle = knot(h, back, from);
+        const knot_t newer = knot(h, back - 1, from);
         if (newer.known && older.known) {
             const float between_s = 0.5f * (newer.at_s - older.at_s);
-            const float to_newer = 1.0f / newer.at_s;
-            const float to_older = 1.0f / older.at_s;
             float square = 0.0f;
             for (int i = 0; i < 4; i++) {
-                const float ahead = (newer.q[i] - middle->q[i]) * to_newer;
-                const float behind = (older.q[i] - middle->q[i]) * to_older;
-                square += goe_flight_square(ahead - behind);
+                square += goe_flight_square(bend(&older, &middle, &newer, i));
             }
-            changes += 4.0f * square / between_s; /* an angle is twice its quaternion's vector */
+            /* a bend is half of the change of slope, over the step; an angle is twice its quaternion's vector */
+            changes += square * goe_flight_square(4.0f / newer.at_s) * between_s;
             time_s += between_s;
         }
     }
@@ -234,7 +232,8 @@ static void blend_attitude(const goe_flight_history_t *h, const bracket_t *brack
         pose->q[i] = usable ? pose->q[i] / norm : older.q[i];
     }
     const float missed = before.known && after.known ? MISSED_BY_CUBIC : MISSED_BY_PARABOLA;
-    pose->spread_deg = missed * 0.5f * f * (1.0f - f) * step_s * step_s * change_rms_deg_s2(h);
+    const float bend_s2 = 0.5f * f * (1.0f - f) * step_s * step_s; /* of a straight line, by a change of the rate */
+    pose->spread_deg = bend_s2 > 0.0f ? missed * bend_s2 * change_rms_deg_s2(h) : 0.0f;
 }
 
 goe_flight_status_t goe_flight_history_at(const goe_flight_history_t *history, uint32_t time_us,

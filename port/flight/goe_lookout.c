@@ -15,7 +15,6 @@
 #define SINCE_MAX_S 1.0e3f
 #define RISE_INSIDE 0.4f  /* of a probability by sigma: 1 from 1.25 sigma inside a limit on ... */
 #define RISE_OUTSIDE 0.2f /* ... 0 from 2.5 sigma outside of it on */
-#define SD_MIN_M2 0.25f
 #define SLOW_M2_S2 0.01f
 #define SOON_S 0.01f /* left before the obstacle ahead is reached */
 
@@ -43,7 +42,7 @@ static void pass_over(const goe_flight_t *flight, const goe_flight_slot_t *slot,
     const float limit_m = goe_flight_lookout_doubt(flight, slot) * flight->settings.clearance_m;
     hazard->has_clearance = true;
     hazard->clearance_m = slot->ground_down_m - slot->top_m - own_down_m;
-    hazard->clearance_sd_m = sqrtf(goe_flight_larger(goe_flight_square(slot->top_sd_m), SD_MIN_M2));
+    hazard->clearance_sd_m = sqrtf(goe_flight_larger(goe_flight_square(slot->top_sd_m), GOE_FLIGHT_SLOT_SD_MIN_M2));
     hazard->conflict_probability *= below(limit_m, hazard->clearance_m, hazard->clearance_sd_m);
 }
 

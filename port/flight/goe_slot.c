@@ -14,7 +14,6 @@
 #define SIZE_MIN_PX 8.0f
 #define KIND_MAX_M 1.0e3f
 #define SHORT_M2 1.0e-6f     /* of a vector without a direction */
-#define SD_MIN_M2 0.25f      /* no place is known better than to half a meter */
 #define KIND_SHARE_MIN 0.01f /* of a size: the least sigma that the estimator takes */
 #define LOCATED_S                                                                                                      \
     0.15f /* detections for so long without a new position show something else; shorter: images too soon */
@@ -47,7 +46,7 @@ float goe_flight_slot_sd_along_m(const goe_flight_slot_t *slot, float north_m, f
     const float most_m2 = ne_m2[0] + ne_m2[2];
     const float along_m2 = goe_flight_square(north_m) * ne_m2[0] + 2.0f * north_m * east_m * ne_m2[1] +
                            goe_flight_square(east_m) * ne_m2[2];
-    return sqrtf(goe_flight_larger(square > SHORT_M2 ? along_m2 / square : most_m2, SD_MIN_M2));
+    return sqrtf(goe_flight_larger(square > SHORT_M2 ? along_m2 / square : most_m2, GOE_FLIGHT_SLOT_SD_MIN_M2));
 }
 
 void goe_flight_slot_shift(goe_flight_slot_t *slot, const float jump_ned_m[3]) {

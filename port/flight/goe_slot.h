@@ -25,7 +25,9 @@ void goe_flight_slot_lose(goe_flight_slot_t *slot);
 /* Radius of the circle around the center that contains the outline. An unknown width or length counts as 0. */
 float goe_flight_slot_radius_m(const goe_flight_slot_t *slot);
 
-/* One sigma of the center along a horizontal vector. Of a short one the largest. */
+#define GOE_FLIGHT_SLOT_SD_MIN_M2 0.25f /* no distance to a kept place is known better than to half a meter */
+
+/* One sigma of the center along a horizontal vector; of a vector without a direction, at least the largest. */
 float goe_flight_slot_sd_along_m(const goe_flight_slot_t *slot, float north_m, float east_m);
 
 /* Whether its obstacle was detected, and has no position yet, or one that does not follow its detections. */

@@ -77,6 +77,23 @@ static void a_steady_flight_is_found_again(void) { check_flight(1000u, 4000u, 90
 static void slow_samples_too(void) { check_flight(0u, 100000u, 60.0, 2e-3); }
 static void the_clock_may_wrap(void) { check_flight(0xFFFFFFFFu - 500000u, 4000u, 90.0, 2e-3); }
 
+/* A sine of the pitch: 10 degrees, 1 Hz. */
+static void sine_at(uint32_t at_us, float q[4]) {
+    const double half = 0.5 * RAD_PER_DEG * 10.0 * sin(2.0 * 3.14159265358979 * 1e-6 * at_us);
+    q[0] = (float)cos(half);
+    q[1] = 0.0f;
+    q[2] = (float)sin(half);
+    q[3] = 0.0f;
+}
+
+static void feed_sine(uint32_t at_us) {
+    const float ned_m[3] = {0.0f, 0.0f, 0.0f};
+    float q[4];
+    sine_at(at_us, q);
+    TEST_ASSERT_TRUE(goe_flight_history_add_attitude(&history, at_us, q));
+    TEST_ASSERT_TRUE(goe_flight_history_add_position(&history, at_us, ned_m));
+}
+
 /* A sine of the pitch: 10 degrees, 1 Hz. Between samples 100 ms apart a straight line is off by 0.49 degrees at most; the cubic
  * by a tenth of that, and the parabola at the newest samples by less than half. The error is reported. */
 static void a_bent_flight_is_followed(void) {
@@ -85,15 +102,11 @@ static void a_bent_flight_is_followed(void) {
     double missed[2] = {0.0, 0.0};
     double reported[2] = {0.0, 0.0};
     for (int k = 0; k < 40; k++) {
-        const double half = 0.5 * RAD_PER_DEG * 10.0 * sin(2.0 * 3.14159265358979 * 0.1 * k);
-        const float q[4] = {(float)cos(half), 0.0f, (float)sin(half), 0.0f};
-        const float ned_m[3] = {0.0f, 0.0f, 0.0f};
-        TEST_ASSERT_TRUE(goe_flight_history_add_attitude(&history, 100000u * (uint32_t)k, q));
-        TEST_ASSERT_TRUE(goe_flight_history_add_position(&history, 100000u * (uint32_t)k, ned_m));
+        feed_sine(100000u * (uint32_t)k);
         for (int back = 1; k > 5 && back <= 2; back++) {
             const uint32_t at_us = 100000u * (uint32_t)k - 100000u * (uint32_t)back + 50000u;
-            const double then = 0.5 * RAD_PER_DEG * 10.0 * sin(2.0 * 3.14159265358979 * 1e-6 * at_us);
-            const float truth[4] = {(float)cos(then), 0.0f, (float)sin(then), 0.0f};
+            float truth[4];
+            sine_at(at_us, truth);
             TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_history_at(&history, at_us, &pose));
             const double off_deg = turned_deg(truth, pose.q);
             check_worst(back == 1 ? &parabola_deg : &cubic_deg, off_deg);
@@ -117,11 +130,7 @@ static void samples_on_a_line_do_not_lower_the_reported_error(void) {
     double least_deg = 1.0e9;
     double most_deg = 0.0;
     for (int k = 0; k < 40; k++) {
-        const double half = 0.5 * RAD_PER_DEG * 10.0 * sin(2.0 * 3.14159265358979 * 0.25 * k);
-        const float q[4] = {(float)cos(half), 0.0f, (float)sin(half), 0.0f};
-        const float ned_m[3] = {0.0f, 0.0f, 0.0f};
-        TEST_ASSERT_TRUE(goe_flight_history_add_attitude(&history, 250000u * (uint32_t)k, q));
-        TEST_ASSERT_TRUE(goe_flight_history_add_position(&history, 250000u * (uint32_t)k, ned_m));
+        feed_sine(250000u * (uint32_t)k);
         if (k > 5) {
             TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_history_at(&history, 250000u * (uint32_t)k - 125000u, &pose));
             least_deg = fmin(least_deg, (double)pose.spread_deg);
