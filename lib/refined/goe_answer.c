@@ -5,36 +5,19 @@
 #include <string.h>
 
 #include "maths/goe_scalar.h"
-#include "refined/goe_ellipse.h"
 #include "refined/goe_kind.h"
+#include "refined/goe_near_side.h"
 #include "refined/goe_report.h"
 
 #if GOE_WITH_FILTER
 
 #define REACH_MAX_M 1.0e6f /* as all positions */
 
-/* The reach of an answer: half of the visible extent about the reference point, m, also while the width is not valid. nearer_m: the way
- * from the middle of a footprint to the middle of a circle of that reach with the same near side, T axes. */
-static float reach_of(const goe_filter_t *filter, goe_xz_t *nearer_m) {
-    const float *x = filter->state;
-    memset(nearer_m, 0, sizeof *nearer_m);
-    if (goe_filter_traits(filter)->is_ellipse) {
-        goe_aspect_t aspect;
-        goe_ellipse_face_camera(filter, goe_filter_measured(filter), &aspect);
-        const float way_m = (aspect.before.reach - aspect.across.reach) / x[GOE_INVERSE_RANGE];
-        const goe_xz_t towards = goe_filter_into_trajectory(filter, aspect.towards);
-        nearer_m->x = way_m * towards.x;
-        nearer_m->z = way_m * towards.z;
-        return aspect.across.reach / x[GOE_INVERSE_RANGE];
-    }
-    return 0.5f * (x[GOE_FRONT_X] + goe_absolute(x[GOE_SIDE_X])) / x[GOE_INVERSE_RANGE];
-}
-
 /* Keeps what goe_hazard() needs of an answer when no new one follows. */
 static void keep_answer(goe_filter_t *filter) {
     goe_answer_t *answer = &filter->answer;
     goe_xz_t nearer_m;
-    const float reach_m = reach_of(filter, &nearer_m);
+    const float reach_m = goe_near_side_reach(filter, &nearer_m);
     answer->nearer.dx_m = nearer_m.x;
     answer->nearer.dz_m = nearer_m.z;
     if (goe_within(reach_m, REACH_MAX_M)) {
@@ -48,7 +31,7 @@ static void keep_answer(goe_filter_t *filter) {
 /* Whether a position lies behind the camera, with all of its extent, in an image that shows the obstacle ahead. */
 static bool lies_behind(const goe_filter_t *filter, const goe_quantities_t *quantities, const goe_motion_t *motion) {
     goe_xz_t nearer_m;
-    const float circle_m = reach_of(filter, &nearer_m);
+    const float circle_m = goe_near_side_reach(filter, &nearer_m);
     const float reach_m = circle_m + sqrtf(goe_xz_dot(nearer_m, nearer_m));
     return quantities->value[GOE_Z0] - motion->dz_m <
            -(reach_m + (quantities->box ? quantities->value[GOE_LENGTH] : 0.0f));

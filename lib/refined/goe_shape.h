@@ -43,4 +43,8 @@ void goe_shape_place(const goe_spot_t *spot, float scale_m, float by_x, float by
 /* The common part of all models: scale, height, and X0, Z0 of the reference point. The rest becomes 0. */
 void goe_shape_start(const goe_filter_t *filter, const goe_spot_t *reference, goe_shape_t *shape);
 
+/* Sets the variances of a filled shape that no image reduces. highest: the detector's top is the highest point of the roof. camera_m:
+ * since the filter's start, at height_m. */
+void goe_shape_doubt(const goe_filter_t *filter, bool highest, goe_xz_t camera_m, float height_m, goe_shape_t *shape);
+
 #endif

@@ -343,7 +343,7 @@ static void met_circle(double met[VALUES]) {
     met[MET_WIDTH] = 2.0 * across / q;
 }
 
-/* [goe_hazard]
+/* [goe_hazard, goe_near_side.c]
  * GIVEN any footprint THEN a hazard's covariance of its place and its width is that of the circle that is as wide across the line of
  * sight, and as near to the camera, as its footprint. */
 static void a_hazard_meets_the_near_side_of_a_footprint(void) {
@@ -374,7 +374,8 @@ static void a_hazard_meets_the_near_side_of_a_footprint(void) {
 
 static double square_of(float a, float b) { return (double)a * (double)a + (double)b * (double)b; }
 
-/* GIVEN an estimated augmented state, such as the latency THEN its share of the uncertainty of the state widens the place, in T
+/* [goe_deviation.c]
+ * GIVEN an estimated augmented state, such as the latency THEN its share of the uncertainty of the state widens the place, in T
  * as in north and east, and the extents that depend on the same states. */
 static void augmented_states_widen_the_sigmas(void) {
     any = check_random_start("beside");
@@ -424,7 +425,8 @@ static void covariances_are_those_of_the_state(void) {
     }
 }
 
-/* GIVEN a state that is exact and an own velocity with a constant error WHEN the aircraft has flown for ten seconds THEN all lengths
+/* [goe_drift.c, (R21)]
+ * GIVEN a state that is exact and an own velocity with a constant error WHEN the aircraft has flown for ten seconds THEN all lengths
  * are off by the effect of the error on the path, as no image shows it; a path that leads back on itself is not scaled, but the place is
  * off by the sum along the way; the walk of the own position moves the place, and from the track's first image on. */
 static void errors_of_own_motion_are_in_the_sigmas(void) {

@@ -1,0 +1,51 @@
+/* The error of a quantity, as a sum of independent unit errors: of the states, and of the augmented states. The variance of a quantity is
+ * the sum of its squares, the covariance of two quantities the product of theirs. SPDX-License-Identifier: MIT */
+#ifndef GOE_DEVIATION_H
+#define GOE_DEVIATION_H
+
+#include "refined/goe_filter.h"
+
+/* What an answer is less certain by than the filter. */
+typedef struct {
+    float scatter;                /* factor on the variance of what it found, (R32) */
+    float reciprocal[GOE_STATES]; /* of R, for the projections */
+    float bend;                   /* factor on a footprint's depth, goe_footprint_bend() */
+} goe_widening_t;
+
+typedef struct {
+    float *by; /* of the states: the derivatives by them, until they are projected */
+    float augmented[GOE_AUGMENTED > 0 ? GOE_AUGMENTED : 1];
+} goe_deviation_t;
+
+/* A direction in T, and the time after the filter's start at which the place along it counts: the place of an obstacle that is followed
+ * depends on the time. (0, 0) for a quantity that is no place. */
+typedef struct {
+    float x, z, at_s;
+} goe_counted_t;
+
+GOE_STATIC_ASSERT(GOE_STATES == 10 && GOE_UNWEIGHTED == 3, the_product_is_written_out_for_ten_states);
+
+/* sum + a' b of projected derivatives, whose first elements are 0. */
+static inline float goe_deviation_dot(const float a[GOE_STATES], const float b[GOE_STATES], float sum) {
+    sum += a[3] * b[3];
+    sum += a[4] * b[4];
+    sum += a[5] * b[5];
+    sum += a[6] * b[6];
+    sum += a[7] * b[7];
+    sum += a[8] * b[8];
+    return sum + a[9] * b[9];
+}
+
+/* The derivatives become the error. Returns its variance. */
+float goe_deviation_project(const goe_filter_t *filter, const goe_widening_t *wider, goe_counted_t counted,
+                            goe_deviation_t *error);
+
+/* more + the covariance of two projected errors, without the scatter. */
+float goe_deviation_covariance(const goe_deviation_t *a, const goe_deviation_t *b, float more);
+
+/* The error of x a + z b. sum->by: where the part of the states goes. */
+void goe_deviation_sum(const goe_deviation_t *a, float x, const goe_deviation_t *b, float z, goe_deviation_t *sum);
+
+void goe_deviation_scale(goe_deviation_t *error, float factor);
+
+#endif
