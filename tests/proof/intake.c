@@ -75,7 +75,7 @@ static void refuses_pixels(void) {
 }
 
 static void refuses_reset(void) {
-    motion.started = true;
+    motion.time_us = 0; /* an image was taken */
     motion.reset_count = 1;
     image.pose.reset_count = 2;
     image.pose.reset_delta_known = true;
