@@ -19,10 +19,6 @@ static void covariance_of_sigmas(const goe_sigma_t *sigma, goe_covariance_t cova
 }
 
 #if GOE_WITH_FILTER
-static bool is_refined_answer(const goe_estimator_t *estimator) {
-    return estimator->estimate.method == GOE_METHOD_FILTER;
-}
-
 static const unsigned bit_of[GOE_QUANTITIES] = {GOE_HAS_POSITION, GOE_HAS_POSITION, GOE_HAS_ORIENTATION,
                                                 GOE_HAS_WIDTH,    GOE_HAS_LENGTH,   GOE_HAS_HEIGHT};
 
@@ -51,7 +47,7 @@ static void keep_at_least(const goe_estimator_t *estimator, goe_covariance_t cov
  * changes nothing but the time. */
 static bool covariance_of_filter(const goe_estimator_t *estimator, bool for_hazard, float ahead_s,
                                  goe_covariance_t covariance) {
-    if (!is_refined_answer(estimator) || estimator->filter.answer.outdated) {
+    if (!goe_latest_by_filter(estimator) || estimator->filter.answer.outdated) {
         return false;
     }
     goe_quantities_covariance(&estimator->filter, &estimator->settings, &estimator->motion, for_hazard, ahead_s,
@@ -62,23 +58,6 @@ static bool covariance_of_filter(const goe_estimator_t *estimator, bool for_haza
     }
     return true;
 }
-
-float goe_latest_camera_height(const goe_estimator_t *estimator) {
-    return is_refined_answer(estimator) ? estimator->filter.datum.height_m : estimator->motion.height_m;
-}
-
-float goe_latest_height_bias(const goe_estimator_t *estimator) {
-    return is_refined_answer(estimator) ? estimator->filter.answer.height_bias_m : 0.0f;
-}
-
-float goe_latest_reach(const goe_estimator_t *estimator) {
-    return is_refined_answer(estimator) ? estimator->filter.answer.reach_m : 0.0f;
-}
-
-goe_place_t goe_latest_nearer(const goe_estimator_t *estimator) {
-    const goe_place_t none = {0.0f, 0.0f};
-    return is_refined_answer(estimator) ? estimator->filter.answer.nearer : none;
-}
 #else
 static bool covariance_of_filter(const goe_estimator_t *estimator, bool for_hazard, float ahead_s,
                                  goe_covariance_t covariance) {
@@ -88,31 +67,13 @@ static bool covariance_of_filter(const goe_estimator_t *estimator, bool for_haza
     (void)covariance;
     return false;
 }
-
-float goe_latest_camera_height(const goe_estimator_t *estimator) { return estimator->motion.height_m; }
-
-float goe_latest_height_bias(const goe_estimator_t *estimator) {
-    (void)estimator;
-    return 0.0f;
-}
-
-float goe_latest_reach(const goe_estimator_t *estimator) {
-    (void)estimator;
-    return 0.0f;
-}
-
-goe_place_t goe_latest_nearer(const goe_estimator_t *estimator) {
-    const goe_place_t none = {0.0f, 0.0f};
-    (void)estimator;
-    return none;
-}
 #endif
 
 /* Of an answer that the filter has left: the sigmas, and what the age adds. How the errors go together is lost; twice the variance
  * covers any two that add up, which is for a hazard to know. */
 static void covariance_of_answer(const goe_estimator_t *estimator, bool for_hazard, float ahead_s,
                                  goe_covariance_t covariance) {
-    const bool lost = for_hazard && estimator->estimate.method == GOE_METHOD_FILTER;
+    const bool lost = for_hazard && goe_latest_by_filter(estimator);
     const float age_s = goe_latest_since_s(estimator, estimator->motion.time_us);
     const float moving_s = (estimator->estimate.valid & GOE_HAS_VELOCITY) != 0u ? ahead_s : 0.0f;
     const float grown_m2 = goe_latest_grown_m2(estimator, age_s + moving_s);
@@ -124,8 +85,8 @@ static void covariance_of_answer(const goe_estimator_t *estimator, bool for_haza
     covariance[GOE_Z0][GOE_Z0] += grown_m2;
 }
 
-goe_status_t goe_latest_covariance(const goe_estimator_t *estimator, bool for_hazard, float ahead_s,
-                                   goe_covariance_t covariance) {
+goe_status_t goe_covariance_ahead(const goe_estimator_t *estimator, bool for_hazard, float ahead_s,
+                                  goe_covariance_t covariance) {
     memset(covariance, 0, sizeof(goe_covariance_t));
     if (!(estimator->estimate.valid & GOE_HAS_POSITION)) {
         return GOE_CONVERGING;
@@ -142,7 +103,7 @@ goe_status_t goe_covariance(const goe_estimator_t *estimator, float covariance[G
     }
     goe_status_t status = goe_guard_check(estimator);
     if (status == GOE_OK) {
-        status = goe_latest_covariance(estimator, false, 0.0f, covariance);
+        status = goe_covariance_ahead(estimator, false, 0.0f, covariance);
     }
     if (status == GOE_OK && !goe_guard_finite(&covariance[0][0], GOE_QUANTITIES * GOE_QUANTITIES)) {
         status = GOE_CORRUPTED;

@@ -1,6 +1,8 @@
-/* The estimator as the calls read it: by which method, and how old its estimate is. SPDX-License-Identifier: MIT */
+/* The latest estimate as the calls read it: by which method, how old it is, and what the filter left with it. SPDX-License-Identifier: MIT */
 #ifndef GOE_LATEST_H
 #define GOE_LATEST_H
+
+#include <string.h>
 
 #include "goe.h"
 #include "maths/goe_scalar.h"
@@ -13,6 +15,10 @@ static inline bool goe_uses_filter(const goe_estimator_t *estimator) {
     (void)estimator;
     return GOE_WITH_FILTER != 0;
 #endif
+}
+
+static inline bool goe_latest_by_filter(const goe_estimator_t *estimator) {
+    return estimator->estimate.method == GOE_METHOD_FILTER;
 }
 
 /* From the image behind the estimate to a later time, s. */
@@ -28,13 +34,35 @@ static inline float goe_latest_grown_m2(const goe_estimator_t *estimator, float 
     const float east = goe_square(sigma->velocity_east_m_s);
     float velocity_m2_s2 = goe_larger(north, east);
     float walk_m2_s = 0.0f;
-#if GOE_WITH_FILTER
-    if (estimator->estimate.method == GOE_METHOD_FILTER) {
+    if (goe_latest_by_filter(estimator)) {
         velocity_m2_s2 += goe_square(estimator->settings.navigation.velocity_bias_sd_m_s);
         walk_m2_s = goe_square(estimator->settings.navigation.position_walk_sd_m);
     }
-#endif
     return velocity_m2_s2 * since_s * since_s + walk_m2_s * since_s;
+}
+
+/* Height of the camera at the latest image, m, that the latest estimate's own height is counted with. With the height_bias_m of
+ * goe_latest_answer() it is the height above the obstacle's ground. */
+static inline float goe_latest_camera_height(const goe_estimator_t *estimator) {
+#if GOE_WITH_FILTER
+    if (goe_latest_by_filter(estimator)) {
+        return estimator->filter.datum.height_m;
+    }
+#endif
+    return estimator->motion.height_m;
+}
+
+/* What the filter left with the latest estimate; all 0 if the estimate is the window method's. An image without a detection, or a new start
+ * of the filter, does not change it. */
+static inline goe_answer_t goe_latest_answer(const goe_estimator_t *estimator) {
+    goe_answer_t answer;
+#if GOE_WITH_FILTER
+    if (goe_latest_by_filter(estimator)) {
+        return estimator->filter.answer;
+    }
+#endif
+    memset(&answer, 0, sizeof answer);
+    return answer;
 }
 
 #endif

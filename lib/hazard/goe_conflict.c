@@ -106,12 +106,11 @@ void goe_conflict_add_intent(const goe_estimator_t *estimator, const goe_intent_
 
 /* The circle about a reference point, as near as the obstacle was in the image behind the estimate, and no nearer later; its covariance
  * is that of goe_quantities_covariance(). */
-static void meet_near_side(const goe_estimator_t *estimator, goe_outline_t *outline) {
-    const goe_place_t nearer = goe_latest_nearer(estimator);
-    outline->reference.x += goe_bounded(nearer.dx_m);
-    outline->reference.z += goe_bounded(nearer.dz_m);
-    const float reach_m = goe_bounded(goe_latest_reach(estimator));
-    const bool turns = estimator->estimate.model == GOE_MODEL_PRISM && reach_m > 0.0f; /* the width is an earlier one */
+static void meet_near_side(const goe_answer_t *answer, goe_model_t model, goe_outline_t *outline) {
+    outline->reference.x += goe_bounded(answer->nearer.dx_m);
+    outline->reference.z += goe_bounded(answer->nearer.dz_m);
+    const float reach_m = goe_bounded(answer->reach_m);
+    const bool turns = model == GOE_MODEL_PRISM && reach_m > 0.0f; /* the width is an earlier one */
     outline->half = turns ? reach_m : goe_larger(outline->half, reach_m);
 }
 
@@ -127,14 +126,15 @@ void goe_conflict_foresee(const goe_estimator_t *estimator, const goe_intent_t *
     goe_course_t course;
     goe_approach_t approach;
     const goe_estimate_t *estimate = &estimator->estimate;
+    const goe_answer_t answer = goe_latest_answer(estimator);
     goe_outline_of(estimate, &outline);
     if (!outline.box) {
-        meet_near_side(estimator, &outline);
+        meet_near_side(&answer, estimate->model, &outline);
     }
     goe_approach_course(&estimator->motion, intent, &course);
     fly_on(&course, intent->since_image_s, &outline);
     const float height_m = goe_latest_camera_height(estimator) + course.climb_m_s * intent->since_image_s -
-                           (estimate->height_m - goe_latest_height_bias(estimator)); /* over the top now */
+                           (estimate->height_m - answer.height_bias_m); /* over the top now */
     goe_approach_find(&outline, &course, covariance, height_m, &approach);
     hazard->has_clearance = (estimate->valid & GOE_HAS_HEIGHT) != 0u;
     report(&outline, &course, &approach, intent, covariance, hazard);

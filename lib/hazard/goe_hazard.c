@@ -50,7 +50,7 @@ goe_status_t goe_hazard(const goe_estimator_t *estimator, const goe_intent_t *in
     if (status == GOE_OK) {
         relative = goe_conflict_relative(estimator, intent);
         ahead_s = goe_conflict_ahead_s(estimator, &relative);
-        status = goe_latest_covariance(estimator, true, ahead_s, covariance);
+        status = goe_covariance_ahead(estimator, true, ahead_s, covariance);
     }
     if (status == GOE_OK) {
         goe_conflict_add_intent(estimator, intent, ahead_s, covariance);

@@ -52,12 +52,12 @@ static void an_old_answer_has_its_sigmas_alone(void) {
             CHECK_SAME(i == j ? of[i] * of[i] : 0.0f, covariance[i][j]);
         }
     }
-    CHECK_STATUS(GOE_OK, goe_latest_covariance(&estimator, true, 0.0f, covariance));
+    CHECK_STATUS(GOE_OK, goe_covariance_ahead(&estimator, true, 0.0f, covariance));
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         CHECK_SAME(2.0f * of[i] * of[i], covariance[i][i]);
     }
     estimator.estimate.method = GOE_METHOD_WINDOW; /* whose sigmas are all there ever was */
-    CHECK_STATUS(GOE_OK, goe_latest_covariance(&estimator, true, 0.0f, covariance));
+    CHECK_STATUS(GOE_OK, goe_covariance_ahead(&estimator, true, 0.0f, covariance));
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         CHECK_SAME(of[i] * of[i], covariance[i][i]);
     }
@@ -98,7 +98,7 @@ static void the_position_of_a_moving_target_grows_uncertain(void) {
         CHECK_CLOSE(1.0e-4, 9.0 + 36.0 + own_m2, covariance[GOE_Z0][GOE_Z0]);
         CHECK_SAME(49.0f, covariance[GOE_WIDTH][GOE_WIDTH]);
         CHECK_SAME(0.0f, covariance[GOE_X0][GOE_Z0]);
-        CHECK_STATUS(GOE_OK, goe_latest_covariance(&estimator, true, 2.0f, covariance)); /* asked two seconds ahead */
+        CHECK_STATUS(GOE_OK, goe_covariance_ahead(&estimator, true, 2.0f, covariance)); /* asked two seconds ahead */
         CHECK_CLOSE(1.0e-4, 2.0 * 4.0 + 81.0 + more_m2, covariance[GOE_X0][GOE_X0]);
     }
 }
@@ -114,17 +114,17 @@ static void inputs_of_a_hazard_are_kept_with_the_answer(void) {
     estimator.filter.datum.height_m = 35.0f;
     for (int fresh = 0; fresh < 2; fresh++) {
         estimator.estimate.fresh = fresh == 1;
-        CHECK_SAME(7.0f, goe_latest_reach(&estimator));
-        CHECK_SAME(3.0f, goe_latest_nearer(&estimator).dx_m);
-        CHECK_SAME(-4.0f, goe_latest_nearer(&estimator).dz_m);
-        CHECK_SAME(0.5f, goe_latest_height_bias(&estimator));
+        CHECK_SAME(7.0f, goe_latest_answer(&estimator).reach_m);
+        CHECK_SAME(3.0f, goe_latest_answer(&estimator).nearer.dx_m);
+        CHECK_SAME(-4.0f, goe_latest_answer(&estimator).nearer.dz_m);
+        CHECK_SAME(0.5f, goe_latest_answer(&estimator).height_bias_m);
         CHECK_SAME(35.0f, goe_latest_camera_height(&estimator));
     }
     estimator.estimate.method = GOE_METHOD_WINDOW;
-    CHECK_SAME(0.0f, goe_latest_reach(&estimator));
-    CHECK_SAME(0.0f, goe_latest_nearer(&estimator).dx_m);
-    CHECK_SAME(0.0f, goe_latest_nearer(&estimator).dz_m);
-    CHECK_SAME(0.0f, goe_latest_height_bias(&estimator));
+    CHECK_SAME(0.0f, goe_latest_answer(&estimator).reach_m);
+    CHECK_SAME(0.0f, goe_latest_answer(&estimator).nearer.dx_m);
+    CHECK_SAME(0.0f, goe_latest_answer(&estimator).nearer.dz_m);
+    CHECK_SAME(0.0f, goe_latest_answer(&estimator).height_bias_m);
     CHECK_SAME(40.0f, goe_latest_camera_height(&estimator));
 }
 

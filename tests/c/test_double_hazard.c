@@ -568,7 +568,7 @@ static void correlation_moves_the_probability(void) {
         give_round(shared[i]);
         give(&estimator.estimate, &mean);
         estimator.estimate.method = GOE_METHOD_FILTER;
-        goe_latest_covariance(&estimator, true, 0.0f, covariance);
+        goe_covariance_ahead(&estimator, true, 0.0f, covariance);
         factorise(covariance);
         goe_intent_t intent = intent_of(20.0, 0.0, 0.0);
         intent.margin_m = 23.0f;
@@ -614,7 +614,7 @@ static void correlated_errors_are_accounted_for(void) {
     float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
     fly_towards_a_tower(0.0f);
     const goe_estimate_t *e = &estimator.estimate;
-    goe_latest_covariance(&estimator, true, 0.0f, covariance);
+    goe_covariance_ahead(&estimator, true, 0.0f, covariance);
     factorise(covariance);
     const double datum_m =
         (double)estimator.filter.state[GOE_GROUND] / (double)estimator.filter.state[GOE_INVERSE_RANGE];

@@ -254,12 +254,12 @@ static void the_reach_is_that_of_the_state(void) {
             if (estimate.fresh && estimate.method == GOE_METHOD_FILTER) {
                 const double reach_m = reach_by_state();
                 phases |= 1u << estimator.filter.phase;
-                CHECK_CLOSE(1.0e-4 * reach_m, reach_m, goe_latest_reach(&estimator));
+                CHECK_CLOSE(1.0e-4 * reach_m, reach_m, goe_latest_answer(&estimator).reach_m);
             }
         }
-        const float before = goe_latest_reach(&estimator);
+        const float before = goe_latest_answer(&estimator).reach_m;
         goe_filter_enter(&estimator.filter, GOE_PHASE_NONE);
-        CHECK_SAME(before, goe_latest_reach(&estimator));
+        CHECK_SAME(before, goe_latest_answer(&estimator).reach_m);
     }
     TEST_ASSERT_TRUE(phases & (1u << GOE_PHASE_FOOTPRINT));
     TEST_ASSERT_TRUE(phases & (1u << GOE_PHASE_BOX));
