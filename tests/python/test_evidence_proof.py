@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import re
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -97,6 +98,37 @@ def test_no_contract_of_the_library_only_repeats_the_generated_one() -> None:
             assert not output or sorted(re.split(r" && |; requires ", " ".join(output.split())[12:-4])) != sorted(
                 re.split(r" && |; requires ", made_of.strip()[12:-4])
             ), f"{path.name}: {match['name']}: remove its contract"
+
+
+BUILTINS = """#include <stddef.h>
+int Frama_C_interval(int low, int high);
+unsigned Frama_C_unsigned_int_interval(unsigned low, unsigned high);
+float Frama_C_float_interval(float low, float high);
+void Frama_C_make_unknown(char *at, size_t size);
+"""
+
+
+def test_the_drivers_compile_with_the_library_as_it_is(tmp_path: Path) -> None:
+    (tmp_path / "__fc_builtin.h").write_text(BUILTINS)
+    folders = [f"-I{folder}" for folder in (frama_c.LIBRARY, frama_c.DRIVERS, tmp_path)]
+    for source in frama_c.DRIVERS.glob("*.c"):
+        words = [
+            "cc",
+            "-std=c99",
+            "-fsyntax-only",
+            *folders,
+            "-include",
+            str(frama_c.DRIVERS / "builtins.h"),
+            str(source),
+        ]
+        done = subprocess.run(words, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+
+
+def test_the_options_name_functions_that_exist() -> None:
+    limits = proof.PLAIN[proof.PLAIN.index("-eva-slevel-function") + 1]
+    names = {limit.split(":")[0] for limit in limits.split(",")}
+    assert names <= {name.split(":")[-1] for name in frama_c.library_functions()}
 
 
 def made(driver: str, *entries: Property) -> Run:

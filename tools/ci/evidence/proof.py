@@ -24,7 +24,7 @@ PLAIN = (
     *("-eva-widening-delay", "2", "-eva-subdivide-non-linear", "0"),
     *("-eva-min-loop-unroll", "9", "-eva-auto-loop-unroll", "128"),
     "-eva-slevel-function",
-    "find_pace:30,goe_align_points:40,goe_footprint_one_face:30,name_at:2000,first_bad:20000,goe_settings_default:500",
+    "find_pace:30,goe_align_points:40,name_at:2000,first_bad:20000,goe_settings_default:500",
 )
 FINITE = ("-eva-precision", "6", "-eva-subdivide-non-linear", "50")
 
