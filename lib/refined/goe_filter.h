@@ -77,7 +77,6 @@ static inline const goe_traits_t *goe_filter_traits(const goe_filter_t *filter) 
     return &goe_traits_of[filter->phase < GOE_PHASES ? filter->phase : GOE_PHASE_NONE];
 }
 
-static inline goe_phase_t goe_filter_phase(const goe_filter_t *filter) { return (goe_phase_t)filter->phase; }
 static inline bool goe_filter_has_started(const goe_filter_t *filter) { return filter->phase != GOE_PHASE_NONE; }
 static inline bool goe_filter_is_box(const goe_filter_t *filter) { return goe_filter_traits(filter)->is_box; }
 

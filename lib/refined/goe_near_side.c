@@ -24,6 +24,7 @@ float goe_near_side_reach(const goe_filter_t *filter, goe_xz_t *nearer_m) {
 }
 
 /* by += factor times the derivatives of one reach, less those of another, of a length in units of Z0. */
+/*@ requires \valid_read(reach) && (less == \null || \valid_read(less)) && \valid(by + (0 .. GOE_STATES - 1)); */
 static void add_to_footprint(float factor, float scale_m, const goe_support_t *reach, const goe_support_t *less,
                              float by[GOE_STATES]) {
     by[GOE_SHEAR] += factor * (reach->by.shear - (less ? less->by.shear : 0.0f));

@@ -169,7 +169,7 @@ static double corner_growth_of(void) {
     goe_box_edges(filter.state, &edges);
     const double sum = (double)edges.sum;
     const double relative = (double)goe_filter_variance(&filter, GOE_DEPTH_DIFFERENCE) / (sum * sum);
-    return is_box(goe_filter_phase(&filter)) ? 1.0 + 12.0 * fmin(relative, 4.0) : 1.0;
+    return is_box((goe_phase_t)filter.phase) ? 1.0 + 12.0 * fmin(relative, 4.0) : 1.0;
 }
 
 static double squared(double x) { return x * x; }
