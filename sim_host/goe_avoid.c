@@ -18,6 +18,7 @@
 #include "avoid_text.h"
 #include "option_fault.h"
 #include "output_file.h"
+#include "ranks.h"
 #include "several_text.h"
 #include "standard_output.h"
 
@@ -66,15 +67,6 @@ static bool give_up(const char *subject, const char *reason) {
 }
 
 /* ------------------------------------------------------------------------------------------------------------ tally -- */
-
-static int compare(const void *a, const void *b) {
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static double quantile(double *sorted, int count, double share) {
-    return count > 0 ? sorted[(int)(share * (count - 1) + 0.5)] : (double)NAN;
-}
 
 static void count(tally_t *tally, const avoid_run_t *run) {
     const avoid_outcome_t *outcome = avoid_run_ordered(run);
@@ -156,8 +148,8 @@ static bool fly(avoid_kind_t kind, double pass_m, FILE *rows, tally_t *tally) {
         }
         show_progress(AVOID_NAMES[kind], k + 1);
     }
-    qsort(tally->closest_m, (size_t)tally->runs, sizeof *tally->closest_m, compare);
-    qsort(tally->ahead_s, (size_t)tally->ordered, sizeof *tally->ahead_s, compare);
+    ranks_sort(tally->closest_m, tally->runs);
+    ranks_sort(tally->ahead_s, tally->ordered);
     return true;
 }
 
@@ -165,9 +157,10 @@ static bool fly(avoid_kind_t kind, double pass_m, FILE *rows, tally_t *tally) {
 
 static void print_courses(avoid_kind_t kind, const tally_t *with) {
     printf("| %s | %d | %d | %d (%d late) | %.1f / %.1f / %.1f | %.1f / %.1f | ", AVOID_NAMES[kind], with->runs,
-           with->collided_without, with->collided, with->collided_late, quantile(with->closest_m, with->runs, 0.0),
-           quantile(with->closest_m, with->runs, 0.05), quantile(with->closest_m, with->runs, 0.5),
-           quantile(with->ahead_s, with->ordered, 0.0), quantile(with->ahead_s, with->ordered, 0.5));
+           with->collided_without, with->collided, with->collided_late,
+           ranks_quantile(with->closest_m, with->runs, 0.0), ranks_quantile(with->closest_m, with->runs, 0.05),
+           ranks_quantile(with->closest_m, with->runs, 0.5), ranks_quantile(with->ahead_s, with->ordered, 0.0),
+           ranks_quantile(with->ahead_s, with->ordered, 0.5));
     for (int action = GOE_FLIGHT_NONE; action <= GOE_FLIGHT_HOLD; action++) {
         if (with->by_action[action] > 0) {
             printf("%s %d ", goe_flight_action_text((goe_flight_action_t)action), with->by_action[action]);
