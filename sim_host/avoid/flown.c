@@ -153,6 +153,7 @@ static void expose(flown_t *flown) {
     const bool blind = flown->drops && fmod(flown->t_s, BLIND_EVERY_S) >= VISIBLE_S;
     flown_frame_t late;
     memset(&late, 0, sizeof late);
+    late.exposure_s = flown->t_s;
     late.arrival_s = flown->t_s + flown->frame_s;
     late.frame.capture_us = flown_clock_us(flown->t_s);
     late.frame.arrival_us = flown_clock_us(late.arrival_s);
@@ -176,6 +177,8 @@ static void deliver(flown_t *flown) {
         if (goe_flight_frame(&flown->flight, &first->frame) == GOE_FLIGHT_TOO_NEW) {
             return;
         }
+        flown->exposure_s = first->exposure_s;
+        flown->arrival_s = flown->t_s;
         flown->queued--;
         memmove(&flown->queue[0], &flown->queue[1], (size_t)flown->queued * sizeof flown->queue[0]);
     }

@@ -32,7 +32,7 @@
 typedef struct {
     goe_flight_frame_t frame;
     goe_flight_detection_t detection[FLOWN_MAX];
-    double arrival_s;
+    double exposure_s, arrival_s;
 } flown_frame_t;
 
 typedef struct {
@@ -51,6 +51,7 @@ typedef struct {
     double course_rad, speed_mps;
     double reach_m; /* of the path, from its start to the obstacle on it */
     double t_s;
+    double exposure_s, arrival_s; /* of the newest frame that the layer took, with or without a detection */
 } flown_t;
 
 double flown_between(random_t *random, double low, double high);

@@ -248,6 +248,9 @@ static void note_first(run_t *run, const goe_flight_assessment_t *now, several_o
     outcome->reason = now->reason;
     outcome->ahead_s = (run->flown.reach_m - along_m) / run->flown.speed_mps;
     outcome->known = now->obstacles >= run->flown.obstacles;
+    outcome->ordered_s = run->flown.t_s;
+    outcome->arrival_s = run->flown.arrival_s - run->flown.exposure_s;
+    outcome->assessment_s = run->flown.t_s - run->flown.arrival_s;
     note_search(run, ROLL_IN_S);
 }
 
@@ -276,6 +279,13 @@ static void trace(const run_t *run, const goe_flight_assessment_t *now) {
     puts("");
 }
 
+static void note_obeyed(const run_t *run, several_outcome_t *outcome) {
+    if (!outcome->obeyed && run->obeyed.action != GOE_FLIGHT_NONE) {
+        outcome->obeyed = true;
+        outcome->delay_s = run->flown.t_s - outcome->ordered_s;
+    }
+}
+
 static void assess(run_t *run, several_outcome_t *outcome) {
     goe_flight_assessment_t now;
     if (goe_flight_assess(&run->flown.flight, flown_clock_us(run->flown.t_s), GOE_FLIGHT_FLYING, &now) !=
@@ -286,7 +296,9 @@ static void assess(run_t *run, several_outcome_t *outcome) {
     if (now.action != GOE_FLIGHT_NONE && !outcome->ordered) {
         note_first(run, &now, outcome);
     }
-    if (now.action != (run->assessed > 0 ? run->given[run->assessed - 1].action : GOE_FLIGHT_NONE) && side != 0) {
+    const goe_flight_action_t before = run->assessed > 0 ? run->given[run->assessed - 1].action : GOE_FLIGHT_NONE;
+    outcome->begun += before == GOE_FLIGHT_NONE && now.action != GOE_FLIGHT_NONE ? 1 : 0;
+    if (now.action != before && side != 0) {
         outcome->changes += run->side != 0 && side != run->side ? 1 : 0;
         run->side = side;
     }
@@ -298,6 +310,7 @@ static void assess(run_t *run, several_outcome_t *outcome) {
     if (run->assessed > back) {
         run->obeyed = run->given[run->assessed - 1 - back];
     }
+    note_obeyed(run, outcome);
 }
 
 /* ----------------------------------------------------------------------------------------------------------- outcome -- */
@@ -334,6 +347,16 @@ static bool is_possible(const run_t *run) {
     return false;
 }
 
+static void lead(run_t *run, int k, several_outcome_t *outcome) {
+    flown_sense(&run->flown, k);
+    if (k % FLOWN_ASSESS_STEPS == 0) {
+        assess(run, outcome);
+    }
+    if (!outcome->ordered && run->flown.t_s < REACH_S - UNORDERED_S) {
+        note_search(run, ROLL_IN_S);
+    }
+}
+
 static void note_place(const run_t *run, several_outcome_t *outcome) {
     const vec3_t at = run->flown.aircraft.state.position_ned_m;
     outcome->closest_m = fmin(outcome->closest_m, nearest_m(run, at.x, at.y, -at.z));
@@ -344,7 +367,8 @@ bool several_misses(const several_outcome_t *outcome) {
     return outcome->possible && (outcome->collided || outcome->closest_m < SEVERAL_CLEAR_M);
 }
 
-const char *several_fly(const several_case_t *setup, several_outcome_t *outcome) {
+/* led: the layer runs, and its orders are obeyed. */
+static const char *fly(const several_case_t *setup, bool led, several_outcome_t *outcome) {
     static run_t run; /* 100 kB */
     memset(&run, 0, sizeof run);
     memset(outcome, 0, sizeof *outcome);
@@ -353,16 +377,39 @@ const char *several_fly(const several_case_t *setup, several_outcome_t *outcome)
     const char *fault = begin(&run, outcome);
     const int steps = fault ? 0 : (int)((REACH_S + AFTER_S) / AIRCRAFT_STEP_S);
     for (int k = 0; k < steps && !outcome->collided; k++) {
-        flown_sense(&run.flown, k);
-        if (k % FLOWN_ASSESS_STEPS == 0) {
-            assess(&run, outcome);
-        }
-        if (!outcome->ordered && run.flown.t_s < REACH_S - UNORDERED_S) {
-            note_search(&run, ROLL_IN_S);
+        if (led) {
+            lead(&run, k, outcome);
         }
         step(&run);
         note_place(&run, outcome);
     }
-    outcome->possible = !fault && is_possible(&run);
+    outcome->flown_s = run.flown.t_s;
+    outcome->possible = led && !fault && is_possible(&run);
     return fault;
+}
+
+const char *several_fly(const several_case_t *setup, several_outcome_t *outcome) { return fly(setup, true, outcome); }
+
+const char *several_fly_nominal(const several_case_t *setup, several_outcome_t *nominal) {
+    return fly(setup, false, nominal);
+}
+
+aviation_flight_t several_counted(const several_outcome_t *flown, const several_outcome_t *nominal) {
+    aviation_flight_t counted;
+    goe_flight_settings_t settings;
+    goe_flight_settings_default(&settings);
+    memset(&counted, 0, sizeof counted);
+    counted.obstacles = flown->obstacles;
+    counted.nominal_m = nominal->closest_m;
+    counted.due = nominal->collided || nominal->closest_m < (double)settings.margin_m;
+    counted.collided_nominal = nominal->collided;
+    counted.collided = flown->collided;
+    counted.alerts = flown->begun;
+    counted.flown_s = flown->flown_s;
+    counted.lead_s = flown->ordered && nominal->collided ? nominal->flown_s - flown->ordered_s : (double)NAN;
+    counted.obeyed = flown->obeyed;
+    counted.latency_s[AVIATION_ARRIVAL] = flown->arrival_s;
+    counted.latency_s[AVIATION_ASSESSMENT] = flown->assessment_s;
+    counted.latency_s[AVIATION_DELAY] = flown->delay_s;
+    return counted;
 }

@@ -20,6 +20,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "aviation.h"
 #include "goe_flight.h"
 
 #define SEVERAL_CLEAR_M 5.0 /* wanted from the nearest wall, wherever a search finds it */
@@ -59,10 +60,24 @@ typedef struct {
     bool
         possible; /* a plain search over constant turns from the first order on keeps SEVERAL_CLEAR_M from everything */
     bool known;   /* every obstacle had a place in the layer's table at the first order */
+    int begun;    /* orders that began: one that follows another without a break is no new one */
+    double flown_s;      /* from the start to the end or to the collision */
+    double ordered_s;    /* from the start to the first order */
+    double arrival_s;    /* of the newest frame at the first order: from its exposure to its arrival */
+    double assessment_s; /* from there to the order */
+    double delay_s;      /* from there to the moment when the aircraft begins to obey */
+    bool obeyed;         /* the first order */
 } several_outcome_t;
 
 /* Null and the outcome, or why the case cannot be flown. */
 const char *several_fly(const several_case_t *setup, several_outcome_t *outcome);
+
+/* The same flight without orders, in the same wind: the nominal course. The layer does not run, so the outcome has the number of
+ * obstacles, closest_m, collided and flown_s alone. */
+const char *several_fly_nominal(const several_case_t *setup, several_outcome_t *nominal);
+
+/* What aviation.h counts of a flight and its nominal course. */
+aviation_flight_t several_counted(const several_outcome_t *flown, const several_outcome_t *nominal);
 
 /* Whether the flight misses its goals: no collision, SEVERAL_CLEAR_M wherever possible. */
 bool several_misses(const several_outcome_t *outcome);

@@ -4,8 +4,10 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "aviation_text.h"
 #include "flown.h"
 
 #define FALSE_SHARE_MAX 0.02
@@ -78,58 +80,100 @@ static bool print_goal(const char *what, int missed, int of, double most_share) 
     return met;
 }
 
-bool several_campaign(int flights, uint64_t first, uint64_t step, bool lists, bool *met) {
-    static tally_t all, by_kind[SEVERAL_KINDS], by_number[FLOWN_MAX + 1], by_obey[OBEYS], by_autopilot[2];
-    memset(&all, 0, sizeof all);
-    memset(by_kind, 0, sizeof by_kind);
-    memset(by_number, 0, sizeof by_number);
-    memset(by_obey, 0, sizeof by_obey);
-    memset(by_autopilot, 0, sizeof by_autopilot);
-    for (int k = 0; k < flights; k++) {
-        several_outcome_t outcome;
-        const several_case_t setup = several_case(k, first + (uint64_t)k * step);
-        const char *fault = several_fly(&setup, &outcome);
-        if (fault != NULL) {
-            (void)fprintf(stderr, "goe_avoid: %s, seed %" PRIu64 ": %s\n", SEVERAL_NAMES[setup.kind], setup.seed,
-                          fault);
-            return false;
-        }
-        count(&by_kind[setup.kind], &outcome);
-        if (lists && (several_misses(&outcome) || outcome.changes > CHANGES_MAX ||
-                      (setup.kind == SEVERAL_BETWEEN && outcome.ordered))) {
-            print_miss(k, &setup, &outcome);
-        }
-        count(&all, &outcome);
-        count(&by_number[outcome.obstacles], &outcome);
-        count(&by_obey[k / SEVERAL_KINDS % OBEYS], &outcome);
-        count(&by_autopilot[setup.circles ? 1 : 0], &outcome);
+/* ---------------------------------------------------------------------------------------------------------- campaign -- */
+
+typedef struct {
+    tally_t all, by_kind[SEVERAL_KINDS], by_number[FLOWN_MAX + 1], by_obey[OBEYS], by_autopilot[2];
+    aviation_flight_t *flown;
+    double *scratch;
+} campaign_t;
+
+static void tally_up(campaign_t *campaign, int k, const several_case_t *setup, const several_outcome_t *outcome) {
+    count(&campaign->all, outcome);
+    count(&campaign->by_kind[setup->kind], outcome);
+    count(&campaign->by_number[outcome->obstacles], outcome);
+    count(&campaign->by_obey[k / SEVERAL_KINDS % OBEYS], outcome);
+    count(&campaign->by_autopilot[setup->circles ? 1 : 0], outcome);
+}
+
+/* Flight k, with orders and without. */
+static bool fly(campaign_t *campaign, int k, uint64_t seed, bool lists) {
+    several_outcome_t outcome, nominal;
+    const several_case_t setup = several_case(k, seed);
+    const char *fault = several_fly(&setup, &outcome);
+    fault = fault != NULL ? fault : several_fly_nominal(&setup, &nominal);
+    if (fault != NULL) {
+        (void)fprintf(stderr, "goe_avoid: %s, seed %" PRIu64 ": %s\n", SEVERAL_NAMES[setup.kind], setup.seed, fault);
+        return false;
     }
+    if (lists && (several_misses(&outcome) || outcome.changes > CHANGES_MAX ||
+                  (setup.kind == SEVERAL_BETWEEN && outcome.ordered))) {
+        print_miss(k, &setup, &outcome);
+    }
+    tally_up(campaign, k, &setup, &outcome);
+    campaign->flown[k] = several_counted(&outcome, &nominal);
+    return true;
+}
+
+static void print_flights(const campaign_t *campaign) {
     puts("| flights | number | with an order | passable | collisions (not passable) | below 5 m | closest, m | changes "
          "of side above 1 | first orders | least bad | late |");
     puts("|---|---|---|---|---|---|---|---|---|---|---|");
     for (int kind = 0; kind < SEVERAL_KINDS; kind++) {
-        print_row("", SEVERAL_NAMES[kind], &by_kind[kind]);
+        print_row("", SEVERAL_NAMES[kind], &campaign->by_kind[kind]);
     }
     for (int number = 1; number <= FLOWN_MAX; number++) {
         char name[24];
         (void)snprintf(name, sizeof name, "%d", number);
-        print_row("obstacles: ", name, &by_number[number]);
+        print_row("obstacles: ", name, &campaign->by_number[number]);
     }
     for (int i = 0; i < OBEYS; i++) {
         char name[24];
         (void)snprintf(name, sizeof name, "%.1f s", obey_s[i]);
-        print_row("obeyed after ", name, &by_obey[i]);
+        print_row("obeyed after ", name, &campaign->by_obey[i]);
     }
-    print_row("flying straight on", "", &by_autopilot[0]);
-    print_row("about the target", "", &by_autopilot[1]);
+    print_row("flying straight on", "", &campaign->by_autopilot[0]);
+    print_row("about the target", "", &campaign->by_autopilot[1]);
+}
+
+static bool print_goals(const campaign_t *campaign) {
+    const tally_t *all = &campaign->all, *between = &campaign->by_kind[SEVERAL_BETWEEN];
     puts("");
     puts("| goal | missed by | |");
     puts("|---|---|---|");
-    *met = print_goal("no collision where a search finds a path", all.collided, all.possible, 0.0);
-    *met = print_goal("5 m to every wall where a search finds a path", all.missed, all.possible, 0.0) && *met;
-    *met = print_goal("at most one change of side", all.changed, all.flights, 0.0) && *met;
-    *met = print_goal("at most 2 % orders between two at twice the margin", by_kind[SEVERAL_BETWEEN].ordered,
-                      by_kind[SEVERAL_BETWEEN].flights, FALSE_SHARE_MAX) &&
-           *met;
+    bool met = print_goal("no collision where a search finds a path", all->collided, all->possible, 0.0);
+    met = print_goal("5 m to every wall where a search finds a path", all->missed, all->possible, 0.0) && met;
+    met = print_goal("at most one change of side", all->changed, all->flights, 0.0) && met;
+    return print_goal("at most 2 % orders between two at twice the margin", between->ordered, between->flights,
+                      FALSE_SHARE_MAX) &&
+           met;
+}
+
+static bool fly_all(campaign_t *campaign, int flights, uint64_t first, uint64_t step, bool lists) {
+    for (int k = 0; k < flights; k++) {
+        if (!fly(campaign, k, first + (uint64_t)k * step, lists)) {
+            return false;
+        }
+    }
     return true;
+}
+
+bool several_campaign(int flights, uint64_t first, uint64_t step, bool lists, bool *met) {
+    campaign_t campaign;
+    memset(&campaign, 0, sizeof campaign);
+    campaign.flown = calloc((size_t)flights, sizeof *campaign.flown);
+    campaign.scratch = calloc((size_t)flights, sizeof *campaign.scratch);
+    bool done = campaign.flown != NULL && campaign.scratch != NULL;
+    if (!done) {
+        (void)fputs("goe_avoid: --several: out of memory\n", stderr);
+    }
+    done = done && fly_all(&campaign, flights, first, step, lists);
+    if (done) {
+        print_flights(&campaign);
+        *met = print_goals(&campaign);
+        aviation_text_tables(campaign.flown, flights, campaign.scratch);
+    }
+    free(campaign.flown);
+    free(campaign.scratch);
+    return done;
 }

@@ -15,7 +15,8 @@
 several_case_t several_case(int k, uint64_t seed);
 
 /* Flies so many, with seeds from first on, every step. lists: a line for every flight that misses a goal. Prints the tables by geometry,
- * number of obstacles, and delay, then the goals. False: one could not be flown. *met: whether every goal is met. */
+ * number of obstacles, and delay, then the goals, then the figures of aviation.h. False: one could not be flown. *met: whether every goal
+ * is met. */
 bool several_campaign(int flights, uint64_t first, uint64_t step, bool lists, bool *met);
 
 #endif

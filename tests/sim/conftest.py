@@ -14,6 +14,7 @@ PLACES = {
     "goe_campaign": ("GOE_CAMPAIGN", BUILD / "sim_host"),
     "goe_avoid": ("GOE_AVOID", BUILD / "sim_host"),
     "sim_probe": ("GOE_SIM_PROBE", BUILD / "tests" / "sim"),
+    "avoid_probe": ("GOE_AVOID_PROBE", BUILD / "tests" / "sim"),
     "campaign_probe": ("GOE_CAMPAIGN_PROBE", BUILD / "tests" / "sim"),
 }
 
@@ -38,6 +39,11 @@ def goe_sim() -> Path:
 @pytest.fixture(scope="session")
 def goe_avoid() -> Path:
     return program("goe_avoid")
+
+
+@pytest.fixture(scope="session")
+def avoid_probe() -> Path:
+    return program("avoid_probe")
 
 
 @pytest.fixture(scope="session")

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import csv
+import io
+import math
 import os
 import re
 import signal
@@ -10,7 +12,9 @@ import subprocess
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
+from scipy.stats import binomtest, norm
 from sim_support import HANG_S
 
 RUNS = 60
@@ -202,6 +206,138 @@ def test_the_goals_are_met(several: str, goal: str, share: float) -> None:
     # 5 m are missed by decimeters in some 2 of 1,000 flights (--several 8000): with these seeds in 1 or in none
     most = 0.01 if goal.startswith("5 m") else share
     assert int(missed) <= most * int(of), several
+
+
+GROUPS = {"all": (0, 9), "one obstacle": (1, 1), "two obstacles": (2, 2), "three or more obstacles": (3, 9)}
+FIGURES = ("risk ratio", "nuisance alerts", "lead time", "latency, s: mean / most")
+FLIGHT_S = 40.0  # of a flight without a collision
+
+
+def figures_of(text: str) -> dict[str, dict[str, list[str]]]:
+    """The figures of aviation: cells by table and group."""
+    figures: dict[str, dict[str, list[str]]] = {}
+    for line in text.splitlines():
+        name, *cells = line.strip("|").split("|")
+        if name.strip() in FIGURES:
+            figures[name.strip()] = {}
+        elif name.strip() in GROUPS:
+            figures[list(figures)[-1]][name.strip()] = [cell.strip() for cell in cells]
+    assert tuple(figures) == FIGURES and all(tuple(table) == tuple(GROUPS) for table in figures.values())
+    return figures
+
+
+def ratio_of(both: int, nominal: int, ordered: int) -> tuple[float, float, float]:
+    """The risk ratio with the interval of Bonett and Price (2006), from scipy's interval of one share."""
+    flights = both + nominal + ordered
+    with_orders, without = both + ordered, both + nominal
+    joint = math.sqrt((nominal + ordered + 2) / ((with_orders + 1) * (without + 1)))
+    apart = sum(math.sqrt((1 - (x + 1) / (flights + 2)) / (x + 1)) for x in (with_orders, without))
+    level = 2.0 * norm.cdf(norm.ppf(0.975) * joint / apart) - 1.0
+    above, below = (binomtest(x, flights).proportion_ci(level, "wilson") for x in (with_orders, without))
+    return with_orders / without, above.low / below.high, above.high / below.low
+
+
+def at_rank(numbers: list[float], share: float) -> float:
+    """The number at the nearest rank; in the middle of two ranks, the upper one."""
+    return sorted(numbers)[math.floor(share * (len(numbers) - 1) + 0.5)]
+
+
+@pytest.mark.parametrize(
+    "counts", [(0, 1, 0), (0, 347, 0), (1, 1622, 0), (0, 1627, 2), (3, 4, 5), (5, 0, 0), (7, 0, 3)]
+)
+def test_the_interval_of_the_risk_ratio_is_that_of_paired_counts(avoid_probe: Path, counts: tuple[int, ...]) -> None:
+    printed = [float(word) for word in avoid(avoid_probe, "ratio", *map(str, counts)).split()]
+    assert printed == pytest.approx(ratio_of(*counts), rel=1e-9, abs=1e-12)
+    assert printed[1] <= printed[0] <= printed[2]
+
+
+def test_the_interval_of_the_risk_ratio_has_a_published_value(avoid_probe: Path) -> None:
+    """The example of ci.ratio.prop.ps in the R package statpsych by D. G. Bonett."""
+    printed = [float(word) for word in avoid(avoid_probe, "ratio", "6", "4", "26").split()]
+    assert printed == pytest.approx([3.2, 1.766544, 5.796628], abs=5e-7)
+
+
+def test_no_collision_without_orders_leaves_the_risk_ratio_unknown(avoid_probe: Path) -> None:
+    for ordered in ("0", "3"):
+        assert avoid(avoid_probe, "ratio", "0", "0", ordered).split() == ["nan"] * 3
+
+
+@pytest.fixture(scope="module")
+def flown(avoid_probe: Path) -> list[dict[str, float]]:
+    text = avoid(avoid_probe, "flights", "112", "1", "2")  # each geometry, delay and autopilot, with each frame's delay
+    return [{name: float(cell) for name, cell in row.items()} for row in csv.DictReader(io.StringIO(text))]
+
+
+def test_the_nominal_course_is_the_flight_without_its_orders(flown: list[dict[str, float]]) -> None:
+    unordered = [row for row in flown if not row["ordered"]]
+    assert unordered and len(unordered) < len(flown)
+    for row in unordered:
+        assert row["closest_m"] == row["nominal_closest_m"] and row["collided"] == row["nominal_collided"]
+        assert row["flown_s"] == row["nominal_flown_s"] and row["alerts"] == 0
+    for row in flown:
+        assert (row["alerts"] > 0) == bool(row["ordered"])
+        assert row["due"] == (row["nominal_closest_m"] < 15.0)
+        assert row["nominal_collided"] == (row["nominal_closest_m"] < 0.95)
+        assert (row["nominal_flown_s"] < FLIGHT_S - 0.005) == bool(row["nominal_collided"])
+
+
+def test_the_latency_of_an_order_is_that_of_its_flight(flown: list[dict[str, float]]) -> None:
+    assert {(row["frame_s"], row["obey_s"]) for row in flown if row["obeyed"]} == {
+        (frame_s, obey_s) for frame_s in (0.1, 0.3) for obey_s in (0.5, 1.0, 1.5, 2.0)
+    }
+    for row in flown:
+        if row["obeyed"]:
+            assert row["arrival_s"] == pytest.approx(row["frame_s"], abs=1e-9)
+            assert row["delay_s"] == pytest.approx(row["obey_s"], abs=1e-9)
+            assert row["assessment_s"] == pytest.approx(0.1 * round(row["assessment_s"] / 0.1), abs=1e-9)
+
+
+def test_the_figures_of_aviation_follow_from_the_flights(goe_avoid: Path, flown: list[dict[str, float]]) -> None:
+    figures = figures_of(avoid(goe_avoid, "--several", str(len(flown)), "--seed", "1", "--step", "2"))
+    for group, (least, most) in GROUPS.items():
+        rows = [row for row in flown if least <= row["obstacles"] <= most]
+        collided, doomed = ({i for i, row in enumerate(rows) if row[name]} for name in ("collided", "nominal_collided"))
+        ratio, low, high = ratio_of(len(doomed & collided), len(doomed - collided), len(collided - doomed))
+        assert figures["risk ratio"][group] == [
+            str(len(rows)), str(len(doomed)), str(len(collided)), str(len(collided - doomed)),
+            f"{ratio:.4f}", f"{low:.4f} to {high:.4f}",
+        ]  # fmt: skip
+        quiet = [row for row in rows if not row["due"]]
+        alerted = [row["nominal_closest_m"] for row in quiet if row["alerts"]]
+        hours, alerts = sum(row["flown_s"] for row in quiet) / 3600.0, sum(row["alerts"] for row in quiet)
+        assert figures["nuisance alerts"][group] == [
+            str(len(quiet)), f"{hours:.2f}", str(len(alerted)), f"{at_rank(alerted, 0.5):.1f}" if alerted else "-",
+            f"{alerts:.0f}", f"{alerts / hours:.1f}",
+        ]  # fmt: skip
+        leads = [rows[i]["nominal_flown_s"] - rows[i]["ordered_s"] for i in doomed if rows[i]["ordered"]]
+        ranks = " / ".join(f"{at_rank(leads, share):.1f}" for share in (0.0, 0.05, 0.5))
+        assert figures["lead time"][group] == [str(len(doomed)), str(len(doomed) - len(leads)), ranks]
+        obeyed = [row for row in rows if row["obeyed"]]
+        parts = np.array([[row[name] for name in ("arrival_s", "assessment_s", "delay_s")] for row in obeyed])
+        parts = np.column_stack([parts, parts.sum(axis=1)])
+        cells = [f"{mean:.2f} / {most:.2f}" for mean, most in zip(parts.mean(axis=0), parts.max(axis=0))]
+        assert figures["latency, s: mean / most"][group] == [str(len(obeyed)), *cells]
+
+
+def test_the_figures_of_aviation_are_plausible(several: str) -> None:
+    figures = figures_of(several)
+    for table, columns in (("risk ratio", (0, 1, 2, 3)), ("nuisance alerts", (0, 2, 4)), ("lead time", (0, 1))):
+        for column in columns:
+            total, *parts = (int(cells[column]) for cells in figures[table].values())
+            assert total == sum(parts), (table, column)
+    for group in GROUPS:
+        flights, without, with_orders, _, _, interval = figures["risk ratio"][group]
+        assert int(flights) > int(without) > 0 and int(with_orders) <= 0.01 * int(without)
+        assert float(interval.split(" to ")[1]) < 0.1
+        quiet, hours, alerted, _, alerts, per_hour = figures["nuisance alerts"][group]
+        quiet, hours, alerted, alerts, per_hour = map(float, (quiet, hours, alerted, alerts, per_hour))
+        assert hours == pytest.approx(quiet * FLIGHT_S / 3600.0, abs=0.02)  # such flights end without a collision
+        assert alerted <= alerts <= 1.2 * alerted and per_hour <= 60.0
+        assert alerts / (hours + 0.005) - 0.06 <= per_hour <= alerts / (hours - 0.005) + 0.06
+        doomed, unordered, lead = figures["lead time"][group]
+        assert doomed == without and int(unordered) == 0
+        longest_s = float(figures["latency, s: mean / most"][group][4].split(" / ")[1])
+        assert 2.0 + 0.3 <= longest_s < float(lead.split(" / ")[0])  # the aircraft obeys before it would collide
 
 
 def test_a_flight_among_several_can_be_traced(goe_avoid: Path) -> None:
