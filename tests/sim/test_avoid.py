@@ -19,6 +19,7 @@ from sim_support import HANG_S
 
 RUNS = 60
 FALSE_SHARE_MAX = 0.02
+PAGE = Path(__file__).resolve().parents[2] / "port" / "flight" / "README.md"
 
 
 def avoid(goe_avoid: Path, *arguments: str) -> str:
@@ -338,6 +339,50 @@ def test_the_figures_of_aviation_are_plausible(several: str) -> None:
         assert doomed == without and int(unordered) == 0
         longest_s = float(figures["latency, s: mean / most"][group][4].split(" / ")[1])
         assert 2.0 + 0.3 <= longest_s < float(lead.split(" / ")[0])  # the aircraft obeys before it would collide
+
+
+def test_the_page_s_risk_ratios_follow_from_its_counts() -> None:
+    rows = re.findall(
+        r"^\| (?:odd|even) seeds, [\w ]+ \| \d+ \| (\d+) \| (\d+) \| (\d+) \| (0\.\d+) \| (0\.\d+) to (0\.\d+) \|$",
+        PAGE.read_text(encoding="utf-8"), re.MULTILINE,
+    )  # fmt: skip
+    assert len(rows) == 2 * len(GROUPS)
+    for row in rows:
+        without, with_orders, induced = (int(cell) for cell in row[:3])
+        both = with_orders - induced
+        assert list(row[3:]) == [f"{figure:.4f}" for figure in ratio_of(both, without - both, induced)]
+
+
+def rows_of_the_page(text: str, seeds: str) -> set[str]:
+    """The rows that the page has of a campaign's output, without the goals."""
+    rows = {
+        f"| {seeds} seeds, {group} | {' | '.join(cells)} |"
+        for table, groups in figures_of(text).items() for group, cells in groups.items()
+        if group == "all" or table != FIGURES[-1]
+    }  # fmt: skip
+    if seeds == "odd":
+        printed = re.findall(
+            r"^\| (.*?) \| (\d+) \| (\d+) \| \d+ \| (\d+) \(\d+\) \| (\d+) \| ([\d.]+) \| (\d+) \|", text, re.MULTILINE
+        )
+        assert len(printed) == len(GEOMETRIES) + 9 + 4 + 2
+        for name, flights, orders, collisions, below, closest, changes in printed:
+            cells = (name.replace("about", "circling"), flights, collisions, below, closest, changes, orders)
+            rows.add(f"| {' | '.join(cells)} |")
+    return rows
+
+
+@pytest.mark.release
+def test_the_page_has_the_tables_of_several_obstacles(goe_avoid: Path) -> None:
+    """Flies the 6000 flights of the page, some four minutes of one core."""
+    page = PAGE.read_text(encoding="utf-8").splitlines()
+    missed = []
+    for seeds, first in (("even", "2"), ("odd", "1")):
+        text = avoid(goe_avoid, "--several", "3000", "--seed", first, "--step", "2")
+        assert rows_of_the_page(text, seeds) - set(page) == set()
+        missed.append(re.findall(r"^\| .* \| (\d+ of \d+) \| (?:met|missed) \|$", text, re.MULTILINE))
+    goals = list(zip(*missed))
+    found = (re.fullmatch(r"\| .* \| (\d+ of \d+) \| (\d+ of \d+) \|", line) for line in page)
+    assert len(goals) == 4 and [row.groups() for row in found if row] == goals
 
 
 def test_a_flight_among_several_can_be_traced(goe_avoid: Path) -> None:
