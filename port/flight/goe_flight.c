@@ -314,11 +314,16 @@ static goe_flight_status_t check_position(const goe_flight_position_t *p) {
 }
 
 /* A delta counts only with a mark that changed; then it must be a number. */
-static bool has_bad_delta(const goe_flight_t *flight, const goe_flight_position_t *p) {
+static goe_flight_status_t check_delta(const goe_flight_t *flight, const goe_flight_position_t *p) {
     const bool changed = flight->marks.position_known && (flight->marks.horizontal != p->reset_horizontal ||
                                                           flight->marks.vertical != p->reset_vertical);
-    return changed && goe_flight_is_set(&p->reset_delta_known) &&
-           !goe_flight_all_within(p->reset_delta_ned_m, 3, POSITION_MAX_M);
+    if (!changed || !goe_flight_is_set(&p->reset_delta_known)) {
+        return GOE_FLIGHT_OK;
+    }
+    if (!goe_flight_all_finite(p->reset_delta_ned_m, 3)) {
+        return GOE_FLIGHT_NOT_FINITE;
+    }
+    return goe_flight_all_within(p->reset_delta_ned_m, 3, POSITION_MAX_M) ? GOE_FLIGHT_OK : GOE_FLIGHT_OUT_OF_RANGE;
 }
 
 /* Distance of the position from its prediction by the velocity: an unknown jump, as well as it can be known. The kept
@@ -359,7 +364,7 @@ static void note_ground(goe_flight_t *flight, const goe_flight_position_t *sampl
     flight->ground_down_m = 0.0f;
     for (int i = GOE_FLIGHT_HEIGHTS - 1; i >= 0; i--) {
         const float height_m = sample->height_m[i];
-        const bool valid = ((sample->height_valid >> i) & 1u) != 0u;
+        const bool valid = ((sample->height_valid >> i) & 1u) != 0u && (height_m > 0.0f || height_m < 0.0f);
         if (valid && (i != GOE_FLIGHT_RANGE_FINDER || height_m <= flight->settings.range_finder_max_m)) {
             flight->ground_source = (uint8_t)i;
             flight->ground_down_m = sample->position_ned_m[2] + height_m;
@@ -373,8 +378,8 @@ goe_flight_status_t goe_flight_position(goe_flight_t *flight, const goe_flight_p
         return status;
     }
     status = check_position(sample);
-    if (status == GOE_FLIGHT_OK && has_bad_delta(flight, sample)) {
-        status = GOE_FLIGHT_OUT_OF_RANGE;
+    if (status == GOE_FLIGHT_OK) {
+        status = check_delta(flight, sample);
     }
     if (status != GOE_FLIGHT_OK) {
         return refuse(flight, status);

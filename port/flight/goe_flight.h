@@ -149,7 +149,8 @@ typedef struct {
     uint32_t time_us;
     float position_ned_m[3];   /* vehicle's reference point, each +-1e6 */
     float velocity_ned_m_s[3]; /* over the ground, each +-1e3 */
-    float height_m[GOE_FLIGHT_HEIGHTS]; /* vertical, of the reference point above the ground; read if valid; +-1e5 */
+    float height_m[GOE_FLIGHT_HEIGHTS]; /* vertical, of the reference point above the ground; read if valid; +-1e5.
+                                           Exactly 0 counts as not valid, because range finders report it out of reach */
     uint8_t height_valid;               /* bits 1 << GOE_FLIGHT_RANGE_FINDER, ...: the valid heights. A track keeps the
                                            ground of its first image, because a range finder would later measure roofs.
                                            Without a valid height the ground is down = 0, with the sigma of home */
@@ -158,7 +159,8 @@ typedef struct {
     uint32_t reset_horizontal, reset_vertical; /* marks of resets, see goe_flight_settings_t.resets */
     bool reset_delta_known;             /* false: any reset is unknown, ends all tracks and empties the history. The
                                            layer shifts kept obstacles by the jump that the velocity reveals */
-    float reset_delta_ned_m[3];         /* new minus old position at the latest reset; read when a mark changed. The
+    float reset_delta_ned_m[3];         /* new minus old position at the latest reset. The layer reads north and east
+                                           if reset_horizontal changed, down if reset_vertical did; all are finite. The
                                            ground of every track shifts by the down part, even if height_m did not jump,
                                            so no height above the ground changes. A later track takes the ground of its
                                            first sample */
@@ -175,7 +177,7 @@ enum {
 /* One obstacle in one image: a box, or points, or both, as in goe_image_t. */
 typedef struct {
     uint32_t id;   /* from the tracker of the camera's detector; 0: no id; the layer matches by the position in the image */
-    float score;   /* 0 to 1 */
+    float score;   /* 0 to 1; exactly 0: the detector gives none, and the detection counts as one of full score */
     float pixel_px; /* one sigma of box and points; 0: as in the settings; 0 to 100 */
     goe_box_t box; /* raw pixels; give all sides, also at the image border, where the estimator detects truncation. Leave out
                       the bit of a side that another object hides */

@@ -40,7 +40,11 @@ static bool is_good(const goe_flight_detection_t *d) {
            is_good_pixel(&d->base_right);
 }
 
-/* Detections to be used, as bits; the others are counted, and so are bad kinds of used ones. *readable: there is a readable detection, or the image has none. */
+/* A score of exactly 0 is none: a field that nobody set must not hide an obstacle. */
+static bool is_weak(float score, float least) { return score > 0.0f && score < least; }
+
+/* Detections to be used, as bits; the others are counted, and so are bad kinds of used ones. *readable: there is a readable
+ * detection, or the image has none. */
 static uint32_t usable(goe_flight_t *flight, const goe_flight_slot_view_t *view, const goe_flight_frame_t *frame,
                        bool *readable) {
     uint32_t bits = 0u;
@@ -49,7 +53,7 @@ static uint32_t usable(goe_flight_t *flight, const goe_flight_slot_view_t *view,
         if (!is_good(&frame->detection[k])) {
             goe_flight_count(&flight->counters.refused);
             goe_flight_candidate_crowd(&flight->waiting, view->time_us);
-        } else if (frame->detection[k].score < flight->settings.score_min) {
+        } else if (is_weak(frame->detection[k].score, flight->settings.score_min)) {
             goe_flight_count(&flight->counters.weak);
             *readable = true;
         } else {

@@ -159,6 +159,19 @@ static void a_height_counts_only_where_it_is_valid(void) {
     }
 }
 
+/* GIVEN a valid height of exactly 0, as a range finder out of its reach reports it THEN the next best height counts. */
+static void a_height_of_exactly_0_is_none(void) {
+    float height_m;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, give_heights(7u, 0.0f, 21.0f, 22.0f, &height_m));
+    CHECK_CLOSE(1.0e-3, 21.0, height_m);
+    setUp();
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, give_heights(7u, -0.0f, 0.0f, 22.0f, &height_m));
+    CHECK_CLOSE(1.0e-3, 22.0, height_m);
+    setUp();
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, give_heights(7u, 0.01f, 21.0f, 22.0f, &height_m));
+    CHECK_CLOSE(1.0e-3, 0.01, height_m);
+}
+
 /* Each refusal has its reason, is counted, and leaves the history as it was. */
 static void an_invalid_pose_is_refused_for_its_reason(void) {
     goe_flight_attitude_t attitude;
@@ -173,8 +186,10 @@ static void an_invalid_pose_is_refused_for_its_reason(void) {
     position.reset_horizontal++;
     position.reset_delta_known = true;
     position.reset_delta_ned_m[1] = NAN;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NOT_FINITE, goe_flight_position(&flown.flight, &position));
+    position.reset_delta_ned_m[1] = 2.0e6f;
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OUT_OF_RANGE, goe_flight_position(&flown.flight, &position));
-    TEST_ASSERT_EQUAL(3, flown.flight.counters.refused);
+    TEST_ASSERT_EQUAL(4, flown.flight.counters.refused);
     TEST_ASSERT_EQUAL_MEMORY(&before, &flown.flight.history, sizeof before);
     position.reset_horizontal--;
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_position(&flown.flight, &position)); /* the mark did not change */
@@ -364,6 +379,7 @@ int main(void) {
     RUN_TEST(a_withdrawn_offset_leaves_nothing_behind);
     RUN_TEST(doubt_about_the_time_is_doubt_about_the_attitude);
     RUN_TEST(a_height_counts_only_where_it_is_valid);
+    RUN_TEST(a_height_of_exactly_0_is_none);
     RUN_TEST(an_invalid_pose_is_refused_for_its_reason);
     RUN_TEST(a_pose_is_alive_while_both_its_parts_are);
     RUN_TEST(an_order_begins_where_the_aircraft_is);

@@ -264,6 +264,15 @@ static void a_low_score_is_not_looked_at(void) {
     TEST_ASSERT_EQUAL(-1, now.worst);
 }
 
+/* GIVEN a detector that sets no score THEN its detections count. */
+static void no_score_hides_no_obstacle(void) {
+    flown.score = 0.0f;
+    const goe_flight_assessment_t now = flown_fly(&flown, 2.0);
+    TEST_ASSERT_EQUAL(1, slots_used());
+    TEST_ASSERT_EQUAL(0, flown.flight.counters.weak);
+    TEST_ASSERT_EQUAL(0, now.worst);
+}
+
 /* [GOE_FLIGHT_CANDIDATES] A full table of obstacles, and false detections with a new id in each image: nobody is evicted. */
 static void false_detections_evict_nobody(void) {
     for (int k = 0; k < 40; k++) {
@@ -664,6 +673,7 @@ int main(void) {
     RUN_TEST(the_hazard_counts_from_now);
     RUN_TEST(a_new_obstacle_waits_for_its_confirmation);
     RUN_TEST(a_low_score_is_not_looked_at);
+    RUN_TEST(no_score_hides_no_obstacle);
     RUN_TEST(false_detections_evict_nobody);
     RUN_TEST(a_renumbered_obstacle_keeps_its_track);
     RUN_TEST(a_box_of_another_size_takes_nothing_over);
