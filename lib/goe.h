@@ -17,20 +17,20 @@
  *     }
  *     goe_image_t image = {0};
  *     double taken_s = 0.0;
- *     while (next_image(&image.pose, &image.box)) {
- *         goe_estimate_t estimate;
- *         const goe_status_t status = goe_update(&estimator, &image, &estimate);
- *         taken_s = GOE_IMAGE_TAKEN(status) ? exposure_s() : taken_s;
- *         show(&estimate);
+ *     while (tenth_of_a_second_passed()) {
+ *         if (next_image(&image.pose, &image.box)) {
+ *             goe_estimate_t estimate;
+ *             taken_s = GOE_IMAGE_TAKEN(goe_update(&estimator, &image, &estimate)) ? exposure_s() : taken_s;
+ *         }
  *         const float since_s = (float)(now_s() - taken_s);
  *         const goe_intent_t intent = {{20.0f, 0.0f, 1.0f}, 15.0f, 10.0f, since_s, 0.0f};
  *         const goe_decision_t decision = goe_decide(&estimator, &intent, NULL, NULL);
  *         go_around = decision == GOE_DECISION_ACT || (go_around && decision != GOE_DECISION_CLEAR);
  *     }
  *
- * Order of calls: goe_settings_default, goe_init; then for every image goe_update, followed by goe_decide or goe_hazard. Call
- * goe_reset before another obstacle. goe.h includes goe_limits.h (compile-time options), goe_settings.h, goe_hazard.h (closest
- * approach, decision, covariance), goe_class.h (detector's class) and goe_diagnostics.h (self-check).
+ * Order of calls: goe_settings_default, goe_init; then goe_update for every image, and goe_decide or goe_hazard at 5 to 50 Hz,
+ * because a camera may stop. Call goe_reset before another obstacle. goe.h includes goe_limits.h (compile-time options),
+ * goe_settings.h, goe_hazard.h, goe_class.h and goe_diagnostics.h (self-check).
  * DESIGN.md explains methods and limits; GLOSSARY.md defines terms.
  *
  * Frames

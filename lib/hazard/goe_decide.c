@@ -11,6 +11,7 @@
 
 #define SURE_SIGMA 2.0f
 #define SUPERSEDED_S 2.0f     /* of detections without an answer, after which the answer before them clears nothing */
+#define SILENT_S 2.0f         /* without an image, after which nothing is clear: the flight since then is not known */
 #define DISTANCE_MAX_M 1.0e4f /* as that of an intent */
 #define TIME_MAX_S 1.0e4f
 #define DOUBT_MAX 100.0f
@@ -119,7 +120,7 @@ static GOE_NOINLINE goe_decision_t judge(const goe_estimator_t *estimator, const
         return status == GOE_CONVERGING ? GOE_DECISION_UNKNOWN : GOE_DECISION_KEEP;
     }
     const goe_decision_t decision = decision_of(met, &wide, rule);
-    const bool clears = !is_doubted(estimator) && !is_misplaced(&estimator->estimate);
+    const bool clears = since_s <= SILENT_S && !is_doubted(estimator) && !is_misplaced(&estimator->estimate);
     return decision == GOE_DECISION_CLEAR && !clears ? GOE_DECISION_UNKNOWN : decision;
 }
 

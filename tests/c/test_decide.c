@@ -122,6 +122,18 @@ static void a_wrong_position_clears_nothing(void) {
     TEST_ASSERT_EQUAL_INT(GOE_DECISION_ACT, decide());
 }
 
+/* GIVEN an obstacle that is passed far aside WHEN the camera is silent THEN it is clear for two seconds after the latest image, and not
+ * known after that; one ahead is still acted on. */
+static void a_silent_camera_clears_nothing(void) {
+    place(60.0);
+    intent.since_image_s = 2.0f;
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_CLEAR, decide());
+    intent.since_image_s = nextafterf(2.0f, 3.0f);
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_UNKNOWN, decide());
+    place(0.0);
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_ACT, decide());
+}
+
 /* [goe_decide]
  * GIVEN a suspect estimate THEN margin and clearance count `doubt` times; GIVEN one that is some seconds old, by its own age and the
  * intent's THEN they have grown by the drift. The hazard is that of these distances. */
@@ -279,6 +291,7 @@ int main(void) {
     RUN_TEST(a_poorly_known_obstacle_is_not_clear);
     RUN_TEST(an_old_answer_clears_nothing_after_new_detections);
     RUN_TEST(a_wrong_position_clears_nothing);
+    RUN_TEST(a_silent_camera_clears_nothing);
     RUN_TEST(doubt_and_age_widen);
     RUN_TEST(a_refused_image_moves_the_aircraft_on);
     RUN_TEST(without_a_position_nothing_is_known);
