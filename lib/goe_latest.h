@@ -60,6 +60,8 @@ static inline goe_answer_t goe_latest_answer(const goe_estimator_t *estimator) {
     if (goe_latest_by_filter(estimator)) {
         return estimator->filter.answer;
     }
+#else
+    (void)estimator;
 #endif
     memset(&answer, 0, sizeof answer);
     return answer;

@@ -120,7 +120,7 @@ def test_arduino_part_left_out_by_the_header(staged: Path, tmp_path: Path) -> No
     compile_all(tmp_path / "goe", tmp_path / "objects", ("cc",))
     objects = sorted((tmp_path / "objects").glob("*.o"))
     passed("cc", f"-I{config.parent}", STARTS, *objects, "-lm", "-o", tmp_path / "starts")
-    assert ": ok, 2016 bytes," in passed(tmp_path / "starts")
+    assert ": ok, 1408 bytes," in passed(tmp_path / "starts")
 
 
 def test_platformio_libraries_and_flags(staged: Path, tmp_path: Path) -> None:
@@ -130,7 +130,7 @@ def test_platformio_libraries_and_flags(staged: Path, tmp_path: Path) -> None:
     objects = sorted((tmp_path / "goe").glob("*.o"))
     include = f"-I{staged / 'platformio' / 'goe' / 'src'}"
     passed("cc", include, *flags[:2], STARTS, *objects, "-lm", "-o", tmp_path / "starts")
-    assert ": ok, 3256 bytes," in passed(tmp_path / "starts")
+    assert ": ok, 2416 bytes," in passed(tmp_path / "starts")
     compile_all(staged / "platformio" / "goe_flight", tmp_path / "flight", ("cc",), "-fsyntax-only")
 
 
@@ -184,7 +184,7 @@ def test_esp_idf_parts(staged: Path, tmp_path: Path) -> None:
     """Disabled options are not in sdkconfig at all."""
     config = {"GOE_WITH_FILTER": "y", "GOE_WINDOW_MAX": "8", "GOE_CAMERAS_MAX": "1"}
     build = build_component(tmp_path / "idf", staged / "esp-idf" / "goe", str(STARTS), config)
-    assert ": ok, 2016 bytes," in passed(build / "consumer")
+    assert ": ok, 1408 bytes," in passed(build / "consumer")
     names = passed("nm", build / "component" / "libcomponent.a")
     assert "goe_flight_init" not in names and " T goe_hazard" not in names
 
