@@ -191,6 +191,10 @@ static void a_refused_image_moves_the_aircraft_on(void) {
     rule.act_within_s = 1.0f;
     estimator.estimate.age_s = 0.0f;
     TEST_ASSERT_EQUAL_INT(GOE_DECISION_CLEAR, decide());
+    const float now_s = hazard.tcpa_s;
+    estimator.estimate.age_s = 1.0f; /* clear at both times: the hazard is that of now */
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_CLEAR, decide());
+    CHECK_SAME(now_s, hazard.tcpa_s);
     estimator.estimate.age_s = 7.5f;
     TEST_ASSERT_EQUAL_INT(GOE_DECISION_UNKNOWN, decide());
 }
