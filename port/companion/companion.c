@@ -239,9 +239,11 @@ static void send_alive(companion_t *c) {
                     a->detector_alive ? "GOE: detector is alive" : "GOE: detector is silent");
     }
     if (a->pose_alive != c->pose_alive) {
-        event(a->pose_alive ? "poses come" : "no poses come");
-        screen_show(&c->screen, SCREEN_POSE, a->pose_alive ? MAV_SEVERITY_INFO : MAV_SEVERITY_WARNING,
-                    a->pose_alive ? "GOE: poses come" : "GOE: no poses come");
+        const char *none = a->pose_agrees ? "no poses come" : "velocity contradicts position";
+        event("%s%s", a->pose_alive ? "poses come" : none,
+              a->pose_agrees ? "" : ": nothing is clear, and hazards may be missing");
+        screen_show(&c->screen, SCREEN_POSE, a->pose_alive ? MAV_SEVERITY_INFO : MAV_SEVERITY_WARNING, "GOE: %s",
+                    a->pose_alive ? "poses come" : none);
     }
     c->detector_alive = a->detector_alive;
     c->pose_alive = a->pose_alive;

@@ -14,6 +14,7 @@
 #include "goe_parts.h"
 #include "goe_reaction.h"
 #include "goe_table.h"
+#include "goe_travel.h"
 
 #define TAG 0x474F4546u
 #define POSITION_MAX_M 1.0e6f
@@ -116,6 +117,7 @@ static void forget(goe_flight_t *flight) {
     memset(&flight->waiting, 0, sizeof flight->waiting);
     memset(flight->parts, 0, sizeof flight->parts);
     memset(flight->velocity_ned_m_s, 0, sizeof flight->velocity_ned_m_s);
+    memset(&flight->travel, 0, sizeof flight->travel);
     goe_flight_reaction_clear(&flight->reaction);
     flight->had_frame = 0;
     flight->origin_known = false;
@@ -351,9 +353,11 @@ static void follow_reset(goe_flight_t *flight, const goe_flight_position_t *samp
         guess_jump(flight, sample, jump_ned_m);
         move_places(flight, jump_ned_m);
         lose_everything(flight);
+        goe_flight_travel_restart(&flight->travel);
     } else if (change == GOE_FLIGHT_MARKS_JUMP) {
         goe_flight_history_shift(&flight->history, jump_ned_m);
         move_places(flight, jump_ned_m);
+        goe_flight_travel_shift(&flight->travel, jump_ned_m);
         goe_flight_count(&flight->counters.resets);
     }
 }
@@ -391,6 +395,7 @@ goe_flight_status_t goe_flight_position(goe_flight_t *flight, const goe_flight_p
     follow_reset(flight, sample);
     advance(flight, sample->time_us);
     (void)goe_flight_history_add_position(&flight->history, sample->time_us, sample->position_ned_m);
+    goe_flight_travel_take(&flight->travel, sample);
     flight->history.stale = 0;
     memcpy(flight->velocity_ned_m_s, sample->velocity_ned_m_s, sizeof flight->velocity_ned_m_s);
     note_ground(flight, sample);
@@ -558,7 +563,8 @@ static void catch_up(goe_flight_t *flight, uint32_t now_us) {
 static bool pose_alive(const goe_flight_t *flight, uint32_t now_us) {
     const goe_flight_history_attitude_t *attitude = goe_flight_history_newest_attitude(&flight->history);
     const goe_flight_history_position_t *position = goe_flight_history_newest_position(&flight->history);
-    return attitude && position && goe_flight_between_s(now_us, attitude->time_us) <= POSE_ALIVE_S &&
+    return attitude && position && !flight->travel.doubted &&
+           goe_flight_between_s(now_us, attitude->time_us) <= POSE_ALIVE_S &&
            goe_flight_between_s(now_us, position->time_us) <= POSE_ALIVE_S;
 }
 
@@ -594,6 +600,7 @@ static void report_action(const goe_flight_t *flight, goe_flight_assessment_t *r
 static void report(const goe_flight_t *flight, int worst, uint32_t now_us, goe_flight_assessment_t *result) {
     result->detector_alive = detector_alive(flight, now_us);
     result->pose_alive = pose_alive(flight, now_us);
+    result->pose_agrees = !flight->travel.doubted;
     result->worst = (int8_t)worst;
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         const goe_flight_slot_t *slot = &flight->slot[i];

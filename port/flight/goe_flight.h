@@ -242,7 +242,11 @@ typedef struct {
     bool suspect;          /* the worst obstacle's estimate is suspect: margins were widened */
     bool detector_alive;   /* every camera sent a readable frame within detector_timeout_s: an empty one, or one with a
                               valid detection. Once false, it stays false until the next such frame */
-    bool pose_alive;       /* samples of attitude and position came within 0.5 s */
+    bool pose_agrees;      /* in the latest 10 s no position contradicted the velocities: none was off by more than 3 m
+                              (down 2 m) plus 30 % of the way of a second. If false, a convention is wrong (axes, sign,
+                              unit, time), or the position jumped: nothing is clear, and hazards may be missing. The
+                              layer corrects nothing */
+    bool pose_alive;       /* pose_agrees, and samples of attitude and position came within 0.5 s */
     int8_t worst;          /* slot, for goe_flight_obstacle(); -1: no known hazard. That is "clear" only if detector and
                               pose are alive and unplaced is 0 */
     int8_t avoided;        /* slot of the obstacle that the action avoids; -1: none, or its track has ended */
@@ -326,6 +330,12 @@ typedef struct { /* goe_marks.c: the autopilot's reset counters */
     goe_flag_t attitude_known, position_known; /* a first mark has come */
     float jumps_ned_m[3];                /* sum of all known jumps, limited to 1e6 */
 } goe_flight_marks_t;
+
+typedef struct { /* goe_travel.c: the way by the velocities, and by the positions */
+    uint32_t begun_us, newest_us, doubted_us;
+    float begun_ned_m[3], by_velocity_m[3];
+    goe_flag_t begun, doubted;
+} goe_flight_travel_t;
 
 typedef struct { /* goe_clock.c: sender's clock to autopilot's */
     uint32_t offset_us;    /* autopilot's minus sender's, by goe_flight_timesync(); or the least in this interval */
@@ -414,6 +424,7 @@ typedef struct {
     float attitude_white_sd_deg; /* setting of the estimator */
     goe_flight_history_t history;
     goe_flight_marks_t marks;
+    goe_flight_travel_t travel;
     goe_flight_clock_t clock;
     goe_flight_reaction_t reaction;
     goe_flight_counters_t counters; /* public */

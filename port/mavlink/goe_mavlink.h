@@ -132,6 +132,7 @@ typedef struct {
 
 #define GOE_MAVLINK_DETECTOR_ALIVE 0x01u
 #define GOE_MAVLINK_POSE_ALIVE 0x02u
+#define GOE_MAVLINK_POSE_AGREES 0x04u /* no position contradicts the velocities; without it the pose is not alive */
 
 /* To be sent once a second, even with nothing in view. Without obstacles the course is clear only if detector and pose are alive and
  * unplaced is 0. */
@@ -141,7 +142,7 @@ typedef struct {
     uint16_t delay_mean, delay_max; /* time from the exposure to the arrival, since the previous message, ms; 65535: no image */
     uint8_t obstacles;  /* number of obstacles with a position */
     uint8_t action;     /* goe_flight_action_t */
-    uint8_t alive;      /* GOE_MAVLINK_DETECTOR_ALIVE, _POSE_ALIVE */
+    uint8_t alive;      /* GOE_MAVLINK_DETECTOR_ALIVE, _POSE_ALIVE, _POSE_AGREES */
     uint8_t self_check; /* result of goe_self_check(); 0: correct */
     uint8_t unplaced;   /* number of detected obstacles without a position; no order avoids them; an extension */
 } goe_mavlink_status_t;

@@ -141,7 +141,8 @@ void goe_mavlink_to_status(const goe_flight_counters_t *counters, const goe_flig
     message->unplaced = assessment->unplaced;
     message->action = (uint8_t)assessment->action;
     message->alive = (uint8_t)((assessment->detector_alive ? GOE_MAVLINK_DETECTOR_ALIVE : 0u) |
-                               (assessment->pose_alive ? GOE_MAVLINK_POSE_ALIVE : 0u));
+                               (assessment->pose_alive ? GOE_MAVLINK_POSE_ALIVE : 0u) |
+                               (assessment->pose_agrees ? GOE_MAVLINK_POSE_AGREES : 0u));
     message->self_check = (uint8_t)(self_check > UINT8_MAX ? UINT8_MAX : self_check);
 }
 

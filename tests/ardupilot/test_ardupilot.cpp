@@ -579,7 +579,7 @@ static void test_sent_messages(void) {
     const ScriptedSent &last = scripted.sent.back();
     TEST_ASSERT_EQUAL(42703, last.msgid);
     goe_mavlink_read_status(last.payload.data(), last.payload.size(), &status);
-    TEST_ASSERT_EQUAL(3, status.alive);
+    TEST_ASSERT_EQUAL(7, status.alive);
     TEST_ASSERT_INT_WITHIN(3, 100, status.delay_mean);
     TEST_ASSERT_INT_WITHIN(3, 100, status.delay_max);
     TEST_ASSERT_EQUAL(1, status.obstacles);
@@ -782,7 +782,7 @@ static void test_the_log(void) {
     TEST_ASSERT_INT_WITHIN(2, 60, scripted.log["GOEA"].size()); // also before the first detection
     const auto &status = scripted.log["GOES"].back().value;
     TEST_ASSERT_INT_WITHIN(12, vehicle.flight().counters.taken, status.at("Tkn"));
-    TEST_ASSERT_EQUAL(3, status.at("Al"));
+    TEST_ASSERT_EQUAL(7, status.at("Al"));
     TEST_ASSERT_INT_WITHIN(3, 100, status.at("Dly"));
     TEST_ASSERT_INT_WITHIN(1, 6, scripted.log["GOES"].size());
 }

@@ -13,7 +13,7 @@ LAYER = ROOT / "port" / "flight"
 FLOORS = [
     {"goe_flight.h", "goe_flight_settings_list"},
     {"goe_flight_maths"},
-    {"goe_marks", "goe_clock", "goe_history", "goe_candidate", "goe_flight_seal"},
+    {"goe_marks", "goe_travel", "goe_clock", "goe_history", "goe_candidate", "goe_flight_seal"},
     {"goe_geometry"},
     {"goe_slot"},
     {"goe_parts"},

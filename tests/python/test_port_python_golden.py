@@ -219,11 +219,20 @@ def time_of(track: LoggedTrack, k: int) -> int:
     return 0xFFF00000 + track.images[k].time_us - track.images[0].time_us
 
 
-def give_samples(h: Hash, flight: goe.Flight, time_us: int, image: LoggedImage) -> None:
+def velocity_of(track: LoggedTrack, k: int) -> np.ndarray:
+    """The velocity that the logs lack: the change of the position since the image before, so that the two agree."""
+    if k == 0:
+        return np.array(PLAN.velocity_ned_m_s, np.float32)
+    now, before = track.images[k], track.images[k - 1]
+    s = np.float32(now.time_us - before.time_us) * np.float32(1e-6)
+    return (now.numbers[:3].astype(np.float32) - before.numbers[:3].astype(np.float32)) / s
+
+
+def give_samples(h: Hash, flight: goe.Flight, time_us: int, image: LoggedImage, velocity: np.ndarray) -> None:
     n = image.numbers
     h.word(flight.attitude(goe.flight.Attitude(time_us, n[4:8])))
     sample = goe.flight.PositionSample(
-        time_us, n[:3], PLAN.velocity_ned_m_s, terrain_m=n[3], origin=goe.flight.LatLon(474000000, 85000000),
+        time_us, n[:3], velocity, terrain_m=n[3], origin=goe.flight.LatLon(474000000, 85000000),
         reset_horizontal=image.reset_count, reset_vertical=image.reset_count,
         reset_delta_ned_m=n[8:11] if image.reset_delta_known else None,
     )  # fmt: skip
@@ -251,7 +260,7 @@ def test_the_flight_layer_has_the_bits_of_c(tracks: list[LoggedTrack]) -> None:
         flight = goe.Flight(settings, goe.FlightSettings(confirm_images=1))
         h.word(0)
         for k, image in enumerate(track.images):
-            give_samples(h, flight, time_of(track, k), image)
+            give_samples(h, flight, time_of(track, k), image, velocity_of(track, k))
             if k >= LATE:
                 visible = track.images[k - LATE]
                 detection = goe.flight.Detection(1.0, 1, box_of(visible), **points_of(visible))

@@ -81,6 +81,23 @@ static uint32_t time_of(const logged_track_t *track, int k) {
     return 0xFFF00000u + (uint32_t)(logged_images[track->first + k].time_us - logged_images[track->first].time_us);
 }
 
+/* The velocity that the logs lack: the change of the position since the image before, so that the two agree. */
+static void find_velocity(const logged_track_t *track, int k, float velocity_ned_m_s[3]) {
+    static const float first_m_s[3] = {15.0f, 1.0f, -0.5f};
+    goe_image_t now;
+    goe_image_t before;
+    memcpy(velocity_ned_m_s, first_m_s, sizeof first_m_s);
+    if (k == 0) {
+        return;
+    }
+    replay_read_image(&logged_images[track->first + k], &now);
+    replay_read_image(&logged_images[track->first + k - 1], &before);
+    const float s = (float)(now.pose.time_us - before.pose.time_us) * 1.0e-6f;
+    for (int i = 0; i < 3; i++) {
+        velocity_ned_m_s[i] = (now.pose.position_ned_m[i] - before.pose.position_ned_m[i]) / s;
+    }
+}
+
 static void give_samples(replay_t *replay, const logged_track_t *track, int k, const goe_image_t *image) {
     goe_flight_attitude_t attitude;
     goe_flight_position_t position;
@@ -90,9 +107,7 @@ static void give_samples(replay_t *replay, const logged_track_t *track, int k, c
     memcpy(attitude.q, image->pose.attitude, sizeof attitude.q);
     memcpy(position.position_ned_m, image->pose.position_ned_m, sizeof position.position_ned_m);
     memcpy(position.reset_delta_ned_m, image->pose.reset_delta_ned_m, sizeof position.reset_delta_ned_m);
-    position.velocity_ned_m_s[0] = 15.0f;
-    position.velocity_ned_m_s[1] = 1.0f;
-    position.velocity_ned_m_s[2] = -0.5f;
+    find_velocity(track, k, position.velocity_ned_m_s);
     position.height_m[GOE_FLIGHT_TERRAIN] = image->pose.height_m;
     position.height_valid = 1u << GOE_FLIGHT_TERRAIN;
     position.origin_known = true;

@@ -191,9 +191,10 @@ void AP_GOE::report_changes()
     if (alive != _reported_alive) {
         _reported_alive = alive;
         GCS_SEND_TEXT(alive ? MAV_SEVERITY_INFO : MAV_SEVERITY_WARNING, "GOE: %s",
-                      alive            ? "alive"
-                      : now.pose_alive ? "no images"
-                                       : "no pose");
+                      alive             ? "alive"
+                      : now.pose_alive  ? "no images"
+                      : now.pose_agrees ? "no pose"
+                                        : "velocity contradicts position");
     }
     if (now.action != _reported_action) {
         _reported_action = now.action;
@@ -240,7 +241,7 @@ bool AP_GOE::pre_arm_check(char *failure_msg, uint8_t failure_msg_len) const
     } else if (!has_option(Option::ARM_NEEDS_IMAGES)) {
         return true;
     } else if (!_state->shown.assessment.pose_alive) {
-        why = "no pose";
+        why = _state->shown.assessment.pose_agrees ? "no pose" : "velocity contradicts position";
     } else if (!_state->shown.assessment.detector_alive) {
         why = "no images";
     }

@@ -299,6 +299,7 @@ mod flight {
             late: bool,
             suspect: bool,
             detector_alive: bool,
+            pose_agrees: bool,
             pose_alive: bool,
             worst: i8,
             avoided: i8,

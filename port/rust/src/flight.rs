@@ -524,7 +524,9 @@ pub struct Assessment {
     pub suspect: bool,
     /// A frame came in time.
     pub detector_alive: bool,
-    /// Samples of attitude and position came within 0.5 s.
+    /// In the latest 10 s no position contradicted the velocities. If false, a convention is wrong, or the position jumped.
+    pub pose_agrees: bool,
+    /// The pose agrees, and samples of attitude and position came within 0.5 s.
     pub pose_alive: bool,
     /// Slot of the worst obstacle, for [`Flight::obstacle`]. `None` is "clear" only if detector and pose are alive and `unplaced`
     /// is 0.
@@ -566,6 +568,7 @@ impl Assessment {
             late: c.late,
             suspect: c.suspect,
             detector_alive: c.detector_alive,
+            pose_agrees: c.pose_agrees,
             pose_alive: c.pose_alive,
             worst,
             avoided: slot(c.avoided),

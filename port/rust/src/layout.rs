@@ -244,23 +244,24 @@ layout_hazard! {
 }
 
 layout_flight! {
-    goe_flight_assessment_t: 76 {
+    goe_flight_assessment_t: 80 {
         action: 0,
         late: 4,
         suspect: 5,
         detector_alive: 6,
-        pose_alive: 7,
-        worst: 8,
-        avoided: 9,
-        obstacles: 10,
-        unplaced: 11,
-        needed_s: 12,
-        target_ned_m: 16,
-        reason: 28,
-        clear_m: 32,
-        target_lat_e7: 36,
-        target_lon_e7: 40,
-        hazard: 44,
+        pose_agrees: 7,
+        pose_alive: 8,
+        worst: 9,
+        avoided: 10,
+        obstacles: 11,
+        unplaced: 12,
+        needed_s: 16,
+        target_ned_m: 20,
+        reason: 32,
+        clear_m: 36,
+        target_lat_e7: 40,
+        target_lon_e7: 44,
+        hazard: 48,
     }
     goe_flight_attitude_t: 24 {
         time_us: 0,

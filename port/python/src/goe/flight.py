@@ -233,7 +233,7 @@ class Assessment:
     detector_alive: bool
     """A frame came in time, of every camera."""
     pose_alive: bool
-    """Samples of attitude and position came within 0.5 s."""
+    """The pose agrees, and samples of attitude and position came within 0.5 s."""
     worst: int | None
     """Slot of the worst obstacle, for ``Flight.obstacle``. None is "clear" only if detector and pose are alive and
     ``unplaced`` is 0."""
@@ -256,6 +256,8 @@ class Assessment:
     taken off; at most 1000 m; 0 without an action to a side."""
     unplaced: int
     """Detected obstacles without a position: no order avoids them."""
+    pose_agrees: bool
+    """In the latest 10 s no position contradicted the velocities. If false, a convention is wrong, or the position jumped."""
 
 
 class Place(NamedTuple):
@@ -345,7 +347,7 @@ def _assessment_of(c: Any) -> Assessment:
     return Assessment(
         action, c.late, c.suspect, c.detector_alive, c.pose_alive, _slot(c.worst), _slot(c.avoided), c.obstacles,
         c.needed_s, tuple(c.target_ned_m) if action else None, _lat_lon(c.target_lat_e7, c.target_lon_e7),
-        hazard_of(c.hazard) if c.worst >= 0 else None, OrderReason(c.reason), c.clear_m, c.unplaced,
+        hazard_of(c.hazard) if c.worst >= 0 else None, OrderReason(c.reason), c.clear_m, c.unplaced, c.pose_agrees,
     )  # fmt: skip
 
 

@@ -111,7 +111,17 @@ fn time_of(track: &LoggedTrack, k: usize) -> u32 {
     0xFFF0_0000_u32.wrapping_add((images[k].time_us - images[0].time_us) as u32)
 }
 
-fn give_samples(hash: &mut Hash, flight: &mut Flight, time_us: u32, image: &Image) {
+/// The velocity that the logs lack: the change of the position since the image before, so that the two agree.
+fn velocity_of(images: &[LoggedImage], k: usize) -> [f32; 3] {
+    if k == 0 {
+        return [15.0, 1.0, -0.5];
+    }
+    let (now, before) = (images[k].image().pose, images[k - 1].image().pose);
+    let s = (now.time_us - before.time_us) as f32 * 1.0e-6;
+    std::array::from_fn(|i| (now.position_ned_m[i] - before.position_ned_m[i]) / s)
+}
+
+fn give_samples(hash: &mut Hash, flight: &mut Flight, time_us: u32, image: &Image, velocity_ned_m_s: [f32; 3]) {
     let pose = &image.pose;
     let reset = u32::from(pose.reset_count);
     hash.word(code(flight.attitude(&Attitude {
@@ -122,7 +132,7 @@ fn give_samples(hash: &mut Hash, flight: &mut Flight, time_us: u32, image: &Imag
     hash.word(code(flight.position(&PositionSample {
         time_us,
         position_ned_m: pose.position_ned_m,
-        velocity_ned_m_s: [15.0, 1.0, -0.5],
+        velocity_ned_m_s,
         heights: Heights {
             terrain_m: Some(pose.height_m),
             ..Heights::default()
@@ -200,7 +210,7 @@ fn fly(hash: &mut Hash, track: &LoggedTrack) -> u32 {
     hash.word(0);
     let mut frames = 0;
     for (k, logged) in track.images().iter().enumerate() {
-        give_samples(hash, flight, time_of(track, k), &logged.image());
+        give_samples(hash, flight, time_of(track, k), &logged.image(), velocity_of(track.images(), k));
         if k >= LATE {
             let detections = [detection(&track.images()[k - LATE].image())];
             let capture = Capture::Autopilot {

@@ -231,6 +231,7 @@ void status(const goe_flight_t &flight, const goe_flight_assessment_t &assessmen
     const goe_flight_counters_t &counters = flight.counters;
     const bool ordered = assessment.action != GOE_FLIGHT_NONE;
     topic.detector_alive = assessment.detector_alive;
+    topic.pose_agrees = assessment.pose_agrees;
     topic.pose_alive = assessment.pose_alive;
     topic.obstacles = assessment.obstacles;
     topic.unplaced = assessment.unplaced;

@@ -150,8 +150,9 @@ void report_state(const GoeOverview &o, unsigned number_of_line, char *line) {
             report_settings(o, line);
             break;
         case 2:
-            snprintf(line, GOE_TEXT_LINE, "pose       %s%s, corrected jumps of PX4's filter: %u",
-                     yes(o.status.pose_alive), o.status.dead_reckoning ? ", by dead reckoning" : "", o.status.resets);
+            snprintf(line, GOE_TEXT_LINE, "pose       %s%s%s, corrected jumps of PX4's filter: %u",
+                     yes(o.status.pose_alive), o.status.pose_agrees ? "" : ", velocity contradicts position",
+                     o.status.dead_reckoning ? ", by dead reckoning" : "", o.status.resets);
             break;
         case 3:
             report_detector(o.status, line);
