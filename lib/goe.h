@@ -12,6 +12,7 @@
  *     goe_settings_default(&settings);
  *     settings.camera.fx_px = settings.camera.fy_px = 914.0f;
  *     settings.camera.cx_px = settings.camera.cy_px = 640.0f;
+ *     settings.camera.width_px = settings.camera.height_px = 1280.0f;
  *     if (goe_init(&estimator, sizeof estimator, &settings, NULL) != GOE_OK) {
  *         return;
  *     }
@@ -30,8 +31,7 @@
  *
  * Order of calls: goe_settings_default, goe_init; then goe_update for every image, and goe_decide or goe_hazard at 5 to 50 Hz,
  * because a camera may stop. Call goe_reset before another obstacle. goe.h includes goe_limits.h (compile-time options),
- * goe_settings.h, goe_hazard.h, goe_class.h and goe_diagnostics.h (self-check).
- * DESIGN.md explains methods and limits; GLOSSARY.md defines terms.
+ * goe_settings.h, goe_hazard.h, goe_class.h and goe_diagnostics.h (self-check). See DESIGN.md (methods, limits) and GLOSSARY.md.
  *
  * Frames
  *   earth       north, east, down (NED), meters, local, any origin
@@ -264,7 +264,7 @@ typedef struct {
 
 /* ------------------------------------------------------------------------------------------------------- functions -- */
 
-/* Sets the defaults for a small aircraft's sensors. The caller must set fx_px, fy_px, cx_px, cy_px. settings may be null.
+/* Sets the defaults for a small aircraft's sensors. The caller must set fx_px, fy_px, cx_px, cy_px, width_px, height_px. settings may be null.
  * Cost: at most 1010 instructions, 40 bytes of stack. */
 void goe_settings_default(goe_settings_t *settings);
 

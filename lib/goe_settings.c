@@ -6,6 +6,8 @@
 #include "goe_settings_list.h"
 #include "maths/goe_scalar.h"
 
+#define FOCAL_MIN 0.1f /* of the image's size: a view of 157 degrees, which no lens model here describes */
+
 enum { SETTING_REAL, SETTING_COUNT, SETTING_TRUTH, SETTING_CHOICE };
 
 /* Arrays side by side, as entries of mixed sizes would be padded; names one after the other. Counts, truth values and choices
@@ -98,6 +100,26 @@ static const char *first_bad(const unsigned char *from, size_t count) {
     return NULL;
 }
 
+/* What no camera is: a focal length given in millimeters, or the principal point of another image size. */
+/*@ requires \valid_read(camera); */
+static const char *implausible(const goe_camera_t *camera) {
+    const float sizes_px[2] = {camera->width_px, camera->height_px};
+    const float focals_px[2] = {camera->fx_px, camera->fy_px};
+    const float centers_px[2] = {camera->cx_px, camera->cy_px};
+    static const char *const focal_names[2] = {"camera.fx_px", "camera.fy_px"};
+    static const char *const center_names[2] = {"camera.cx_px", "camera.cy_px"};
+    for (int i = 0; i < 2; i++) {
+        const float size_px = sizes_px[i];
+        if (size_px > 0.0f && focals_px[i] < FOCAL_MIN * size_px) {
+            return focal_names[i];
+        }
+        if (size_px > 0.0f && !(centers_px[i] >= -size_px && centers_px[i] <= 2.0f * size_px)) {
+            return center_names[i];
+        }
+    }
+    return NULL;
+}
+
 #if GOE_CAMERAS_MAX > 1
 #define ONE_BYTE(field, kind, unit, low, high, value, text) (uint8_t)0,
 #define CAMERA_SETTINGS (sizeof((const uint8_t[]){GOE_SETTINGS_CAMERA(ONE_BYTE)}))
@@ -110,6 +132,7 @@ static const char *first_bad_camera(const goe_settings_t *settings) {
         const goe_camera_t *camera = &settings->more_cameras[i];
         if (goe_magnitude(camera->fx_px) != 0u) {
             bad = first_bad((const unsigned char *)camera, CAMERA_SETTINGS);
+            bad = bad ? bad : implausible(camera);
         }
     }
     return bad;
@@ -123,6 +146,7 @@ static const char *first_bad_camera(const goe_settings_t *settings) {
 
 const char *goe_settings_first_bad(const goe_settings_t *settings) {
     const char *bad = first_bad((const unsigned char *)settings, SETTINGS);
+    bad = bad ? bad : implausible(&settings->camera);
     return bad ? bad : first_bad_camera(settings);
 }
 

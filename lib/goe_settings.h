@@ -46,8 +46,8 @@ typedef struct {
     float mount_pitch_deg; /* mounting pitch, negative if the camera looks down; -360 to 360 deg; default 0 */
     float mount_roll_deg;  /* mounting roll, positive if the camera leans to the right; -360 to 360 deg; default 0 */
     float offset_m[3];     /* camera relative to pose.position_ned_m, body FRD; -1e4 to 1e4 m; default 0 */
-    float width_px;        /* width of the image; 0 if unknown; 0 to 1e5 px; default 0 */
-    float height_px;       /* height of the image; 0 if unknown; 0 to 1e5 px; default 0 */
+    float width_px;        /* width of the image; 0: unknown, then no box may be cut; 0 to 1e5 px; no default: must be set */
+    float height_px;       /* height of the image; 0: unknown, then no box may be cut; 0 to 1e5 px; no default: must be set */
     float border_rel;      /* a side this near to the border is not measured; fraction of the image's width; 0 to 0.5; default 0.012 */
     float truncation_rel;  /* a box whose left or right is this near to the border is cut; same fraction; 0 to 0.5; default 0.04 */
 } goe_camera_t;

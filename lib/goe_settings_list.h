@@ -28,8 +28,8 @@
     X(camera.offset_m[0], REAL, "m", -1.0e4f, 1.0e4f, 0.0f, "lever arm, body forward") \
     X(camera.offset_m[1], REAL, "m", -1.0e4f, 1.0e4f, 0.0f, "lever arm, body right") \
     X(camera.offset_m[2], REAL, "m", -1.0e4f, 1.0e4f, 0.0f, "lever arm, body down") \
-    X(camera.width_px, REAL, "px", 0.0f, 1.0e5f, 0.0f, "width of the image; 0 if unknown") \
-    X(camera.height_px, REAL, "px", 0.0f, 1.0e5f, 0.0f, "height of the image; 0 if unknown") \
+    X(camera.width_px, REAL, "px", 0.0f, 1.0e5f, -1.0f, "width of the image; 0: unknown, then no box may be cut") \
+    X(camera.height_px, REAL, "px", 0.0f, 1.0e5f, -1.0f, "height of the image; 0: unknown, then no box may be cut") \
     X(camera.border_rel, REAL, "", 0.0f, 0.5f, 0.012f, "a side this near to the border is not measured; fraction of the image's width") \
     X(camera.truncation_rel, REAL, "", 0.0f, 0.5f, 0.04f, "a box whose left or right is this near to the border is cut; same fraction")
 

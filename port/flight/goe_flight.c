@@ -57,7 +57,7 @@ void goe_flight_settings_default(goe_flight_settings_t *settings) {
     }
 }
 
-/* The name of the first setting outside its range; null: none. */
+/* The name of the first setting outside its range, or of a fraction that must be a whole number; null: none. */
 static const char *find_bad(const goe_flight_settings_t *settings) {
     float value[SETTINGS];
     memcpy(value, settings, sizeof value);
@@ -66,7 +66,10 @@ static const char *find_bad(const goe_flight_settings_t *settings) {
             return ranges[i].name;
         }
     }
-    return NULL;
+    if (settings->resets > 0.0f && settings->resets < 1.0f) {
+        return "resets";
+    }
+    return (float)(int)settings->confirm_images < settings->confirm_images ? "confirm_images" : NULL;
 }
 
 static const char *init_slots(goe_flight_t *flight, const goe_settings_t *estimator) {

@@ -14,6 +14,7 @@
 
 #define HEADING_AUTO "auto"
 #define SMALLEST_SIZE_PX 1.0f
+#define LONGEST_FOCAL_PX 1.0e5f
 
 typedef enum { KIND_SIZE, KIND_REQUIRED, KIND_OPTIONAL, KIND_HEADING } kind_t;
 
@@ -213,9 +214,10 @@ static bool value_accepted(const camera_key_t *key, float value) {
     goe_estimator_t estimator;
     (void)memset(&estimator, 0, sizeof estimator);
     goe_settings_default(&trial);
-    trial.camera.fx_px = 1.0f;
-    trial.camera.fy_px = 1.0f;
+    trial.camera.fx_px = LONGEST_FOCAL_PX; /* which no size contradicts */
+    trial.camera.fy_px = LONGEST_FOCAL_PX;
     trial.camera.cx_px = trial.camera.cy_px = 0.0f;
+    trial.camera.width_px = trial.camera.height_px = 0.0f;
     trial.heading_auto = false;
     store(&trial, 0, key, value);
     return goe_init(&estimator, sizeof estimator, &trial, NULL) == GOE_OK;

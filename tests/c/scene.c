@@ -98,6 +98,7 @@ void scene_default(scene_t *scene) {
     scene->camera.fy_px = 914.0f;
     scene->camera.cx_px = 640.0f;
     scene->camera.cy_px = 640.0f;
+    scene->camera.width_px = scene->camera.height_px = 0.0f; /* an image without an end */
 }
 
 void scene_make_cylinder(scene_t *scene) {

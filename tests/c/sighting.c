@@ -46,6 +46,7 @@ void sighting_start(sighting_t *sighting, check_random_t *random) {
     memset(sighting, 0, sizeof *sighting);
     goe_settings_default(&sighting->settings);
     sighting->settings.camera.cx_px = sighting->settings.camera.cy_px = 0.0f;
+    sighting->settings.camera.width_px = sighting->settings.camera.height_px = 0.0f;
     sighting->settings.camera.fx_px = 914.0f;
     sighting->settings.camera.fy_px = 850.0f;
     sighting->sight.settings = &sighting->settings;

@@ -8,6 +8,7 @@ void stated_start(goe_estimator_t *estimator, goe_method_t method) {
     goe_settings_default(&settings);
     settings.camera.fx_px = settings.camera.fy_px = 900.0f;
     settings.camera.cx_px = settings.camera.cy_px = 640.0f;
+    settings.camera.width_px = settings.camera.height_px = 0.0f;
     settings.method = method;
     settings.navigation.velocity_bias_sd_m_s = 0.0f;
     CHECK_STATUS(GOE_OK, goe_init(estimator, sizeof *estimator, &settings, NULL));

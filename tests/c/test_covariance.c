@@ -21,6 +21,7 @@ void setUp(void) {
     goe_settings_default(&settings);
     settings.camera.fx_px = settings.camera.fy_px = 900.0f;
     settings.camera.cx_px = settings.camera.cy_px = 640.0f;
+    settings.camera.width_px = settings.camera.height_px = 0.0f;
     TEST_ASSERT_EQUAL_INT(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
     estimator.motion.time_us = 5000000;
     estimator.estimate_time_us = 5000000;

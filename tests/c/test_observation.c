@@ -196,6 +196,7 @@ static void start(void) {
     goe_settings_default(&settings);
     settings.camera.fx_px = 900.0f;
     settings.camera.cx_px = settings.camera.cy_px = 0.0f;
+    settings.camera.width_px = settings.camera.height_px = 0.0f;
     settings.camera.fy_px = 900.0f;
     settings.camera.mount_yaw_deg = -30.0f;
     settings.camera.mount_pitch_deg = 10.0f;

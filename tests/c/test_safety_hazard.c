@@ -19,6 +19,7 @@ void setUp(void) {
     goe_settings_default(&settings);
     settings.camera.fx_px = settings.camera.fy_px = 900.0f;
     settings.camera.cx_px = settings.camera.cy_px = 0.0f;
+    settings.camera.width_px = settings.camera.height_px = 0.0f;
     settings.method = GOE_METHOD_WINDOW;
     TEST_ASSERT_EQUAL_INT(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
 }

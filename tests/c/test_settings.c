@@ -15,6 +15,7 @@ void setUp(void) {
     settings.camera.fx_px = 900.0f;
     settings.camera.fy_px = 900.0f;
     settings.camera.cx_px = settings.camera.cy_px = 0.0f;
+    settings.camera.width_px = settings.camera.height_px = 0.0f;
 }
 void tearDown(void) {}
 
@@ -51,8 +52,8 @@ static const number_t numbers[] = {
     NUMBER(camera.offset_m[0], -1.0e4f, 1.0e4f, 0.0f),
     NUMBER(camera.offset_m[1], -1.0e4f, 1.0e4f, 0.0f),
     NUMBER(camera.offset_m[2], -1.0e4f, 1.0e4f, 0.0f),
-    NUMBER(camera.width_px, 0.0f, 1.0e5f, 0.0f),
-    NUMBER(camera.height_px, 0.0f, 1.0e5f, 0.0f),
+    NUMBER(camera.width_px, 0.0f, 1.0e5f, -1.0f),
+    NUMBER(camera.height_px, 0.0f, 1.0e5f, -1.0f),
     NUMBER(camera.border_rel, 0.0f, 0.5f, 0.012f),
     NUMBER(camera.truncation_rel, 0.0f, 0.5f, 0.04f),
     NUMBER(heading_deg, -360.0f, 360.0f, 0.0f),
@@ -187,7 +188,36 @@ static void the_defaults_lack_only_the_camera(void) {
     settings.camera.cx_px = 0.0f;
     check_bad("camera.cy_px");
     settings.camera.cy_px = 0.0f;
+    check_bad("camera.width_px");
+    settings.camera.width_px = 640.0f;
+    check_bad("camera.height_px");
+    settings.camera.height_px = 480.0f;
     check_good();
+}
+
+/* GIVEN a size THEN a focal length in millimeters and the principal point of another size are refused; without a size they pass. */
+static void a_camera_fits_its_size(void) {
+    static const struct {
+        const char *field;
+        size_t at;
+        float good[2], bad[2];
+    } cases[] = {{"camera.fx_px", offsetof(goe_settings_t, camera.fx_px), {128.0f, 9.0e4f}, {127.0f, 4.2f}},
+                 {"camera.fy_px", offsetof(goe_settings_t, camera.fy_px), {72.0f, 9.0e4f}, {71.0f, 4.2f}},
+                 {"camera.cx_px", offsetof(goe_settings_t, camera.cx_px), {-1280.0f, 2560.0f}, {-1281.0f, 2561.0f}},
+                 {"camera.cy_px", offsetof(goe_settings_t, camera.cy_px), {-720.0f, 1440.0f}, {-721.0f, 1441.0f}}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        for (int k = 0; k < 2; k++) {
+            setUp();
+            settings.camera.width_px = 1280.0f;
+            settings.camera.height_px = 720.0f;
+            memcpy((char *)&settings + cases[i].at, &cases[i].good[k], sizeof(float));
+            check_good();
+            memcpy((char *)&settings + cases[i].at, &cases[i].bad[k], sizeof(float));
+            check_bad(cases[i].field);
+            settings.camera.width_px = settings.camera.height_px = 0.0f;
+            check_good();
+        }
+    }
 }
 
 static void no_settings_are_no_crash(void) { goe_settings_default(NULL); }
@@ -258,6 +288,7 @@ int main(void) {
     RUN_TEST(the_defaults_set_every_field);
     RUN_TEST(the_tables_of_this_test_are_complete);
     RUN_TEST(the_defaults_lack_only_the_camera);
+    RUN_TEST(a_camera_fits_its_size);
     RUN_TEST(no_settings_are_no_crash);
     RUN_TEST(every_number_may_reach_its_limits_and_no_farther);
     RUN_TEST(every_number_must_be_finite);

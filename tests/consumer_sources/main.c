@@ -9,6 +9,7 @@ int main(void) {
     settings.camera.fx_px = 800.0f;
     settings.camera.fy_px = 800.0f;
     settings.camera.cx_px = settings.camera.cy_px = 640.0f;
+    settings.camera.width_px = settings.camera.height_px = 1280.0f;
 
     goe_estimator_t estimator;
     if (goe_init(&estimator, sizeof estimator, &settings, NULL) != GOE_OK) {

@@ -88,6 +88,7 @@ static void try_setting(void) {
     goe_settings_default(&settings);
     settings.camera.fx_px = settings.camera.fy_px = 900.0f;
     settings.camera.cx_px = settings.camera.cy_px = 640.0f;
+    settings.camera.width_px = settings.camera.height_px = 0.0f;
     before = settings;
     if (!setting_assign(&settings, text, &fault)) {
         FUZZ_CHECK(fault.text[0] != '\0' && memchr(fault.text, '\0', sizeof fault.text) != NULL);

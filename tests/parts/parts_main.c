@@ -20,6 +20,7 @@ static bool refuses(goe_method_t method) {
     goe_settings_default(&settings);
     settings.camera.fx_px = settings.camera.fy_px = 900.0f;
     settings.camera.cx_px = settings.camera.cy_px = 640.0f;
+    settings.camera.width_px = settings.camera.height_px = 1280.0f;
     if (goe_init(&estimator, sizeof estimator, &settings, &bad) != GOE_OK) {
         return false; /* the default method is a compiled one */
     }
@@ -35,6 +36,7 @@ static bool ignores(bool present, void (*spoil)(goe_settings_t *settings)) {
     goe_settings_default(&settings);
     settings.camera.fx_px = settings.camera.fy_px = 900.0f;
     settings.camera.cx_px = settings.camera.cy_px = 640.0f;
+    settings.camera.width_px = settings.camera.height_px = 1280.0f;
     spoil(&settings);
     return (goe_init(&estimator, sizeof estimator, &settings, NULL) == GOE_OK) != present;
 }

@@ -178,7 +178,7 @@ fn panic(_: &core::panic::PanicInfo) -> ! {
 
 #[no_mangle]
 pub extern "C" fn _start() -> ! {
-    let settings = Settings::for_camera(914.0, 914.0, 640.0, 640.0);
+    let settings = Settings::for_camera(914.0, 914.0, 640.0, 640.0, 1280.0, 1280.0);
     if let Ok(mut tower) = Estimator::new(&settings) {
         let _ = core::hint::black_box(tower.update(&Image::default()));
         let _ = core::hint::black_box(tower.hazard(&Plan::default()));

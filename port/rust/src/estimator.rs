@@ -39,7 +39,7 @@ impl Estimator {
     ///
     /// ```
     /// use core::mem::MaybeUninit;
-    /// let settings = goe::Settings::for_camera(914.0, 914.0, 640.0, 640.0);
+    /// let settings = goe::Settings::for_camera(914.0, 914.0, 640.0, 640.0, 1280.0, 1280.0);
     /// let mut place = MaybeUninit::uninit();
     /// let tower: &mut goe::Estimator = goe::Estimator::new_in(&mut place, &settings)?;
     /// # tower.reset();
@@ -131,7 +131,7 @@ impl Estimator {
     ///
     /// ```
     /// # use goe::{DecisionRule, Estimator, Intent, Settings};
-    /// # let tower = Estimator::new(&Settings::for_camera(914.0, 914.0, 640.0, 640.0))?;
+    /// # let tower = Estimator::new(&Settings::for_camera(914.0, 914.0, 640.0, 640.0, 1280.0, 1280.0))?;
     /// # let mut go_around = false;
     /// let intent = Intent { velocity_ned_m_s: [16.0, 0.0, 0.0], margin_m: 15.0, clearance_m: 10.0, ..Intent::default() };
     /// let (decision, hazard) = tower.decide(&intent, &DecisionRule::default());

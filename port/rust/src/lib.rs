@@ -7,7 +7,7 @@
 //! ```
 //! use goe::{BoundingBox, Estimator, Image, Pose, Settings};
 //!
-//! let mut tower = Estimator::new(&Settings::for_camera(914.0, 914.0, 640.0, 640.0))?;
+//! let mut tower = Estimator::new(&Settings::for_camera(914.0, 914.0, 640.0, 640.0, 1280.0, 1280.0))?;
 //! for k in 0..10_i16 {
 //!     let ahead_m = 200.0 - 2.0 * f32::from(k); // flying north, 15 m above the ground
 //!     let box_px = |across_m: f32| 640.0 + 914.0 * across_m / ahead_m;

@@ -36,9 +36,9 @@ pub struct Camera {
     pub mount_roll_deg: f32,
     /// Camera relative to the pose's reference point, body axes, forward, right, down, m; each ±1e4; default 0.
     pub offset_m: [f32; 3],
-    /// Width of the image, px; 0 to 1e5; default 0: not known. The flight layer needs it.
+    /// Width of the image, px; 0 to 1e5; must be set. 0: not known; then no box may be cut. The flight layer needs it.
     pub width_px: f32,
-    /// Height of the image, px; 0 to 1e5; default 0: not known. The flight layer needs it.
+    /// Height of the image, px; 0 to 1e5; must be set. 0: not known, like `width_px`.
     pub height_px: f32,
     /// A box's side nearer to the border than this is not measured, fraction of the image's width; 0 to 0.5; default 0.012.
     pub border_rel: f32,
@@ -191,7 +191,7 @@ impl Shape {
 /// All settings of an estimator. Settings of a part that was left out are neither read nor checked.
 ///
 /// ```
-/// let mut settings = goe::Settings::for_camera(914.0, 914.0, 640.0, 640.0);
+/// let mut settings = goe::Settings::for_camera(914.0, 914.0, 640.0, 640.0, 1280.0, 1280.0);
 /// settings.navigation.attitude_bias_sd_deg = 1.0;
 /// assert!(goe::Estimator::new(&settings).is_ok());
 /// ```
@@ -217,14 +217,16 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// The defaults, with a camera of these focal lengths and this principal point, px.
+    /// The defaults, with a camera of these focal lengths, this principal point and this size of the image, px.
     #[must_use]
-    pub fn for_camera(fx_px: f32, fy_px: f32, cx_px: f32, cy_px: f32) -> Self {
+    pub fn for_camera(fx_px: f32, fy_px: f32, cx_px: f32, cy_px: f32, width_px: f32, height_px: f32) -> Self {
         let mut settings = Self::default();
         settings.camera.fx_px = fx_px;
         settings.camera.fy_px = fy_px;
         settings.camera.cx_px = cx_px;
         settings.camera.cy_px = cy_px;
+        settings.camera.width_px = width_px;
+        settings.camera.height_px = height_px;
         settings
     }
 

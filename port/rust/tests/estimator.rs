@@ -3,10 +3,7 @@
 use goe::{BoundingBox, Error, Estimate, Estimator, Fault, Image, Pose, Settings, Status};
 
 fn settings() -> Settings {
-    let mut settings = Settings::for_camera(914.0, 914.0, 640.0, 640.0);
-    settings.camera.width_px = 1280.0;
-    settings.camera.height_px = 1280.0;
-    settings
+    Settings::for_camera(914.0, 914.0, 640.0, 640.0, 1280.0, 1280.0)
 }
 
 /// Image k of the approach in the project's README.

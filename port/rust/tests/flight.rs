@@ -10,10 +10,7 @@ use goe::{BoundingBox, Error, Kind, Length, Settings};
 const SPEED_M_S: f32 = 16.0;
 
 fn settings() -> Settings {
-    let mut settings = Settings::for_camera(914.0, 914.0, 640.0, 640.0);
-    settings.camera.width_px = 1280.0;
-    settings.camera.height_px = 1280.0;
-    settings
+    Settings::for_camera(914.0, 914.0, 640.0, 640.0, 1280.0, 1280.0)
 }
 
 fn samples(flight: &mut Flight, time_us: u32, north_m: f32) -> Result<(), FlightError> {

@@ -57,12 +57,11 @@ impl LoggedTrack {
 
     pub fn settings(&self, method: Method) -> Settings {
         let n: [f32; 18] = numbers(&self.bits);
-        let mut settings = Settings::for_camera(n[0], n[1], n[2], n[3]);
+        let mut settings = Settings::for_camera(n[0], n[1], n[2], n[3], n[16], n[17]);
         let camera = &mut settings.camera;
         [camera.k1, camera.k2, camera.p1, camera.p2, camera.k3] = [n[4], n[5], n[6], n[7], n[8]];
         [camera.mount_yaw_deg, camera.mount_pitch_deg, camera.mount_roll_deg] = [n[9], n[10], n[11]];
         camera.offset_m = [n[12], n[13], n[14]];
-        [camera.width_px, camera.height_px] = [n[16], n[17]];
         settings.heading_deg = (self.heading_auto == 0).then_some(n[15]);
         settings.method = method;
         settings.shape = match self.model {
