@@ -14,11 +14,13 @@
 #include "margins.h"
 
 #define US_PER_S 1000000
-#define WAIT_MS 10           /* longest wait: everything that is due every so often is looked at in between */
-#define READS_MAX 64         /* of the detector's in one turn */
-#define SAME_IMAGE_US 5000u  /* images are farther apart */
-#define DEAF_US 10000000     /* without a heartbeat, after which that is reported */
-#define CLOCK_STEP_US 100000 /* by which the computer's own clock may be set without a word */
+#define WAIT_MS 10            /* longest wait: everything that is due every so often is looked at in between */
+#define READS_MAX 64          /* of the detector's in one turn */
+#define SAME_IMAGE_US 5000u   /* images are farther apart */
+#define DEAF_US 10000000      /* without a heartbeat, after which that is reported */
+#define BOX_FAULT_US 10000000 /* between two reports of boxes with the same fault ... */
+#define BOX_FAULTS_US 2000000 /* ... and with different faults */
+#define CLOCK_STEP_US 100000  /* by which the computer's own clock may be set without a word */
 
 static int64_t clock_us(clockid_t clock) {
     struct timespec now;
@@ -59,8 +61,42 @@ static void run_queue(companion_t *c) {
     image_queue_run(&c->queue, &c->flight, (uint32_t)autopilot_us, on_image_taken, c);
 }
 
+static void report_box(companion_t *c, box_fault_t fault, const goe_flight_detection_t *detection) {
+    box_faults_t *faults = &c->box_faults[fault];
+    const goe_box_t *box = &detection->box;
+    const int64_t now_us = clock_us(CLOCK_MONOTONIC);
+    faults->boxes++;
+    for (int other = 0; other < BOX_FAULTS; other++) {
+        const int64_t reported_us = c->box_faults[other].reported_us;
+        if (reported_us != 0 && now_us - reported_us < (other == (int)fault ? BOX_FAULT_US : BOX_FAULTS_US)) {
+            return;
+        }
+    }
+    faults->reported_us = now_us;
+    event("detector, id %u, box %g %g %g %g: %s; such boxes so far: %lu", (unsigned)detection->id, (double)box->left_px,
+          (double)box->top_px, (double)box->right_px, (double)box->bottom_px, box_fault_text(fault), faults->boxes);
+    screen_show(&c->screen, SCREEN_BOXES, MAV_SEVERITY_WARNING, "GOE: %s", box_fault_text(fault));
+}
+
+/* The flight layer takes or refuses these boxes without a word: no obstacle comes of them. */
+static void check_boxes(companion_t *c) {
+    const unsigned number = c->image.frame.camera;
+    const goe_settings_t *estimator = &c->config.estimator;
+    const goe_camera_t *camera = number == 0 ? &estimator->camera : &estimator->more_cameras[0];
+    if (number > 1u || !(camera->width_px > 0.0f)) {
+        return; /* no such camera: the flight layer refuses the image */
+    }
+    for (unsigned i = 0; i < c->image.detections; i++) {
+        const box_fault_t fault = box_check(&c->image.detection[i].box, camera);
+        if (fault != BOX_GOOD) {
+            report_box(c, fault, &c->image.detection[i]);
+        }
+    }
+}
+
 /* The flight layer's history begins with a pose: earlier detections have none. */
 static void take_image(companion_t *c) {
+    check_boxes(c);
     if (!clock_sync_known(&c->autopilot.clock)) {
         c->counts.clockless++;
         return;

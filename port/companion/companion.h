@@ -7,6 +7,7 @@
 #define COMPANION_H
 
 #include "autopilot.h"
+#include "box_check.h"
 #include "companion_config.h"
 #include "detection_text.h"
 #include "flight_record.h"
@@ -28,6 +29,12 @@ typedef struct {
     unsigned long clockless; /* lines and images that came before the autopilot's clock was known */
     unsigned long classless; /* detections of a class whose size is not known */
 } companion_counts_t;
+
+/* Boxes with one fault. */
+typedef struct {
+    unsigned long boxes;
+    int64_t reported_us; /* own time of the latest report; 0: none */
+} box_faults_t;
 
 /* Rates and delays of the latest second. */
 typedef struct {
@@ -54,6 +61,7 @@ typedef struct {
     goe_flight_action_t advised; /* action that was shown last while reactions are off */
     flight_record_t record;
     companion_counts_t counts;
+    box_faults_t box_faults[BOX_FAULTS];
     companion_rates_t rates;
     unsigned self_check;
     bool detector_alive, pose_alive; /* values that were reported last */

@@ -60,7 +60,7 @@ static void add_obstacle(text_line_t *line, const companion_t *c) {
     goe_flight_obstacle_t o;
     add(line, " | obstacles %u", a->obstacles);
     if (a->unplaced > 0) {
-        add(line, ", %u without a position", a->unplaced);
+        add(line, " located, %u detected but not located (boxes few, cut or unusable)", a->unplaced);
     }
     if (a->obstacles == 0 || slot < 0 || goe_flight_obstacle(&c->flight, slot, &o) != GOE_FLIGHT_OK) {
         return;
@@ -138,6 +138,10 @@ void status_line_summary(const companion_t *c) {
     row("images_without_clock", c->counts.clockless, "before the autopilot's clock was known");
     row("images_without_pose", c->queue.given_up, "that waited in vain");
     row("detections_refused", c->flight.counters.refused, "not finite or out of range, samples of the pose included");
+    for (int fault = BOX_GOOD + 1; fault < BOX_FAULTS; fault++) {
+        static const char *const names[BOX_FAULTS] = {"", "boxes_normalized", "boxes_exchanged", "boxes_outside"};
+        row(names[fault], c->box_faults[fault].boxes, box_fault_text((box_fault_t)fault));
+    }
     row("classes_unknown", c->counts.classless, "detections of a class whose size is not known");
     row("tracks_evicted", c->flight.counters.evicted, "for a worse obstacle");
     row("strangers", c->autopilot.strangers,
