@@ -16,7 +16,7 @@ from ci.__main__ import main
 from ci.packages.command import differences
 from ci.packages.facts import Facts
 from ci.packages.staging import OF_THE_TREE, Words
-from ci.packages.targets import COMMITTED, CONFIG, TARGETS
+from ci.packages.targets import COMMITTED, CONFIG, TABLES, TARGETS
 
 ROOT = Path(__file__).resolve().parents[2]
 FACTS = Facts()
@@ -72,6 +72,8 @@ def small_tree(tmp_path: Path) -> Path:
     """The files that --check and --write read."""
     for name in (
         *COMMITTED,
+        *TABLES,
+        "port/companion/obstacle_class.c",
         "lib/goe.h",
         "lib/goe_limits.h",
         "port/rust/Cargo.toml.j2",
@@ -92,6 +94,18 @@ def test_write_mends_the_manifests_that_check_refuses(small_tree: Path, monkeypa
     assert main(["packages", "--check"]) == 0
     for name in COMMITTED:
         assert (small_tree / name).read_bytes() == (ROOT / name).read_bytes(), name
+
+
+def test_another_size_of_a_class_is_noticed(small_tree: Path) -> None:
+    """In a tree whose companion has another table than the Python package."""
+    table, facts = small_tree / "port" / "companion" / "obstacle_class.c", dataclasses.replace(FACTS, root=small_tree)
+    text = table.read_text()
+    table.write_text(text.replace('{"car", {1.8f, 4.8f}', '{"car", {1.7f, 4.8f}'))
+    assert [line.split(":")[0] for line in differences(facts)] == list(TABLES)
+    assert '"car": ((1.7, 4.8), (1.35, 1.85), "OTHER"),' in TABLES["port/python/src/goe/_kinds.py"](facts)
+    table.write_text(text.replace("{1.8f, 4.8f}", "{SMALL, 4.8f}"))
+    with pytest.raises(ValueError, match="its table is not understood"):
+        differences(facts)
 
 
 def test_another_version_is_noticed(small_tree: Path) -> None:

@@ -179,7 +179,64 @@ def test_the_layer_s_settings() -> None:
     with pytest.raises(goe.SettingError, match=r"^bank_deg = 80: not within 5 to 70"):
         goe.Flight(settings(), goe.FlightSettings(bank_deg=80.0))
     with pytest.raises(goe.SettingError, match=r"^camera\.width_px: refused by the flight layer"):
-        goe.Flight(goe.Settings.for_camera(914.0, 914.0, 640.0, 640.0))
+        goe.Flight(goe.Settings(camera=goe.Camera(914.0, 914.0, 640.0, 640.0)))
+
+
+def test_the_size_of_the_image_is_part_of_the_call() -> None:
+    camera = settings().camera
+    assert goe.Settings.for_camera(914.0, 914.0, 640.0, 640.0, 1280.0, 1280.0).camera == camera
+    with pytest.raises(TypeError, match=r"missing 2 required .*'width_px' and 'height_px'"):
+        goe.Settings.for_camera(914.0, 914.0, 640.0, 640.0)
+    for size, name in (((0.0, 1280.0), "width_px"), ((1280.0, NAN), "height_px")):
+        with pytest.raises(goe.SettingError, match=rf"^camera\.{name} = .*: give the size of the image, px"):
+            goe.Settings.for_camera(914.0, 914.0, 640.0, 640.0, *size)
+
+
+# ------------------------------------------------------------------------------------------------------------- classes
+
+
+def test_the_classes_are_those_of_the_companion() -> None:
+    """Its page has every number; ``python -m ci packages --check`` compares the table with the C source."""
+    page = (ROOT / "port" / "companion" / "README.md").read_text(encoding="utf-8")
+    table = page.split("### Classes")[1].split("\n## ")[0]
+    rows = re.findall(r"^\| (`[\w`, ]+`) \| (.*) \| (.*) \| (.*) \|$", table, re.MULTILINE)
+    shapes = {"unknown": "UNKNOWN", "round": "ROUND", "not round": "OTHER"}
+
+    named = {name: row[1:] for row in rows for name in re.findall(r"\w+", row[0])}
+    assert len(named) >= 13 and set(named) == set(goe.KINDS)
+    for name, (width, height, shape) in named.items():
+        kind = goe.KINDS[name]
+        assert kind.shape.name == shapes[shape]
+        for size_m, sd_m, said in ((kind.width_m, kind.width_sd_m, width), (kind.height_m, kind.height_sd_m, height)):
+            found = [float(number) for number in said.split(" +- ")] if said != "unknown" else [0.0, 0.0]
+            assert [size_m or 0.0, sd_m] == pytest.approx(found, abs=0.006), name
+
+
+@pytest.mark.parametrize(
+    ("kind", "words"),
+    [
+        ("car", r"kind = 'car': not a goe\.Kind; use goe\.KINDS\['car'\]"),
+        ("Car", r"use goe\.KINDS\['car'\]"),
+        ("tree", r"kind = 'tree': not a goe\.Kind; use goe\.Kind\(width_m=\.\.\., width_sd_m=\.\.\.\)"),
+        (None, r"kind = None: not a goe\.Kind"),
+    ],
+)
+def test_a_kind_that_is_none_is_refused(kind: object, words: str) -> None:
+    layer = goe.Flight(settings())
+    with pytest.raises(TypeError, match=words):
+        goe.Estimator(settings()).update(goe.Image(kind=kind))
+    with pytest.raises(TypeError, match=words):
+        layer.frame(flight.Frame(0, 0, [flight.Detection(0.9, 1, goe.BoundingBox(1, 2, 3, 4), kind=kind)]))
+    if kind:
+        with pytest.raises(TypeError, match=words):
+            goe.run(settings(), approach(2, kind=kind))
+
+
+def test_a_class_of_a_whole_track_is_that_of_its_images() -> None:
+    images, kind = approach(30), goe.KINDS["pole"]
+    one = goe.Estimator(settings())
+    single = [one.update(dataclasses.replace(image(k, images), kind=kind)) for k in range(30)]
+    assert list(goe.run(settings(), approach(30, kind=kind))) == single != list(goe.run(settings(), images))
 
 
 def test_objects_can_be_sent_to_other_processes() -> None:
@@ -631,7 +688,8 @@ def test_the_readme_s_examples_run(capsys: pytest.CaptureFixture[str]) -> None:
     for block in blocks:
         exec(compile(block, "README.md", "exec"), names)
     printed = capsys.readouterr().out.split()
-    assert len(blocks) >= 2 and f"`{' '.join(printed[:5])}`" in page
+    assert len(blocks) >= 4 and f"`{' '.join(printed[:5])}`" in page
+    assert names["assessment"].action != flight.Action.NONE and abs(names["north_m"] - 200.0) < 5.0
 
 
 def test_the_example_goes_around(capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,4 +1,4 @@
-"""Stage packages, or check and write the manifests in the tree.
+"""Stage packages, or check and write the manifests and tables in the tree.
 
 python -m ci packages --out DIR [--target NAME]... [--maintainer "NAME <ADDRESS>"] [--url URL]
 python -m ci packages --check
@@ -17,7 +17,7 @@ from .facts import Facts
 from .installed import Sources
 from .sbom import as_text, make
 from .staging import Words
-from .targets import COMMITTED, TARGETS
+from .targets import COMMITTED, TABLES, TARGETS
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -32,10 +32,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def differences(facts: Facts) -> list[str]:
-    """Manifests in the tree that differ from the library."""
+    """Manifests and tables in the tree that differ from the library."""
     return [
-        f"{name}: differs from version {facts.version}; run python -m ci packages --write"
-        for name, text in COMMITTED.items()
+        f"{name}: differs from the sources of version {facts.version}; run python -m ci packages --write"
+        for name, text in (COMMITTED | TABLES).items()
         if (facts.root / name).read_text(encoding="utf-8") != text(facts)
     ]
 
@@ -62,7 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
         write_whole(arguments.sbom, as_text(make(facts, Sources())))
         return 0
     if arguments.write:
-        for name, text in COMMITTED.items():
+        for name, text in (COMMITTED | TABLES).items():
             (facts.root / name).write_text(text(facts), encoding="utf-8")
         return 0
     words = Words(arguments.maintainer or Words.maintainer, arguments.url or facts.url)

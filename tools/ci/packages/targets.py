@@ -34,6 +34,30 @@ def python_manifest(facts: Facts) -> str:
     return render(facts, "python/pyproject.toml.j2", packed=False)
 
 
+CLASS_ROW = re.compile(
+    r'^ {4}\{"(\w+)", \{([\d.]+)f, ([\d.]+)f\}, \{([\d.]+)f, ([\d.]+)f\}, GOE_KIND_(\w+)\},', re.MULTILINE
+)
+SIGMA_OF_SPAN = re.compile(r"^#define SIGMA_OF_SPAN ([\d.]+)f", re.MULTILINE)
+
+
+def python_kinds(facts: Facts) -> str:
+    """The companion's table of classes."""
+    text = (facts.root / "port/companion/obstacle_class.c").read_text(encoding="utf-8")
+    rows, sigma = CLASS_ROW.findall(text), SIGMA_OF_SPAN.findall(text)
+    if len(rows) != text.count(", GOE_KIND_") or not rows or len(sigma) != 1:
+        raise ValueError("port/companion/obstacle_class.c: its table is not understood")
+    return "".join(
+        [
+            '"""Sizes of usual classes, from the companion\'s obstacle_class.c, which names their origin.\n\n',
+            'Made by `python -m ci packages --write`; do not edit.\n"""\n\n',
+            f"SIGMA_OF_SPAN = {sigma[0]}\n",
+            "CLASSES = {  # name: (least, greatest width), (least, greatest height), shape; m; 0: unknown\n",
+            *(f'    "{name}": (({a}, {b}), ({c}, {d}), "{shape}"),\n' for name, a, b, c, d, shape in rows),
+            "}\n",
+        ]
+    )
+
+
 def tools_manifest(facts: Facts) -> str:
     """The tools' manifest, written by hand except for the version."""
     text = (facts.root / TOOLS).read_text(encoding="utf-8")
@@ -50,6 +74,8 @@ COMMITTED: dict[str, Callable[[Facts], str]] = {
     "port/rust/Cargo.toml": cargo_manifest,
     TOOLS: tools_manifest,
 }
+# Tables in the tree that are not of a version, and their content.
+TABLES: dict[str, Callable[[Facts], str]] = {"port/python/src/goe/_kinds.py": python_kinds}
 
 
 def rust(facts: Facts, words: Words, folder: Path) -> list[Path]:

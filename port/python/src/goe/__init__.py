@@ -3,7 +3,7 @@ or points and the aircraft's own motion; and what a planned flight will meet. Ov
 bits.
 
     >>> import goe
-    >>> tower = goe.Estimator(goe.Settings.for_camera(914, 914, 640, 640))
+    >>> tower = goe.Estimator(goe.Settings.for_camera(914, 914, 640, 640, 1280, 1280))
     >>> for k in range(10):  # flying north, 15 m above the ground
     ...     ahead_m = 200 - 2 * k
     ...     left, top, right, bottom = (640 + 914 * m / ahead_m for m in (-33, -15, -27, 15))
@@ -36,7 +36,7 @@ from .estimate import Center, Estimate, Length, Orientation, Position, Velocity
 from .estimator import Estimator, run, run_parallel
 from .flight import Flight
 from .hazard import Decision, DecisionRule, Hazard, Intent, Rule
-from .image import POINTS, SIDES, TIME_UNKNOWN, BoundingBox, Image, ImageNoise, Kind, KindShape, Pixel, Pose
+from .image import KINDS, POINTS, SIDES, TIME_UNKNOWN, BoundingBox, Image, ImageNoise, Kind, KindShape, Pixel, Pose
 from .settings import (
     CAMERAS_MAX,
     Camera,
@@ -63,10 +63,10 @@ FINGERPRINT: str = _ffi.string(_lib.goe_python_fingerprint).decode()
 __version__: str = "{}.{}.{}".format(*(getattr(_lib, f"GOE_VERSION_{part}") for part in ("MAJOR", "MINOR", "PATCH")))
 
 __all__ = [
-    "CAMERAS_MAX", "ESTIMATE", "FINGERPRINT", "HAZARD", "IMAGE", "POINTS", "QUANTITIES", "SIDES", "TIME_UNKNOWN",
-    "BoundingBox", "Camera", "Center", "Decision", "DecisionRule", "Detector", "Estimate", "Estimator",
-    "FilterSettings", "Flight", "FlightSettings", "Hazard", "Image", "ImageNoise", "Images", "Intent", "Kind",
-    "KindShape", "Length", "Method", "Model", "Navigation", "Orientation", "Pixel", "Pose", "Position", "Reason",
-    "Rule", "SettingError", "Settings", "Shape", "Status", "Track", "Velocity", "WindowSettings", "flight", "run",
-    "run_parallel", "self_check", "setting_rows",
+    "CAMERAS_MAX", "ESTIMATE", "FINGERPRINT", "HAZARD", "IMAGE", "KINDS", "POINTS", "QUANTITIES", "SIDES",
+    "TIME_UNKNOWN", "BoundingBox", "Camera", "Center", "Decision", "DecisionRule", "Detector", "Estimate",
+    "Estimator", "FilterSettings", "Flight", "FlightSettings", "Hazard", "Image", "ImageNoise", "Images", "Intent",
+    "Kind", "KindShape", "Length", "Method", "Model", "Navigation", "Orientation", "Pixel", "Pose", "Position",
+    "Reason", "Rule", "SettingError", "Settings", "Shape", "Status", "Track", "Velocity", "WindowSettings",
+    "flight", "run", "run_parallel", "self_check", "setting_rows",
 ]  # fmt: skip

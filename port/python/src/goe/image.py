@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from ._goe import lib
+from ._kinds import CLASSES, SIGMA_OF_SPAN
 from ._renamed import Renamed
+from ._table import shortest
 
 POINTS = ("left", "right", "top", "base_left", "base_near", "base_right")
 """Points of an image, in the order of whole tracks."""
@@ -115,6 +120,23 @@ class Kind:
     """Whether it is round."""
 
 
+def _size(low_m: float, high_m: float) -> tuple[float | None, float]:
+    """The middle and one sigma of a uniform distribution, in single precision as the companion computes them."""
+    low, high = np.float32(low_m), np.float32(high_m)
+    size_m = shortest(np.float32(0.5) * (low + high))
+    return size_m or None, shortest(np.float32(SIGMA_OF_SPAN) * (high - low))
+
+
+KINDS: Mapping[str, Kind] = MappingProxyType(
+    {
+        name: Kind(*_size(*width_m), *_size(*height_m), KindShape[shape])
+        for name, (width_m, height_m, shape) in CLASSES.items()
+    }
+)
+"""Size and shape of usual classes, by name, as the companion has them: ``KINDS["car"]``. Of any other class nothing is
+known: ``KINDS.get(name, Kind())``."""
+
+
 @dataclass
 class Image:
     """One image of one obstacle: a box, or points, or both. Any subset may be visible; none: pass it anyway."""
@@ -157,10 +179,17 @@ def fill_box(c: Any, box: BoundingBox | None) -> None:
     c.sides = sum(bit for bit, side in zip(SIDE_BITS, sides) if side is not None)
 
 
+def kind_numbers(kind: Kind) -> tuple[float, float, float, float, int]:
+    """Width, its sigma, height, its sigma, shape; 0: unknown. TypeError: it is no ``Kind``."""
+    if not isinstance(kind, Kind):
+        is_name = isinstance(kind, str) and kind.lower() in CLASSES
+        call = f"goe.KINDS[{kind.lower()!r}]" if is_name else "goe.Kind(width_m=..., width_sd_m=...)"
+        raise TypeError(f"kind = {kind!r}: not a goe.Kind; use {call}")
+    return kind.width_m or 0.0, kind.width_sd_m, kind.height_m or 0.0, kind.height_sd_m, int(kind.shape)
+
+
 def fill_kind(c: Any, kind: Kind) -> None:
-    c.width_m, c.width_sd_m = kind.width_m or 0.0, kind.width_sd_m
-    c.height_m, c.height_sd_m = kind.height_m or 0.0, kind.height_sd_m
-    c.shape = int(kind.shape)
+    c.width_m, c.width_sd_m, c.height_m, c.height_sd_m, c.shape = kind_numbers(kind)
 
 
 def fill_image(c: Any, image: Image) -> None:

@@ -83,9 +83,10 @@ class Camera(_Group):
     offset_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """Camera relative to the pose's reference point, body axes: forward, right, down, m."""
     width_px: float = real("camera.width_px")
-    """Width of the image, px; 0: not known. The flight layer needs it."""
+    """Width of the image, px; 0: not known, and boxes that the border cuts are not noticed. The flight layer needs
+    it."""
     height_px: float = real("camera.height_px")
-    """Height of the image, px; 0: not known. The flight layer needs it."""
+    """Height of the image, px; 0: as with ``width_px``. The flight layer needs it."""
     border_rel: float = real("camera.border_rel")
     """A box's side nearer to the border than this is not measured, fraction of the image's width."""
     truncation_rel: float = real("camera.truncation_rel")
@@ -183,7 +184,7 @@ class WindowSettings(_Group):
 class Settings(_Group):
     """All settings of an estimator.
 
-    >>> settings = Settings.for_camera(914.0, 914.0, 640.0, 480.0)
+    >>> settings = Settings.for_camera(914.0, 914.0, 640.0, 480.0, width_px=1280, height_px=960)
     >>> settings.navigation.attitude_bias_sd_deg = 1.0
     """
 
@@ -208,10 +209,19 @@ class Settings(_Group):
     """The window method."""
 
     @classmethod
-    def for_camera(cls, fx_px: float, fy_px: float, cx_px: float, cy_px: float, **more: Any) -> Settings:
-        """The defaults, with a camera of these focal lengths and this principal point, px; ``more``: others of its
-        fields, width_px=1280 for one."""
-        return cls(camera=Camera(fx_px, fy_px, cx_px, cy_px, **more))
+    def for_camera(
+        cls, fx_px: float, fy_px: float, cx_px: float, cy_px: float, width_px: float, height_px: float, **more: Any
+    ) -> Settings:
+        """The defaults, with a camera of these focal lengths, this principal point and this image size, px; ``more``:
+        others of its fields.
+
+        Without the size the estimator takes the sides of a box that the image border cuts for the obstacle's own.
+        SettingError: the size is not positive.
+        """
+        for name, size_px in (("width_px", width_px), ("height_px", height_px)):
+            if not size_px > 0:
+                raise SettingError(f"camera.{name}", f" = {size_px}: give the size of the image, px")
+        return cls(camera=Camera(fx_px, fy_px, cx_px, cy_px, width_px=width_px, height_px=height_px, **more))
 
     @classmethod
     def from_names(cls, values: Mapping[str, float]) -> Settings:

@@ -14,7 +14,7 @@ from ._layout import ESTIMATE, HAZARD, IMAGE
 from ._renamed import Renamed
 from .estimate import BITS, Estimate, estimate_of
 from .hazard import Hazard, hazard_of
-from .image import POINTS, SIDE_BITS, SIDES
+from .image import POINTS, SIDE_BITS, SIDES, Kind, kind_numbers
 
 Array = npt.NDArray[Any]
 
@@ -89,7 +89,8 @@ class Images(Renamed):
     noise: Any = None
     """(K, 3) this image's own sigmas: attitude, degrees; height, m; pixels, px; 0: as in the settings."""
     kind: Any = None
-    """(K, 5) what the detector's class says: width, its sigma, height, its sigma, m; ``KindShape``; 0: not known."""
+    """What the detector's class says: a ``Kind``, such as ``KINDS["car"]``, of all images; or (K, 5) width, its sigma,
+    height, its sigma, m; ``KindShape``; 0: not known."""
     camera: Any = None
     """(K,) number of the camera that took it. None: the first."""
     velocity_ned_m_s: Any = None
@@ -121,7 +122,8 @@ class Images(Renamed):
             columns = _shaped(self.noise, (count, 3), "noise").T
             noise["attitude_sd_deg"], noise["height_sd_m"], noise["pixel_sd_px"] = columns
         if self.kind is not None:
-            columns = _shaped(self.kind, (count, 5), "kind").T
+            one = isinstance(self.kind, (Kind, str))
+            columns = kind_numbers(self.kind) if one else _shaped(self.kind, (count, 5), "kind").T
             for name, column in zip(("width_m", "width_sd_m", "height_m", "height_sd_m", "shape"), columns):
                 c["kind"][name] = column
         if self.camera is not None:
