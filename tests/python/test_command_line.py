@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+
 import pytest
 from bench.__main__ import main as bench_main
 from ci.__main__ import main as ci_main
@@ -38,3 +41,34 @@ def test_a_mistyped_word(package: str, words: list[str], guess: str, capsys) -> 
 
 def test_a_package_that_is_not_installed_has_no_commands() -> None:
     assert commands_of("goe_tools_of_nobody") == ()
+
+
+INTERRUPTED_IMPORT = """
+import os, runpy, signal, sys
+
+package, module, *words = sys.argv[1:]
+
+class Hook:
+    def find_spec(self, name, path=None, target=None):
+        if name == module:
+            os.kill(os.getpid(), signal.SIGINT)
+
+sys.meta_path.insert(0, Hook())
+sys.argv = [package, *words]
+runpy.run_module(package, run_name="__main__", alter_sys=True)
+"""
+
+
+@pytest.mark.parametrize(
+    ("package", "module", "words"),
+    [
+        ("goe_tools", "goe_tools.cli", ["view", "log"]),
+        ("goe_tools", "goe_tools.view.command", ["view", "log"]),
+        ("bench", "goe_tools.cli", ["goals"]),
+        ("ci", "ci.packages.command", ["packages", "--check"]),
+    ],
+)
+def test_ctrl_c_during_the_imports_ends_it_without_a_traceback(package: str, module: str, words: list[str]) -> None:
+    command = [sys.executable, "-c", INTERRUPTED_IMPORT, package, module, *words]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=300)
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "")

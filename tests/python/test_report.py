@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import math
 import re
+import shutil
 import xml.etree.ElementTree as ET
 from dataclasses import replace
 from html import unescape
@@ -525,6 +526,17 @@ def test_nothing_half_written(campaign: Campaign, tmp_path: Path, monkeypatch: p
         page.write_page(campaign, out)
     assert out.read_text(encoding="utf-8") == "old"
     assert list(tmp_path.iterdir()) == [out]
+
+
+def test_a_bad_log_of_the_approach_leaves_nothing(campaign: Campaign, tmp_path: Path) -> None:
+    """Neither a page nor the folder of the figures."""
+    log, out = tmp_path / "log", tmp_path / "out" / "report.html"
+    shutil.copytree(Path(__file__).resolve().parents[2] / "tests" / "data" / "corner", log)
+    rows = (log / "frames.csv").read_text(encoding="utf-8").splitlines()
+    (log / "frames.csv").write_text("\n".join([*rows[:9], "x", *rows[9:]]), encoding="utf-8")
+    with pytest.raises(LogError, match=r"frames\.csv:10"):
+        page.write_page(replace(campaign, approach=log), out)
+    assert not out.parent.exists()
 
 
 def test_page_answers_three_questions_and_leads_to_the_paper(campaign: Campaign, tmp_path: Path) -> None:

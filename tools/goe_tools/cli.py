@@ -9,7 +9,9 @@ import difflib
 import importlib
 import os
 import re
+import signal
 import sys
+import threading
 from collections.abc import Mapping, Sequence
 from typing import NoReturn
 
@@ -92,24 +94,35 @@ def drop_output() -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
+def _take_interrupts() -> None:
+    """Ctrl-C raises KeyboardInterrupt from now on; a program that ignores it still does. Until now Ctrl-C ended the
+    program at once (__main__.py)."""
+    in_main = threading.current_thread() is threading.main_thread()
+    if in_main and signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
 def main(package: str, what: str, known: Mapping[str, tuple[str, str]], argv: Sequence[str] | None = None) -> int:
     """``what``: the package in one sentence; ``known``: its ``COMMANDS``."""
     words = sys.argv[1:] if argv is None else argv
-    arguments = parser_for(package, what, known, words).parse_args(words)
+    name = package  # and its command, once it is known
     try:
+        arguments = parser_for(package, what, known, words).parse_args(words)
+        _take_interrupts()
+        name = f"{package} {arguments.command}"
         status = int(arguments.entry(arguments))
         sys.stdout.flush()
         return status
     except OSError as error:
-        print(f"{package} {arguments.command}: {fault_of(error)}", file=sys.stderr)
+        print(f"{name}: {fault_of(error)}", file=sys.stderr)
         drop_output()
         return EXIT_BAD_INPUT
     except (LogError, ValueError) as error:
-        print(f"{package} {arguments.command}: {error}", file=sys.stderr)
+        print(f"{name}: {error}", file=sys.stderr)
         return EXIT_BAD_INPUT
     except MemoryError:
-        print(f"{package} {arguments.command}: out of memory", file=sys.stderr)
+        print(f"{name}: out of memory", file=sys.stderr)
         return EXIT_BAD_INPUT
     except KeyboardInterrupt:
-        print(f"{package} {arguments.command}: interrupted", file=sys.stderr)
+        print(f"{name}: interrupted", file=sys.stderr)
         return EXIT_INTERRUPTED

@@ -197,6 +197,7 @@ def write_page(campaign: Campaign, out: Path, doors: Doors | None = None) -> Non
     """Writes the pages (each whole or not at all, the first one last) and the folder with the figures."""
     if out.is_dir():
         raise ValueError(f"{out} is a folder")
+    answers.story(campaign)  # a bad log of --approach is refused before anything is written
     out.parent.mkdir(parents=True, exist_ok=True)
     figures = draw_figures(campaign, out.with_name(out.stem + "_figures"))
     texts = render_pages(campaign, figures, out, doors)
