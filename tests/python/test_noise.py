@@ -16,6 +16,7 @@ from goe_tools.__main__ import main
 from goe_tools.flights.box_logs import kitti_feeds
 from goe_tools.logs.obslog import read_log, write_log
 from goe_tools.logs.scene import Scene, make_log
+from goe_tools.noise import command
 from goe_tools.noise.likelihood import fit, projected, score
 from goe_tools.noise.rows import Effect, Fading, Rows
 
@@ -149,10 +150,18 @@ def test_the_noise_of_boxes_is_found(boxes: list[Path], capsys: pytest.CaptureFi
 
 def test_the_line_is_one_that_goe_replay_takes(boxes: list[Path], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["noise", *map(str, boxes[:4])]) == 0
-    line = next(line for line in capsys.readouterr().out.splitlines() if line.startswith("--set"))
+    lines = capsys.readouterr().out.splitlines()
+    line = next(line for line in lines if line.startswith("--set"))
+    assert lines[-1].startswith("detector.box_noise_rel = 0.0") and lines[-1].endswith("keep 0.07 or more.")
     program = Path(os.environ.get("GOE_REPLAY") or ROOT / "build" / "sim_host" / "goe_replay")
     done = subprocess.run([str(program), *line.split(), str(boxes[0])], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
+
+
+def test_advice_is_given_below_the_default_alone() -> None:
+    name = "detector.box_noise_rel"
+    assert not command.advice_of({name: 0.07}) and not command.advice_of({name: 0.1}) and not command.advice_of({})
+    assert "keep 0.07 or more" in command.advice_of({name: 0.0699})
 
 
 def test_the_noise_of_points_is_found(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

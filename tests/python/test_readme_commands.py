@@ -144,6 +144,7 @@ RUN_BY = {
     ),
     "goe_avoid --several": By("tests/sim/test_avoid.py", '"--several"'),
     "cmake --preset default": By("tools/test.sh", 'cmake --preset "$1"'),
+    "cmake --build --preset default": By("tools/test.sh", 'cmake --build --preset "$1"'),
     "cmake --build --preset default --target goe_companion": By("tools/test.sh", 'cmake --build --preset "$1"'),
     "goe_avoid": By("tests/sim/test_avoid.py", "goe_avoid"),
     "python -m bench attack_tables --write": By("tests/python/test_attack.py", '"attack_tables"'),

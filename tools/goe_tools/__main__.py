@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from . import cli
 
 COMMANDS = {  # name: module with add_arguments and run, and its description
-    "bound": (".models.bound", "print the Cramer-Rao bound of a log with truth"),
+    "bound": (".models.bound", "print the Cramer-Rao bound of a log with points and truth"),
     "scene": (".logs.scene_command", "write a synthetic observation log of a box or a cylinder"),
     "campaign": (".report.campaign_command", "fly goe_campaign in parts, over processes or a cluster"),
     "convert": (".exchange.convert", "make an observation log from an autopilot's log and a detector's table"),
@@ -26,7 +26,7 @@ COMMANDS = {  # name: module with add_arguments and run, and its description
         "fly a scenario many times in simulation: errors in sigmas, coverage, warnings",
     ),
     "noise": (".noise.command", "find the noise settings that fit logs"),
-    "offline": (".models.offline", "fit all images of a log with truth at once"),
+    "offline": (".models.offline", "fit all images of a log with points and truth at once"),
     "rare": (".report.rare_command", "fly the flight layer's orders many times and keep rare events"),
     "report": (".report.command", "write the campaign's report and print Table 3"),
     "view": (".view.command", "show a log: a page with a map and a slider over time, or a picture"),

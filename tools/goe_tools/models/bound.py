@@ -118,7 +118,9 @@ def shown(flight: Flight) -> np.ndarray:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("log", type=Path, metavar="DIR", help="log folder with truth.csv")
+    parser.add_argument(
+        "log", type=Path, metavar="DIR", help="log folder with points and truth.csv; boxes are not used"
+    )
     parser.add_argument("--disc", action="store_true", help="model every obstacle as a disc")
     add_noise_arguments(parser)
 

@@ -181,6 +181,18 @@ def line_of(chosen: dict[str, float]) -> str:
     return " ".join(f"--set {name}={value:.4g}" for name, value in sorted(chosen.items()))
 
 
+def advice_of(chosen: dict[str, float]) -> str:
+    """A warning next to the options. Empty: none is needed."""
+    name = "detector.box_noise_rel"
+    if chosen.get(name, GIVEN[name]) >= GIVEN[name]:
+        return ""
+    return (
+        f"{name} = {chosen[name]:.4g} is the detector's noise alone. The filter assumes a smooth outline, and the "
+        f"default {GIVEN[name]:g} includes the error of that assumption. Past obstacles with corners, such as "
+        f"houses, keep {GIVEN[name]:g} or more."
+    )
+
+
 def _setting(text: str) -> tuple[str, float]:
     name, equals, value = text.partition("=")
     if name in renamed.names():
@@ -240,4 +252,6 @@ def run(arguments: argparse.Namespace) -> int:
         if material.judging:
             _print_coverage(console, material.judging, "judged on the 2nd, 4th, ...:", chosen)
     console.print(line_of(chosen) if chosen else "the logs determine no further setting", soft_wrap=True)
+    if advice_of(chosen):
+        console.print(advice_of(chosen), soft_wrap=True)
     return 0
