@@ -31,7 +31,7 @@
  *
  * Order of calls: goe_settings_default, goe_init; then goe_update for every image, and goe_decide or goe_hazard at 5 to 50 Hz,
  * because a camera may stop. Call goe_reset before another obstacle. goe.h includes goe_limits.h (compile-time options),
- * goe_settings.h, goe_hazard.h, goe_class.h and goe_diagnostics.h (self-check). See DESIGN.md (methods, limits) and GLOSSARY.md.
+ * goe_settings.h, goe_hazard.h, goe_class.h and goe_diagnostics.h (self-check). See DESIGN.md and GLOSSARY.md.
  *
  * Frames
  *   earth       north, east, down (NED), meters, local, any origin
@@ -70,7 +70,7 @@
  *             status that says "image taken", and GOE_CORRUPTED of goe_update(). [A21] Every output is finite. [A16] A quantity
  *             without its bit in goe_estimate_t.valid means nothing. Non-finite input is refused, also under -ffast-math. [A17]
  * Cost        Each function states its highest cost on a Cortex-M4F with gcc -O2, one camera and 8 images in the window method
- *             (GOE_WINDOW_MAX). Both figures are proved: instructions (not cycles) and bytes of stack. [A23]
+ *             (GOE_WINDOW_MAX). Both are proved: instructions (not cycles), bytes of stack. [A23]
  */
 #ifndef GOE_H
 #define GOE_H

@@ -315,6 +315,7 @@ static goe_settings_t settings_of(const flight_t *flight) {
     goe_settings_default(&settings);
     settings.camera.fx_px = settings.camera.fy_px = (float)FOCAL_PX;
     settings.camera.cx_px = settings.camera.cy_px = (float)MIDDLE_PX;
+    settings.camera.width_px = settings.camera.height_px = 0.0f;
     settings.model = flight->model;
     settings.navigation.terrain_height_sd_m = 0.0f; /* level ground, as it is flown over */
     settings.navigation.terrain_slope_sd = 0.0f;

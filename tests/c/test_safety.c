@@ -379,6 +379,12 @@ static float any_from(float least, float most) {
     }
 }
 
+/* goe_init() refuses a size that focal length and principal point contradict. */
+static float fitting(float size_px, float focal_px, float center_px) {
+    const float size = size_px > 10.0f * focal_px ? 9.99f * focal_px : size_px;
+    return center_px >= -size && center_px <= 2.0f * size ? size : 0.0f;
+}
+
 static void any_noise(goe_settings_t *s) {
     s->detector.point_noise_px = any_from(0.05f, 100.0f);
     s->detector.point_noise_rel = any_from(0.0f, 1.0f);
@@ -401,8 +407,8 @@ static void any_noise(goe_settings_t *s) {
     s->detector.truncation_noise_rel = any_from(0.0f, 10.0f);
     s->navigation.position_white_sd_m = any_from(0.0f, 100.0f);
     s->navigation.terrain_height_sd_m = any_from(0.0f, 1.0e3f);
-    s->camera.width_px = any_from(0.0f, 1.0e5f);
-    s->camera.height_px = any_from(0.0f, 1.0e5f);
+    s->camera.width_px = fitting(any_from(0.0f, 1.0e5f), s->camera.fx_px, s->camera.cx_px);
+    s->camera.height_px = fitting(any_from(0.0f, 1.0e5f), s->camera.fy_px, s->camera.cy_px);
     s->camera.border_rel = any_from(0.0f, 0.5f);
     s->camera.truncation_rel = any_from(0.0f, 0.5f);
 }
@@ -414,6 +420,7 @@ static goe_settings_t any_settings(void) {
     s.camera.fy_px = one_in(3) ? 1.0f : one_in(3) ? 1.0e5f : between(1.0, 2000.0);
     s.camera.cx_px = any_within(1.0e5f);
     s.camera.cy_px = any_within(1.0e5f);
+    s.camera.width_px = s.camera.height_px = 0.0f;
     if (one_in(2)) {
         s.camera.cx_px = 0.0f;
         s.camera.cy_px = 0.0f;

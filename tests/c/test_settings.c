@@ -12,8 +12,8 @@ static goe_estimator_t estimator;
 
 void setUp(void) {
     goe_settings_default(&settings);
-    settings.camera.fx_px = 900.0f;
-    settings.camera.fy_px = 900.0f;
+    settings.camera.fx_px = 2.0e4f; /* which no size contradicts */
+    settings.camera.fy_px = 2.0e4f;
     settings.camera.cx_px = settings.camera.cy_px = 0.0f;
     settings.camera.width_px = settings.camera.height_px = 0.0f;
 }

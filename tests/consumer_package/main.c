@@ -7,13 +7,11 @@
 #define CENTER_U_PX 640.0f
 #define CENTER_V_PX 360.0f
 
-/* The flight layer accepts the same settings once they include the image size. */
-static bool flight_layer_starts(goe_settings_t settings) {
+/* The flight layer accepts the same settings. */
+static bool flight_layer_starts(const goe_settings_t *settings) {
     static goe_flight_t flight;
     const char *bad = NULL;
-    settings.camera.width_px = 2.0f * CENTER_U_PX;
-    settings.camera.height_px = 2.0f * CENTER_V_PX;
-    return goe_flight_init(&flight, sizeof flight, &settings, NULL, &bad) == GOE_FLIGHT_OK && bad == NULL;
+    return goe_flight_init(&flight, sizeof flight, settings, NULL, &bad) == GOE_FLIGHT_OK && bad == NULL;
 }
 
 static goe_pixel_t horizon(float u_px) {
@@ -31,6 +29,8 @@ int main(void) {
     settings.camera.fy_px = FOCAL_PX;
     settings.camera.cx_px = CENTER_U_PX;
     settings.camera.cy_px = CENTER_V_PX;
+    settings.camera.width_px = 2.0f * CENTER_U_PX;
+    settings.camera.height_px = 2.0f * CENTER_V_PX;
 
     goe_estimator_t estimator;
     const char *bad_field;
@@ -38,7 +38,7 @@ int main(void) {
         printf("bad setting %s\n", bad_field);
         return 1;
     }
-    if (!flight_layer_starts(settings)) {
+    if (!flight_layer_starts(&settings)) {
         printf("the flight layer does not start\n");
         return 1;
     }

@@ -90,6 +90,7 @@ int main() {
     goe_settings_default(&settings);
     settings.camera.fx_px = settings.camera.fy_px = 800.0f;
     settings.camera.cx_px = settings.camera.cy_px = 640.0f;
+    settings.camera.width_px = settings.camera.height_px = 1280.0f;
 
     goe_estimator_t estimator;
     const char *bad_field = nullptr;

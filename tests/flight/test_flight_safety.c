@@ -272,7 +272,7 @@ static void start(void) {
     goe_flight_settings_t settings;
     goe_flight_settings_default(&settings);
     settings.resets = one_in(2) ? 1.0f : 0.0f;
-    settings.confirm_images = between(1.0, 4.0);
+    settings.confirm_images = (float)(1u + below(4));
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK,
                       goe_flight_init(&memory.flight, sizeof memory.flight, &estimator, &settings, NULL));
     now_us = one_in(3) ? 0xFFFFFFFFu - 3000000u : below(20000000u);

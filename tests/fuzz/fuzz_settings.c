@@ -71,6 +71,7 @@ static void usual_camera(fuzz_input_t *in, goe_camera_t *camera) {
     camera->fy_px = camera->fx_px;
     camera->cx_px = fuzz_between(in, 300.0f, 1000.0f);
     camera->cy_px = camera->cx_px * 0.75f;
+    camera->width_px = camera->height_px = 0.0f;
     if ((kind & 1u) == 0) {
         camera->width_px = 2.0f * camera->cx_px;
         camera->height_px = 2.0f * camera->cy_px;

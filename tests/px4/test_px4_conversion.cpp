@@ -488,9 +488,9 @@ static void conflicts_are_reported_where_px4_has_the_topic() {
 
 static void set_camera(GoeParameters &parameters) {
     goe_camera_t &camera = parameters.estimator.camera;
-    camera.fx_px = camera.fy_px = 900.f;
+    camera.fx_px = camera.fy_px = 2e4f; /* focal length and size that contradict no other value in module.yaml */
     camera.cx_px = camera.cy_px = 640.f;
-    camera.width_px = camera.height_px = 1280.f;
+    camera.width_px = camera.height_px = 1e5f;
 }
 
 /* The layer's defaults, except those measured with PX4's filter. */
@@ -503,6 +503,7 @@ static void the_defaults_are_the_layers_but_for_px4s_own() {
     expected.estimator.navigation.attitude_bias_sd_deg = 1.f;
     expected.estimator.navigation.attitude_walk_sd_deg = 0.5f;
     expected.estimator.navigation.attitude_white_sd_deg = 0.3f;
+    expected.estimator.camera.width_px = expected.estimator.camera.height_px = 0.f; /* which the layer refuses */
     expected.estimator.camera.cx_px = expected.estimator.camera.cy_px = 0.f; /* the middle of an image of no size yet */
     standin::begin(1000000u);
     standin::set_other("NAV_LOITER_RAD", 80.f);

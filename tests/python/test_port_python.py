@@ -120,7 +120,8 @@ def test_settings_are_those_of_c() -> None:
 def test_every_setting_reaches_c_and_its_range_is_c_s(name: str) -> None:
     """The ends of the range are accepted; beyond them the error names field, value and range."""
     row = next(row for row in goe.setting_rows() if row.name == name)
-    base = {"camera.fx_px": 914.0, "camera.fy_px": 914.0, "camera.cx_px": 0.0, "camera.cy_px": 0.0, "heading_auto": 0.0}
+    lens = {"camera.fx_px": 5e4, "camera.fy_px": 5e4, "camera.cx_px": 0.0, "camera.cy_px": 0.0}
+    base = lens | {"camera.width_px": 0.0, "camera.height_px": 0.0, "heading_auto": 0.0}
     for value in (row.low, row.high):
         given = goe.Settings.from_names({**base, row.name: value})
         numbers = dict(zip((r.name for r in goe.setting_rows()), given.numbers()))
@@ -179,7 +180,7 @@ def test_the_layer_s_settings() -> None:
     with pytest.raises(goe.SettingError, match=r"^bank_deg = 80: not within 5 to 70"):
         goe.Flight(settings(), goe.FlightSettings(bank_deg=80.0))
     with pytest.raises(goe.SettingError, match=r"^camera\.width_px: refused by the flight layer"):
-        goe.Flight(goe.Settings(camera=goe.Camera(914.0, 914.0, 640.0, 640.0)))
+        goe.Flight(goe.Settings(camera=goe.Camera(914.0, 914.0, 640.0, 640.0, width_px=0.0, height_px=0.0)))
 
 
 def test_the_size_of_the_image_is_part_of_the_call() -> None:
@@ -241,7 +242,7 @@ def test_a_class_of_a_whole_track_is_that_of_its_images() -> None:
 
 def test_objects_can_be_sent_to_other_processes() -> None:
     given = settings()
-    given.more_cameras = (goe.Camera(900.0, 900.0, 640.0, 640.0),)
+    given.more_cameras = (goe.Camera(900.0, 900.0, 640.0, 640.0, width_px=0.0, height_px=0.0),)
     assert pickle.loads(pickle.dumps(given)) == given
     with pytest.raises(goe.SettingError) as refused:
         goe.Estimator(goe.Settings())

@@ -225,7 +225,7 @@ def velocity_of(track: LoggedTrack, k: int) -> np.ndarray:
         return np.array(PLAN.velocity_ned_m_s, np.float32)
     now, before = track.images[k], track.images[k - 1]
     s = np.float32(now.time_us - before.time_us) * np.float32(1e-6)
-    return (now.numbers[:3].astype(np.float32) - before.numbers[:3].astype(np.float32)) / s
+    return (np.array(now.numbers[:3], np.float32) - np.array(before.numbers[:3], np.float32)) / s
 
 
 def give_samples(h: Hash, flight: goe.Flight, time_us: int, image: LoggedImage, velocity: np.ndarray) -> None:
