@@ -19,6 +19,7 @@ from bench.optimum.goals import work
 from bench.optimum.goals.goal import Goal
 from goe_tools.__main__ import main
 from goe_tools.flights import box_logs
+from goe_tools.library import ready
 from goe_tools.live.modules import missing
 from synthetic_campaign import write_campaign
 
@@ -217,6 +218,10 @@ def built() -> Path:
 def set_up() -> None:
     if not (ROOT / ".venv" / "installed").exists():
         pytest.skip("tools/setup.sh has not run")
+    try:
+        ready()  # otherwise the command would install the package in the .venv of this checkout
+    except FileNotFoundError as reason:
+        pytest.skip(str(reason))
 
 
 @pytest.fixture
