@@ -375,8 +375,46 @@ static void over_the_middle_a_sigma_is_a_number(void) {
     TEST_ASSERT_TRUE(slots[0].counts && check_is_finite(slots[0].across_sd_m));
 }
 
+/* [flight.margin_m] Shares are those of the margin; without one, of a meter. */
+static void a_margin_is_at_least_a_meter(void) {
+    static goe_flight_t flight;
+    static const float wanted_m[] = {0.0f, 0.5f, 1.0f, 15.0f};
+    for (int i = 0; i < 4; i++) {
+        memset(&flight, 0, sizeof flight);
+        any_encounter();
+        goe_flight_settings_default(&flight.settings);
+        flight.settings.margin_m = wanted_m[i];
+        flight.slot[0].used = true;
+        flight.slot[0].valid = GOE_HAS_POSITION;
+        goe_flight_clear_slots(&flight, &own, slots);
+        CHECK_SAME(wanted_m[i] > 1.0f ? wanted_m[i] : 1.0f, slots[0].margin_m);
+    }
+}
+
+/* GIVEN a turn of less than a meter to a place abeam THEN it is a quarter of a circle, whose other three quarters are not flown. */
+static void a_small_turn_is_no_whole_circle(void) {
+    for (int side = -1; side <= 1; side += 2) {
+        any_encounter();
+        own.early_m = own.late_m = 10.0f;
+        own.turn_m = 0.95f;
+        way.turns_away = true;
+        way.target_m[0] = 10.0f;
+        way.target_m[1] = 20.0f * (float)side;
+        slots[0].at_m[0] = 8.9f;
+        slots[0].at_m[1] = 0.75f * (float)side;
+        slots[0].radius_m = 0.0f;
+        begin_trace();
+        fly_turn(10.0, (double)way.target_m[0], (double)way.target_m[1]);
+        const double from_circle_m = hypot(8.9 - 10.0, 0.75 - 0.95) - 0.95;
+        TEST_ASSERT_TRUE(least_m > from_circle_m + 1.5 * TRACED_M);
+        CHECK_CLOSE(TRACED_M, least_m, spare_m());
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(a_margin_is_at_least_a_meter);
+    RUN_TEST(a_small_turn_is_no_whole_circle);
     RUN_TEST(an_obstacle_on_the_way_has_no_distance);
     RUN_TEST(over_the_middle_a_sigma_is_a_number);
     RUN_TEST(a_target_is_flown_through_by_turns_of_every_delay);
