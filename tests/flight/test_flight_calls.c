@@ -87,6 +87,24 @@ static void a_pose_is_that_of_its_time(void) {
     }
 }
 
+/* The height of a pose is that of the camera, which lies aside of the aircraft's position and turns with it. */
+static void a_pose_has_the_height_of_the_camera(void) {
+    goe_pose_t pose;
+    flight->camera[0].offset_m[0] = 1.0f;
+    flight->camera[0].offset_m[1] = 0.5f;
+    flight->camera[0].offset_m[2] = 0.25f;
+    for (int turn = 0; turn < 2; turn++) { /* the nose up by 30 degrees, or the right wing down by 30 degrees */
+        attitude.q[0] = cosf(0.2617994f);
+        attitude.q[1] = turn ? sinf(0.2617994f) : 0.0f;
+        attitude.q[2] = turn ? 0.0f : sinf(0.2617994f);
+        at((SAMPLES + (uint32_t)turn) * STEP_US);
+        give();
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_pose(flight, attitude.time_us, 0u, &pose, NULL));
+        const double below_m = 0.25 * sqrt(0.75) + (turn ? 0.5 * 0.5 : -1.0 * 0.5);
+        CHECK_CLOSE(1.0e-4, 20.0 - below_m, pose.height_m);
+    }
+}
+
 /* GIVEN numbers that a flipped bit has made no numbers THEN there is no pose. */
 static void a_pose_of_no_numbers_is_none(void) {
     static const goe_pose_t nothing;
@@ -408,6 +426,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_restart_forgets_waiting_images);
     RUN_TEST(a_pose_is_that_of_its_time);
+    RUN_TEST(a_pose_has_the_height_of_the_camera);
     RUN_TEST(a_pose_of_no_numbers_is_none);
     RUN_TEST(a_norm_within_one_percent_is_taken);
     RUN_TEST(a_track_has_the_sigma_of_its_height);
