@@ -155,6 +155,44 @@ static void an_incomplete_image_clears_nothing(void) {
     }
 }
 
+/* [goe_flight_restart] GIVEN half of an image WHEN the layer is restarted THEN the other half is no whole image: nothing is clear. */
+static void a_restart_forgets_half_an_image(void) {
+    goe_flight_detection_t weak = flown_detection(&flown, 0);
+    weak.score = 0.1f;
+    for (int restarted = 0; restarted < 2; restarted++) {
+        setUp();
+        for (int half = 0; half < 2; half++) {
+            if (half == 0 || restarted) { /* the autopilot's clock begins again, too */
+                flown.sample = 0;
+                fly_without_frames(20);
+            }
+            goe_flight_frame_t frame = flown_frame(&flown, flown.sample - 1, &weak, 1);
+            frame.number = 2;
+            TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(&flown.flight, &frame));
+            if (half == 0 && restarted) {
+                TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_restart(&flown.flight));
+            }
+        }
+        TEST_ASSERT_TRUE(look().detector_alive);
+        TEST_ASSERT_EQUAL(!restarted, clear_sectors() > 5);
+    }
+}
+
+/* GIVEN a clear view WHEN no sample comes any more THEN nothing is clear at an assessment half a second later. */
+static void nothing_is_clear_without_a_pose(void) {
+    goe_flight_assessment_t now;
+    flown.detects = false;
+    (void)flown_fly(&flown, 1.0);
+    for (uint32_t later_us = 400000u; later_us <= 600000u; later_us += 200000u) {
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK,
+                          goe_flight_assess(&flown.flight, flown_now_us(&flown) + later_us, GOE_FLIGHT_FLYING, &now));
+        TEST_ASSERT_TRUE(now.detector_alive);
+        TEST_ASSERT_EQUAL(later_us < 500000u, now.pose_alive);
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_sectors(&flown.flight, MAX_CM, sector_cm));
+        TEST_ASSERT_EQUAL(now.pose_alive, clear_sectors() > 5);
+    }
+}
+
 /* GIVEN a clear view WHEN no frame comes any more, and nobody assesses THEN nothing is clear, also when the clock has wrapped. */
 static void a_view_ends_without_an_assessment(void) {
     flown.detects = false;
@@ -228,6 +266,24 @@ static void an_obstacle_that_may_be_nearer_is_not_clear(void) {
         slot->suspect = k == 2;
         TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_sectors(&flown.flight, max_cm, sector_cm));
         TEST_ASSERT_EQUAL_UINT16(k == 0 || k == 3 ? max_cm + 1u : GOE_FLIGHT_SECTOR_UNKNOWN, sector_cm[sector]);
+    }
+}
+
+/* ... by its sigma along the line of sight, not by that across. */
+static void an_obstacle_may_be_nearer_along_the_line_of_sight(void) {
+    (void)flown_fly(&flown, 2.0);
+    goe_flight_slot_t *slot = &flown.flight.slot[0];
+    goe_flight_attitude_t attitude;
+    goe_flight_position_t own;
+    flown_samples(&flown, flown.sample - 1, &attitude, &own);
+    slot->center_ne_m[0] = own.position_ned_m[0] + 100.0f;
+    slot->center_ne_m[1] = own.position_ned_m[1];
+    slot->covariance_ne_m2[1] = 0.0f;
+    for (int along = 0; along < 2; along++) {
+        slot->covariance_ne_m2[0] = along ? 1600.0f : 1.0f;
+        slot->covariance_ne_m2[2] = along ? 1.0f : 1600.0f;
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_sectors(&flown.flight, 5000u, sector_cm));
+        TEST_ASSERT_EQUAL_UINT16(along ? GOE_FLIGHT_SECTOR_UNKNOWN : 5001u, sector_cm[0]);
     }
 }
 
@@ -307,10 +363,13 @@ int main(void) {
     RUN_TEST(the_box_that_fits_better_gets_the_track);
     RUN_TEST(an_image_in_parts_shows_what_is_not_in_it);
     RUN_TEST(an_incomplete_image_clears_nothing);
+    RUN_TEST(a_restart_forgets_half_an_image);
+    RUN_TEST(nothing_is_clear_without_a_pose);
     RUN_TEST(a_view_ends_without_an_assessment);
     RUN_TEST(clear_is_what_an_image_showed);
     RUN_TEST(an_obstacle_without_a_width_closes_its_box);
     RUN_TEST(an_obstacle_that_may_be_nearer_is_not_clear);
+    RUN_TEST(an_obstacle_may_be_nearer_along_the_line_of_sight);
     RUN_TEST(a_detection_that_is_elsewhere_is_unplaced);
     RUN_TEST(without_ids_parts_are_as_good_as_one_call);
     RUN_TEST(a_reset_of_the_heading_clears_nothing);
