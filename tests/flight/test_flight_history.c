@@ -261,6 +261,27 @@ static void the_rate_is_that_of_all_samples(void) {
     CHECK_CLOSE(0.05, 30.0 * sqrt(0.5), pose.rate_deg_s);
 }
 
+/* ... as is its change, however many positions there are. */
+static void the_change_of_the_rate_is_that_of_the_attitudes(void) {
+    const float ned_m[3] = {0.0f, 0.0f, 0.0f};
+    float spread_deg = 0.0f;
+    for (int few = 0; few < 2; few++) {
+        goe_flight_history_clear(&history);
+        for (uint32_t k = 0; k < 10u; k++) {
+            float q[4];
+            sine_at(100000u * k, q);
+            TEST_ASSERT_TRUE(goe_flight_history_add_attitude(&history, 100000u * k, q));
+            if (few == 0 || k == 7u || k == 9u) {
+                TEST_ASSERT_TRUE(goe_flight_history_add_position(&history, 100000u * k, ned_m));
+            }
+        }
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_history_at(&history, 850000u, &pose));
+        TEST_ASSERT_TRUE(pose.spread_deg > 0.01f);
+        spread_deg = few == 0 ? pose.spread_deg : spread_deg;
+        CHECK_SAME(spread_deg, pose.spread_deg);
+    }
+}
+
 /* A sample more than a second away bends nothing. */
 static void a_sample_of_long_ago_bends_nothing(void) {
     const float ned_m[3] = {0.0f, 0.0f, 0.0f};
@@ -296,6 +317,7 @@ int main(void) {
     RUN_TEST(half_of_a_wide_turn_is_a_rotation);
     RUN_TEST(each_ring_answers_for_itself);
     RUN_TEST(the_rate_is_that_of_all_samples);
+    RUN_TEST(the_change_of_the_rate_is_that_of_the_attitudes);
     RUN_TEST(a_sample_of_long_ago_bends_nothing);
     RUN_TEST(a_steady_flight_is_found_again);
     RUN_TEST(slow_samples_too);
