@@ -150,6 +150,24 @@ static void fly_points(flown_t *of, int samples) {
     }
 }
 
+/* The covariance of X0 and Z0, along north and east. */
+static void check_turned(const goe_estimator_t *of, double heading_deg, const float ne_m2[3]) {
+    float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
+    const double heading = heading_deg * 3.14159265358979 / 180.0;
+    const double by[2][2] = {{-sin(heading), cos(heading)}, {cos(heading), sin(heading)}}; /* X, Z: along north, east */
+    double turned[2][2] = {{0.0, 0.0}, {0.0, 0.0}};
+    TEST_ASSERT_EQUAL(GOE_OK, goe_covariance(of, covariance));
+    for (int i = 0; i < 4; i++) {
+        for (int k = 0; k < 4; k++) {
+            const double of_xz = (double)covariance[k / 2 ? GOE_Z0 : GOE_X0][k % 2 ? GOE_Z0 : GOE_X0];
+            turned[i / 2][i % 2] += by[i / 2][k / 2] * of_xz * by[i % 2][k % 2];
+        }
+    }
+    CHECK_CLOSE(1.0e-3 * turned[0][0], turned[0][0], ne_m2[0]);
+    CHECK_CLOSE(1.0e-3 * sqrt(turned[0][0] * turned[1][1]), turned[0][1], ne_m2[1]);
+    CHECK_CLOSE(1.0e-3 * turned[1][1], turned[1][1], ne_m2[2]);
+}
+
 /* Of a box with one visible face, only the front edge has a position; here in a T that is across the course. */
 static void a_front_without_a_length_lies_where_it_is(void) {
     goe_flight_obstacle_t obstacle;
@@ -175,6 +193,7 @@ static void a_front_without_a_length_lies_where_it_is(void) {
         CHECK_CLOSE(0.5, 0.0, cos(along) * east - sin(along) * north);
         const float *ne = obstacle.covariance_ne_m2;
         TEST_ASSERT_TRUE(ne[0] > 0.01f && ne[2] > 0.01f && ne[0] * ne[2] > ne[1] * ne[1]);
+        check_turned(&flown.flight.slot[0].estimator, (double)estimator.heading_deg, ne);
     }
 }
 
