@@ -167,6 +167,46 @@ static void a_standing_order_evades_to_its_own_side_first(void) {
     TEST_ASSERT_EQUAL(0, flight.reaction.changes);
 }
 
+static void put_wide(int slot, float ahead_m, float right_m, float width_m) {
+    put(slot, ahead_m, right_m, 50.0f);
+    flight.slot[slot].width_m = width_m;
+}
+
+/* GIVEN an order past A WHEN B comes to lie on its way, and only the gap between A and B is left THEN it leads through that, still past A
+ * on its side. */
+static void an_order_leads_through_a_gap_on_its_side(void) {
+    for (int side = -1; side <= 1; side += 2) {
+        const float right = (float)side;
+        start(0.0f);
+        put(0, 110.0f, -0.5f * right, 50.0f);
+        TEST_ASSERT_EQUAL(side < 0 ? GOE_FLIGHT_LEFT : GOE_FLIGHT_RIGHT, decide(0.5));
+        put(1, 112.0f, 21.0f * right, 50.0f);
+        put_wide(2, 112.0f, 80.0f * right, 100.0f);
+        put_wide(3, 112.0f, -60.0f * right, 80.0f);
+        TEST_ASSERT_EQUAL(side < 0 ? GOE_FLIGHT_LEFT : GOE_FLIGHT_RIGHT, decide(0.5));
+        CHECK_CLOSE(0.1, 10.25 * (double)side, flight.reaction.target_ned_m[1]); /* between 2.5 and 18 */
+        TEST_ASSERT_EQUAL(side, flight.reaction.side);
+        TEST_ASSERT_EQUAL(0, flight.reaction.slot);
+        TEST_ASSERT_EQUAL(0, flight.reaction.changes);
+    }
+}
+
+/* GIVEN an order to a side WHEN that leads into a wide obstacle, and there is no way on its side THEN the other side is flown, once it is
+ * clear. */
+static void an_order_into_an_obstacle_changes_its_side(void) {
+    for (int side = -1; side <= 1; side += 2) {
+        const float right = (float)side;
+        start(0.0f);
+        put(0, 110.0f, -0.5f * right, 50.0f);
+        TEST_ASSERT_EQUAL(side < 0 ? GOE_FLIGHT_LEFT : GOE_FLIGHT_RIGHT, decide(0.5));
+        put_wide(1, 90.0f, 75.0f * right, 130.0f);
+        TEST_ASSERT_EQUAL(side < 0 ? GOE_FLIGHT_RIGHT : GOE_FLIGHT_LEFT, decide(0.0));
+        CHECK_CLOSE(0.1, -18.5 * (double)side, flight.reaction.target_ned_m[1]);
+        TEST_ASSERT_EQUAL(-side, flight.reaction.side);
+        TEST_ASSERT_EQUAL(1, flight.reaction.changes);
+    }
+}
+
 /* ---------------------------------------------------------------------------------------------------------------- end -- */
 
 /* The order about B is not over while A, which is on the line, is not passed. */
@@ -215,6 +255,28 @@ static void an_order_stays_active_while_the_way_back_is_not_clear(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
     put(1, 165.0f, -130.0f, 50.0f);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, decide(3.0));
+}
+
+/* GIVEN an order that has just ended next to its line WHEN an obstacle lies on the course of the moment, and none on the way back to the
+ * line THEN that is no reason for another order; one on the way back is. */
+static void an_aircraft_that_flies_back_to_its_line_needs_no_order(void) {
+    for (int side = -1; side <= 1; side += 2) {
+        for (int blocked = 0; blocked < 2; blocked++) {
+            const float right = (float)side;
+            start(0.0f);
+            own.ned_m[0] = 100.0f;
+            own.ned_m[1] = 40.0f * right;
+            own.time_us = 5000000u;
+            put(0, 225.0f, 45.0f * right, 50.0f);
+            flight.slot[0].hazard.conflict_probability = 1.0f;
+            put(1, 190.0f, (blocked ? 22.0f : -1.0f) * right, 50.0f);
+            flight.slot[1].hazard.conflict_probability = 0.0f;
+            flight.reaction.side = (int8_t)side;
+            flight.reaction.course_ne[0] = 1.0f;
+            flight.reaction.falling_us = own.time_us;
+            TEST_ASSERT_EQUAL(blocked, decide(0.5) != GOE_FLIGHT_NONE);
+        }
+    }
 }
 
 /* ------------------------------------------------------------------------------------------------------------ withheld -- */
@@ -567,6 +629,9 @@ int main(void) {
     RUN_TEST(a_wall_of_masts_is_a_reason_to_hold);
     RUN_TEST(a_blocked_aircraft_reports_it);
     RUN_TEST(a_standing_order_evades_to_its_own_side_first);
+    RUN_TEST(an_order_leads_through_a_gap_on_its_side);
+    RUN_TEST(an_order_into_an_obstacle_changes_its_side);
+    RUN_TEST(an_aircraft_that_flies_back_to_its_line_needs_no_order);
     RUN_TEST(an_order_stays_active_while_another_one_is_on_its_line);
     RUN_TEST(an_order_turns_to_the_next_one_on_its_line);
     RUN_TEST(an_order_that_finds_another_way_does_not_sink_with_the_aircraft);

@@ -334,6 +334,34 @@ static void an_order_stays_active_as_long_as_something_is_in_the_way(void) {
     TEST_ASSERT_TRUE(ended > 300 && waits > 100 && turned_to > 50 && reported > 1000);
 }
 
+/* [goe_flight_assessment_t.clear_m] GIVEN a target less than a meter ahead that is circled THEN the way to it is flown, and no turn away. */
+static void a_target_just_ahead_is_flown_to(void) {
+    int reported = 0;
+    for (int n = 0; n < TRIALS / 3; n++) {
+        any_standing_order();
+        goe_flight_reaction_t *r = &flight.reaction;
+        const double to_m[2] = {between(0.1, 0.9), between(-60.0, 60.0)};
+        flight.settings.loiter_m = 100.0f;
+        flight.settings.hold_s = 60.0f;
+        r->action = one_in(2) ? GOE_FLIGHT_LEFT : GOE_FLIGHT_RIGHT;
+        r->side = r->action == GOE_FLIGHT_LEFT ? -1 : 1;
+        r->slot = -1;
+        r->target_ned_m[0] = own.ned_m[0] + (float)(to_m[0] * course[0] - to_m[1] * course[1]);
+        r->target_ned_m[1] = own.ned_m[1] + (float)(to_m[0] * course[1] + to_m[1] * course[0]);
+        near_tie = false;
+        const double share = share_of_order(r);
+        if (near_tie || !(share > 0.0)) {
+            continue;
+        }
+        (void)goe_flight_reaction_decide(&flight, -1, &own);
+        TEST_ASSERT_NOT_EQUAL(GOE_FLIGHT_NONE, r->action);
+        CHECK_CLOSE(0.02, share * (double)flight.settings.margin_m, r->clear_m);
+        reported++;
+    }
+    check_report("clear", (double)reported);
+    TEST_ASSERT_TRUE(reported > 100);
+}
+
 /* ------------------------------------------------------------------------------------------------------------ choice -- */
 
 typedef struct {
@@ -581,6 +609,7 @@ static void the_way_that_is_taken_is_that_of_the_rule(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_way_that_is_taken_is_that_of_the_rule);
+    RUN_TEST(a_target_just_ahead_is_flown_to);
     RUN_TEST(an_order_stays_active_as_long_as_something_is_in_the_way);
     return UNITY_END();
 }
