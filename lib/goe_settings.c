@@ -100,7 +100,7 @@ static const char *first_bad(const unsigned char *from, size_t count) {
     return NULL;
 }
 
-/* What no camera is: a focal length given in millimeters, or the principal point of another image size. */
+/* The name of a setting that no camera has: a focal length in millimeters, or the principal point of another image size. */
 /*@ requires \valid_read(camera); */
 static const char *implausible(const goe_camera_t *camera) {
     const float sizes_px[2] = {camera->width_px, camera->height_px};

@@ -100,18 +100,18 @@ void goe_ground_start(goe_filter_t *filter, const goe_observation_t *obs) {
 void goe_ground_drift(goe_filter_t *filter, const goe_observation_t *obs) {
     float direction[GOE_STATES] = {0.0f};
     goe_datum_t *datum = &filter->datum;
-    const float before = datum->taken_m2;
-    const float walked = before + goe_square(obs->settings->navigation.position_walk_sd_m) * filter->due_s;
-    const float now = goe_larger(goe_square(obs->height_sd_m), walked);
-    if (!(filter->due_s > 0.0f) || !(now > before)) {
+    const float walked_m2 = goe_square(obs->settings->navigation.position_walk_sd_m) * filter->due_s;
+    const float more_m2 =
+        goe_larger(goe_square(obs->height_sd_m) - datum->taken_m2, walked_m2); /* before a sum would lose it */
+    if (!(filter->due_s > 0.0f) || !(more_m2 > 0.0f)) {
         return;
     }
     direction[GOE_GROUND] = 1.0f;
     direction[GOE_TOP] = -1.0f;
     goe_srif_spread(&filter->root, direction, GOE_GROUND, GOE_TOP,
-                    filter->ground_scale * filter->state[GOE_INVERSE_RANGE] * sqrtf(now - before));
-    datum->taken_m2 = now;
-    datum->first_m2 = goe_larger(datum->first_m2, now);
+                    filter->ground_scale * filter->state[GOE_INVERSE_RANGE] * sqrtf(more_m2));
+    datum->taken_m2 += more_m2;
+    datum->first_m2 = goe_larger(datum->first_m2, datum->taken_m2);
 }
 
 /* What the first height gives the state with the present 1/Z0, over what it gave with that for which it was set; 1/variance. */

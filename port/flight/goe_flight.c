@@ -776,12 +776,27 @@ static void open_sectors(const goe_flight_t *flight, uint32_t max_cm, uint16_t s
     }
 }
 
-/* Where an obstacle was detected that has no position or an old one, or whose width is not known. */
-static void close_sectors(const goe_flight_t *flight, uint16_t sector_cm[GOE_FLIGHT_SECTORS]) {
+/* By how much an obstacle may be nearer than its estimate: two sigmas; a suspect one may be anywhere ahead. */
+static float nearer_m(const goe_flight_slot_t *slot, const float away_ne_m[2]) {
+    return slot->suspect ? POSITION_MAX_M : 2.0f * goe_flight_slot_sd_along_m(slot, away_ne_m[0], away_ne_m[1]);
+}
+
+/* Where an obstacle was detected that has no position or an old one, or whose width is not known. The box of another one is wider than its
+ * circle if the obstacle reaches far back, as a wall at the side does: it counts, too, unless all of the circle is beyond max_cm. */
+static bool closes_box(const goe_flight_t *flight, const goe_flight_slot_t *slot, uint32_t max_cm) {
+    const goe_flight_history_position_t *own = goe_flight_history_newest_position(&flight->history);
+    if (!slot->used || (slot->valid & OUTLINED) != OUTLINED || slot->unlocated || !own) {
+        return slot->used;
+    }
+    const float away[2] = {slot->center_ne_m[0] - own->ned_m[0], slot->center_ne_m[1] - own->ned_m[1]};
+    return slot->in_view && !is_passed_over(flight, slot) &&
+           goe_flight_geometry_reaches(max_cm, away, goe_flight_slot_radius_m(slot), nearer_m(slot, away));
+}
+
+static void close_sectors(const goe_flight_t *flight, uint32_t max_cm, uint16_t sector_cm[GOE_FLIGHT_SECTORS]) {
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
-        const goe_flight_slot_t *slot = &flight->slot[i];
-        if (slot->used && ((slot->valid & OUTLINED) != OUTLINED || slot->unlocated)) {
-            goe_flight_geometry_close_sectors(sector_cm, &slot->bearings);
+        if (closes_box(flight, &flight->slot[i], max_cm)) {
+            goe_flight_geometry_close_sectors(sector_cm, &flight->slot[i].bearings);
         }
     }
     for (int i = 0; i < GOE_FLIGHT_CANDIDATES; i++) {
@@ -789,11 +804,6 @@ static void close_sectors(const goe_flight_t *flight, uint16_t sector_cm[GOE_FLI
             goe_flight_geometry_close_sectors(sector_cm, &flight->waiting.place[i].bearings);
         }
     }
-}
-
-/* By how much an obstacle may be nearer than its estimate: two sigmas; a suspect one may be anywhere ahead. */
-static float nearer_m(const goe_flight_slot_t *slot, const float away_ne_m[2]) {
-    return slot->suspect ? POSITION_MAX_M : 2.0f * goe_flight_slot_sd_along_m(slot, away_ne_m[0], away_ne_m[1]);
 }
 
 goe_flight_status_t goe_flight_sectors(const goe_flight_t *flight, uint32_t max_cm,
@@ -808,7 +818,7 @@ goe_flight_status_t goe_flight_sectors(const goe_flight_t *flight, uint32_t max_
     const goe_flight_history_attitude_t *attitude = goe_flight_history_newest_attitude(&flight->history);
     const goe_flight_history_position_t *own = goe_flight_history_newest_position(&flight->history);
     open_sectors(flight, max_cm, sector_cm);
-    close_sectors(flight, sector_cm);
+    close_sectors(flight, max_cm, sector_cm);
     for (int i = 0; i < GOE_FLIGHT_SLOTS && attitude && own; i++) {
         const goe_flight_slot_t *slot = &flight->slot[i];
         if (slot->used && (slot->valid & GOE_HAS_POSITION) != 0u && !is_passed_over(flight, slot)) {

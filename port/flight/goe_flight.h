@@ -414,6 +414,7 @@ typedef struct { /* goe_flight.c */
     float offset_m[3];        /* of the camera, body */
     float body_from_camera[9];
     float focal_px[2], center_px[2], size_px[2], border_px; /* focal length 0: there is no camera of this number */
+    float lens[5]; /* k1, k2, p1, p2, k3 */
 } goe_flight_camera_t;
 
 typedef struct {
@@ -515,9 +516,9 @@ goe_flight_status_t goe_flight_obstacle(const goe_flight_t *flight, int slot, go
 /* Finds the distance of the nearest obstacle in each sector; sector i is centered on the bearing 5 i degrees. Values in cm:
  *   - at most max_cm: the distance of an obstacle with a position; while unplaced is not 0 there may be a nearer one
  *   - max_cm + 1: nothing was detected in the sector up to max_cm. No estimated outline is nearer, also if it is moved nearer by two
- *     sigmas of its position; no obstacle there is suspect; [F6] no obstacle without a width, and none that unplaced counts, was
- *     detected there. The latest complete image of a live camera shows the flat ground at max_cm there, at the attitude of its
- *     exposure; so it also shows any nearer obstacle that is as high as the aircraft
+ *     sigmas of its position; no obstacle there is suspect; [F6] no obstacle without a width, none that unplaced counts, and no box
+ *     of one that may be within max_cm was detected there. The latest complete image of a live camera shows the flat ground at
+ *     max_cm there, at the attitude of its exposure; so it also shows any nearer obstacle that is as high as the aircraft
  *   - GOE_FLIGHT_SECTOR_UNKNOWN: all other sectors
  * Time is that of the latest assessment or of the newest sample, whichever is later.
  * Obstacles whose top the aircraft passes by more than the clearance, at two sigma, are ignored. For PX4's

@@ -10,8 +10,10 @@
 #define E7_MAX 9.0e8f     /* 90 degrees */
 #define POLE_COSINE_MIN 0.017f
 #define TURN_E7 3600000000
-#define AHEAD_MIN 0.02f /* of a direction, along the optical axis */
-#define STEEP 100.0f    /* tangent of a right angle, for bearings: straight down or up may be in between */
+#define LENS_ROUNDS 12
+#define LENS_OFF 1.0e-3f /* focal lengths: less than a tenth of a degree */
+#define AHEAD_MIN 0.02f  /* of a direction, along the optical axis */
+#define STEEP 100.0f     /* tangent of a right angle, for bearings: straight down or up may be in between */
 #define SECTOR_DEG 5.0f
 #define SECTOR_COS 0.99619470f /* of that */
 #define SECTOR_SIN 0.08715574f
@@ -52,6 +54,8 @@ static void mount(const goe_camera_t *settings, float r[9]) {
 void goe_flight_geometry_camera(goe_flight_camera_t *camera, const goe_camera_t *settings) {
     mount(settings, camera->body_from_camera);
     memcpy(camera->offset_m, settings->offset_m, sizeof camera->offset_m);
+    const float lens[5] = {settings->k1, settings->k2, settings->p1, settings->p2, settings->k3};
+    memcpy(camera->lens, lens, sizeof camera->lens);
     camera->focal_px[0] = settings->fx_px;
     camera->focal_px[1] = settings->fy_px;
     camera->center_px[0] = settings->cx_px;
@@ -59,6 +63,36 @@ void goe_flight_geometry_camera(goe_flight_camera_t *camera, const goe_camera_t 
     camera->size_px[0] = settings->width_px;
     camera->size_px[1] = settings->height_px;
     camera->border_px = settings->border_rel * settings->width_px;
+}
+
+/* Brown-Conrady, as goe_camera_t defines it; x and y in focal lengths. The third number is the larger of its two slopes, along the radius
+ * and across. Returns false where the radial part folds back: nothing of there is in the image, though its distorted point may be. */
+static bool distort(const float lens[5], float x, float y, float distorted[3]) {
+    const float square = x * x + y * y;
+    const float radial = 1.0f + square * (lens[0] + square * (lens[1] + square * lens[4]));
+    const float slope = 1.0f + square * (3.0f * lens[0] + square * (5.0f * lens[1] + 7.0f * square * lens[4]));
+    distorted[0] = x * radial + 2.0f * lens[2] * x * y + lens[3] * (square + 2.0f * x * x);
+    distorted[1] = y * radial + lens[2] * (square + 2.0f * y * y) + 2.0f * lens[3] * x * y;
+    distorted[2] = goe_flight_larger(radial, slope);
+    return slope > 0.0f;
+}
+
+/* The inverse, by x <- x + (distorted - distort(x)) / slope, with the larger slope, so that no step overshoots. Returns false if it does
+ * not converge. */
+static bool undistort(const float lens[5], const float distorted[2], float *x, float *y) {
+    float again[3];
+    *x = distorted[0];
+    *y = distorted[1];
+    for (int round = 0; round < LENS_ROUNDS; round++) {
+        if (!distort(lens, *x, *y, again)) {
+            return false;
+        }
+        *x += (distorted[0] - again[0]) / again[2];
+        *y += (distorted[1] - again[1]) / again[2];
+    }
+    const bool one_to_one = distort(lens, *x, *y, again);
+    return one_to_one && goe_flight_within(again[0] - distorted[0], LENS_OFF) &&
+           goe_flight_within(again[1] - distorted[1], LENS_OFF);
 }
 
 bool goe_flight_geometry_project(const goe_flight_camera_t *camera, const goe_flight_history_pose_t *pose,
@@ -79,9 +113,10 @@ bool goe_flight_geometry_project(const goe_flight_camera_t *camera, const goe_fl
     if (!(seen[2] > DEPTH_MIN_M)) {
         return false;
     }
-    bool inside = true;
+    float shown[3];
+    bool inside = distort(camera->lens, seen[0] / seen[2], seen[1] / seen[2], shown);
     for (int i = 0; i < 2; i++) {
-        pixel[i] = camera->center_px[i] + camera->focal_px[i] * seen[i] / seen[2];
+        pixel[i] = camera->center_px[i] + camera->focal_px[i] * shown[i];
         inside = inside && goe_flight_within(pixel[i] - 0.5f * camera->size_px[i], camera->size_px[i]);
     }
     return inside;
@@ -114,14 +149,17 @@ void goe_flight_geometry_lat_lon(int32_t origin_lat_e7, int32_t origin_lon_e7, c
 
 /* ---------------------------------------------------------------------------------------------------------- bearings -- */
 
-/* A ray through a pixel, north, east, down; its length is of no interest. */
-static void look_through(const goe_flight_camera_t *camera, const float body_to_ned[9], float u_px, float v_px,
+/* A ray through a pixel, north, east, down; its length is of no interest. Returns false if the lens model has none there. */
+static bool look_through(const goe_flight_camera_t *camera, const float body_to_ned[9], float u_px, float v_px,
                          float ray[3]) {
-    const float seen[3] = {(u_px - camera->center_px[0]) / camera->focal_px[0],
-                           (v_px - camera->center_px[1]) / camera->focal_px[1], 1.0f};
+    const float shown[2] = {(u_px - camera->center_px[0]) / camera->focal_px[0],
+                            (v_px - camera->center_px[1]) / camera->focal_px[1]};
+    float seen[3] = {0.0f, 0.0f, 1.0f};
     float body[3];
+    const bool found = undistort(camera->lens, shown, &seen[0], &seen[1]);
     goe_flight_turn(camera->body_from_camera, seen, body);
     goe_flight_turn(body_to_ned, body, ray);
+    return found;
 }
 
 /* From -180 to 180. */
@@ -129,38 +167,43 @@ static float apart_deg(float from_deg, float to_deg) {
     return goe_flight_positive_deg(to_deg - from_deg + 180.0f) - 180.0f;
 }
 
-/* Of a direction, north, east, down: depth along the optical axis, and pixel times depth. No lens distortion. */
-static void find_projection(const goe_flight_camera_t *camera, const float q[4], float depth[3], float pixel[2][3]) {
+/* The camera's axes: x, y, and the optical one; north, east, down. */
+static void find_axes(const goe_flight_camera_t *camera, const float q[4], float axis[3][3]) {
     float body_to_ned[9];
-    float axis[3][3];
     goe_flight_rotation(q, body_to_ned);
     for (int i = 0; i < 3; i++) {
         const float *r = camera->body_from_camera;
         const float column[3] = {r[i], r[3 + i], r[6 + i]};
         goe_flight_turn(body_to_ned, column, axis[i]);
     }
-    for (int i = 0; i < 3; i++) {
-        depth[i] = axis[2][i];
-        pixel[0][i] = camera->focal_px[0] * axis[0][i] + camera->center_px[0] * axis[2][i];
-        pixel[1][i] = camera->focal_px[1] * axis[1][i] + camera->center_px[1] * axis[2][i];
-    }
 }
 
 static float dot(const float a[3], const float b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
+/* Whether a direction is in the image. */
+static bool is_visible(const goe_flight_camera_t *camera, float axis[3][3], const float direction[3]) {
+    const float ahead = dot(axis[2], direction);
+    float shown[3];
+    if (!(ahead > AHEAD_MIN) ||
+        !distort(camera->lens, dot(axis[0], direction) / ahead, dot(axis[1], direction) / ahead, shown)) {
+        return false;
+    }
+    bool visible = true;
+    for (int i = 0; i < 2; i++) {
+        const float px = camera->center_px[i] + camera->focal_px[i] * shown[i];
+        visible = visible && px >= 0.0f && px <= camera->size_px[i];
+    }
+    return visible;
+}
+
 void goe_flight_geometry_open_sectors(uint16_t sector_cm[GOE_FLIGHT_SECTORS], uint32_t max_cm,
                                       const goe_flight_camera_t *camera, const float q[4], float above_m) {
-    float depth[3];
-    float pixel[2][3];
+    float axis[3][3];
     float edge[3] = {HALF_COS, -HALF_SIN, above_m * CM_PER_M / (float)max_cm}; /* of sector 0, to its left */
     bool left = false;
-    find_projection(camera, q, depth, pixel);
+    find_axes(camera, q, axis);
     for (int i = -1; i < GOE_FLIGHT_SECTORS; i++) {
-        const float ahead = dot(depth, edge);
-        const float u = dot(pixel[0], edge);
-        const float v = dot(pixel[1], edge);
-        const bool visible = ahead > AHEAD_MIN && u >= 0.0f && u <= camera->size_px[0] * ahead && v >= 0.0f &&
-                             v <= camera->size_px[1] * ahead;
+        const bool visible = is_visible(camera, axis, edge);
         if (left && visible) {
             sector_cm[i] = (uint16_t)(max_cm + 1u);
         }
@@ -177,22 +220,25 @@ void goe_flight_geometry_bearings(const goe_flight_camera_t *camera, const float
     float middle[3];
     float ray[3];
     float tangent = 0.0f; /* of the widest corner */
-    bool below = false;
     goe_flight_rotation(q, body_to_ned);
-    look_through(camera, body_to_ned, 0.5f * (extent_px[0] + extent_px[2]), 0.5f * (extent_px[1] + extent_px[3]),
-                 middle);
-    for (int corner = 0; corner < 4; corner++) {
-        look_through(camera, body_to_ned, extent_px[(corner & 1) != 0 ? 2 : 0], extent_px[(corner & 2) != 0 ? 3 : 1],
-                     ray);
+    bool unknown = !look_through(camera, body_to_ned, 0.5f * (extent_px[0] + extent_px[2]),
+                                 0.5f * (extent_px[1] + extent_px[3]), middle);
+    for (int i = 0; i < 9;
+         i++) { /* corners, and middles of the sides, which a lens bends outward; i = 4 is the middle */
+        const float right = 0.5f * (float)(i % 3);
+        const float down = 0.5f * (float)(i / 3);
+        unknown = !look_through(camera, body_to_ned, extent_px[0] + right * (extent_px[2] - extent_px[0]),
+                                extent_px[1] + down * (extent_px[3] - extent_px[1]), ray) ||
+                  unknown;
         const float across = goe_flight_absolute(middle[0] * ray[1] - middle[1] * ray[0]);
         const float along = middle[0] * ray[0] + middle[1] * ray[1];
-        below = below || along * STEEP <= across;
-        tangent = below ? tangent : goe_flight_larger(tangent, across / along);
+        unknown = unknown || along * STEEP <= across;
+        tangent = unknown ? tangent : goe_flight_larger(tangent, across / along);
     }
     const float half_deg = goe_flight_atan2_deg(tangent, 1.0f) + 1.0f; /* whole degrees, up */
     const float middle_deg = goe_flight_positive_deg(goe_flight_atan2_deg(middle[1], middle[0]));
     bearings->middle_deg = (int16_t)middle_deg;
-    bearings->half_deg = below ? GOE_FLIGHT_ANY_BEARING : (int16_t)half_deg;
+    bearings->half_deg = unknown ? GOE_FLIGHT_ANY_BEARING : (int16_t)half_deg;
 }
 
 void goe_flight_geometry_close_sectors(uint16_t sector_cm[GOE_FLIGHT_SECTORS], const goe_flight_bearings_t *bearings) {
@@ -204,6 +250,15 @@ void goe_flight_geometry_close_sectors(uint16_t sector_cm[GOE_FLIGHT_SECTORS], c
     }
 }
 
+static float near_side_cm(const float away_ne_m[2], float radius_m) {
+    const float square = away_ne_m[0] * away_ne_m[0] + away_ne_m[1] * away_ne_m[1];
+    return goe_flight_larger(sqrtf(square) - radius_m, 0.0f) * CM_PER_M;
+}
+
+bool goe_flight_geometry_reaches(uint32_t max_cm, const float away_ne_m[2], float radius_m, float nearer_m) {
+    return !(near_side_cm(away_ne_m, radius_m) - nearer_m * CM_PER_M > (float)max_cm);
+}
+
 /* The nearest distance stays. GOE_FLIGHT_SECTOR_UNKNOWN replaces "clear", and no distance. */
 static void enter(uint16_t *sector_cm, uint16_t cm, uint32_t max_cm) {
     if (cm < *sector_cm || *sector_cm > max_cm) {
@@ -213,13 +268,13 @@ static void enter(uint16_t *sector_cm, uint16_t cm, uint32_t max_cm) {
 
 void goe_flight_geometry_enter_circle(uint16_t sector_cm[GOE_FLIGHT_SECTORS], uint32_t max_cm, const float away_ne_m[2],
                                       float radius_m, float nearer_m) {
-    const float square = away_ne_m[0] * away_ne_m[0] + away_ne_m[1] * away_ne_m[1];
-    const float outside = square - radius_m * radius_m;
-    const float near_cm = goe_flight_larger(sqrtf(square) - radius_m, 0.0f) * CM_PER_M;
-    const bool beyond = near_cm > (float)max_cm;
-    if (beyond && near_cm - nearer_m * CM_PER_M > (float)max_cm) {
+    if (!goe_flight_geometry_reaches(max_cm, away_ne_m, radius_m, nearer_m)) {
         return;
     }
+    const float square = away_ne_m[0] * away_ne_m[0] + away_ne_m[1] * away_ne_m[1];
+    const float outside = square - radius_m * radius_m;
+    const float near_cm = near_side_cm(away_ne_m, radius_m);
+    const bool beyond = near_cm > (float)max_cm;
     const float within_cm = goe_flight_larger(near_cm, (float)TOUCH_MIN);
     const uint16_t cm = beyond ? GOE_FLIGHT_SECTOR_UNKNOWN : (uint16_t)within_cm;
     const float half_deg = outside > 0.0f ? goe_flight_atan2_deg(radius_m, sqrtf(outside)) : 180.0f;

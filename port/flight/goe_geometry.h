@@ -8,7 +8,7 @@
 /* Computes position and orientation of a camera from its settings. */
 void goe_flight_geometry_camera(goe_flight_camera_t *camera, const goe_camera_t *settings);
 
-/* Computes the pixel of a point, without lens distortion. Returns false if the point is behind the camera, or outside the image by more
+/* Computes the pixel of a point. Returns false if the point is behind the camera, or outside the image by more
  * than half of the image's size. */
 bool goe_flight_geometry_project(const goe_flight_camera_t *camera, const goe_flight_history_pose_t *pose,
                                  const float point_ned_m[3], float pixel[2]);
@@ -25,13 +25,15 @@ void goe_flight_geometry_open_sectors(uint16_t sector_cm[GOE_FLIGHT_SECTORS], ui
 
 #define GOE_FLIGHT_ANY_BEARING 180 /* value of half_deg: the bearing is not known */
 
-/* Computes the bearings of a part of the image (left, top, right, bottom, pixels) from its middle and its corners, without lens
- * distortion. */
+/* Computes the bearings of a part of the image (left, top, right, bottom, pixels) from its middle and its corners. */
 void goe_flight_geometry_bearings(const goe_flight_camera_t *camera, const float q[4], const float extent_px[4],
                                   goe_flight_bearings_t *bearings);
 
 /* The sectors of these bearings, and one more on each side, are unknown. */
 void goe_flight_geometry_close_sectors(uint16_t sector_cm[GOE_FLIGHT_SECTORS], const goe_flight_bearings_t *bearings);
+
+/* Whether a circle, moved nearer by nearer_m, is within max_cm. */
+bool goe_flight_geometry_reaches(uint32_t max_cm, const float away_ne_m[2], float radius_m, float nearer_m);
 
 /* A circle at a place relative to the aircraft enters the sectors that it touches, by its nearest point. If this point is beyond
  * max_cm, but not if it is nearer by nearer_m, the clear ones of these sectors become unknown. */

@@ -26,7 +26,7 @@ static void begin(goe_flight_travel_t *travel, const goe_flight_position_t *samp
 
 static float length_m(float north_m, float east_m) { return sqrtf(north_m * north_m + east_m * east_m); }
 
-/* Whether two ways differ by more than `off_m` and a share of the longer one. What is not a number differs. */
+/* Whether two ways differ by more than `off_m` and a share of the longer one. NaN differs. */
 static bool differ(float apart_m, float one_m, float other_m, float off_m) {
     return !goe_flight_within(apart_m, off_m + OFF_SHARE * goe_flight_larger(one_m, other_m));
 }

@@ -122,6 +122,26 @@ static void a_wrong_position_clears_nothing(void) {
     TEST_ASSERT_EQUAL_INT(GOE_DECISION_ACT, decide());
 }
 
+/* GIVEN a wall 13 m ahead, nearer than the margin, WHEN the aircraft creeps towards it THEN the rule acts, though the closest approach is
+ * minutes ahead; the same for an obstacle that flees a little slower than the aircraft. From farther away the time decides. */
+static void a_violation_at_a_creeping_speed_is_one_of_now(void) {
+    for (int follows = 0; follows < 2; follows++) {
+        for (int k = -20; k <= 20; k++) {
+            const stated_t mast = {0.0f, 16.0f, 6.0f, 40.0f, 1.0f, 1.0f, 20.0f};
+            stated_answer(&estimator, &mast);
+            if (follows == 1) {
+                estimator.estimate.valid |= GOE_HAS_VELOCITY;
+                estimator.estimate.velocity_north_m_s = 8.0f;
+            }
+            intent.velocity_ned_m_s[0] = 0.05f * (float)k + 8.0f * (float)follows;
+            TEST_ASSERT_EQUAL_INT(GOE_DECISION_ACT, decide());
+        }
+    }
+    place(0.0);
+    intent.velocity_ned_m_s[0] = 2.0f; /* 48 s */
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_CLEAR, decide());
+}
+
 /* GIVEN an obstacle that is passed far aside WHEN the camera is silent THEN it is clear for two seconds after the latest image, and not
  * known after that; one ahead is still acted on. */
 static void a_silent_camera_clears_nothing(void) {
@@ -188,15 +208,17 @@ static void a_refused_image_moves_the_aircraft_on(void) {
     estimator.estimate.age_s = 9.0f;
     TEST_ASSERT_EQUAL_INT(GOE_DECISION_ACT, decide());
     estimator.estimate.sigma.z0_m = 8.0f; /* clear now, and uncertain then */
-    rule.act_within_s = 1.0f;
+    rule.act_within_s = 1.5f;
     estimator.estimate.age_s = 0.0f;
     TEST_ASSERT_EQUAL_INT(GOE_DECISION_CLEAR, decide());
     const float now_s = hazard.tcpa_s;
     estimator.estimate.age_s = 1.0f; /* clear at both times: the hazard is that of now */
     TEST_ASSERT_EQUAL_INT(GOE_DECISION_CLEAR, decide());
     CHECK_SAME(now_s, hazard.tcpa_s);
-    estimator.estimate.age_s = 7.5f;
+    estimator.estimate.age_s = 6.7f;
     TEST_ASSERT_EQUAL_INT(GOE_DECISION_UNKNOWN, decide());
+    estimator.estimate.age_s = 7.5f; /* within the margin, which has grown by 7.5 m */
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_ACT, decide());
 }
 
 /* [goe_decide] GIVEN an estimator without a position THEN the decision is that nothing is known. */
@@ -296,6 +318,7 @@ int main(void) {
     RUN_TEST(an_old_answer_clears_nothing_after_new_detections);
     RUN_TEST(a_wrong_position_clears_nothing);
     RUN_TEST(a_silent_camera_clears_nothing);
+    RUN_TEST(a_violation_at_a_creeping_speed_is_one_of_now);
     RUN_TEST(doubt_and_age_widen);
     RUN_TEST(a_refused_image_moves_the_aircraft_on);
     RUN_TEST(without_a_position_nothing_is_known);

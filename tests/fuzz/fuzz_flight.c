@@ -470,7 +470,8 @@ static void change_flight_settings(fuzz_input_t *in, goe_flight_settings_t *sett
                                   : fuzz_any(in, fields[which].low, fields[which].high);
         memcpy((unsigned char *)settings + fields[which].place, &value, sizeof value);
     }
-    if (settings->confirm_images >= 1.0f && settings->confirm_images <= 20.0f) { /* a fraction is refused, and ends the story */
+    if (settings->confirm_images >= 1.0f &&
+        settings->confirm_images <= 20.0f) { /* a fraction is refused, and ends the story */
         settings->confirm_images = (float)(int)settings->confirm_images;
     }
     settings->resets = fuzz_below(in, 4) == 3u ? 1.0f : settings->resets;
