@@ -101,7 +101,6 @@ static const char *first_bad(const unsigned char *from, size_t count) {
 }
 
 /* The name of a setting that no camera has: a focal length in millimeters, or the principal point of another image size. */
-/*@ requires \valid_read(camera); */
 static const char *implausible(const goe_camera_t *camera) {
     const float sizes_px[2] = {camera->width_px, camera->height_px};
     const float focals_px[2] = {camera->fx_px, camera->fy_px};

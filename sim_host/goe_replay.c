@@ -375,8 +375,12 @@ static bool replay_with(const options_t *options, const goe_settings_t *settings
                         tally_t *tally) {
     const char *bad_field = NULL;
     track_table_t *tracks = track_table_new(settings, &bad_field);
-    if (tracks == NULL) {
-        return give_up(options->camera, bad_field != NULL ? bad_field : "out of memory");
+    if (tracks == NULL) { /* each setting alone was accepted */
+        char misfit[CHOICE_FAULT_MAX] = "out of memory";
+        if (bad_field != NULL) {
+            (void)snprintf(misfit, sizeof misfit, "%s: does not fit the size of the image", bad_field);
+        }
+        return give_up(options->camera, misfit);
     }
     const bool done = replay_to_output(options, reader, tracks, tally);
     track_table_free(tracks);

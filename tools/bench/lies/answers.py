@@ -66,8 +66,9 @@ def _camera(world: World, i: int, number: int) -> dict[str, Any]:
     found = {name: p[name][i].item() for name in LENS_AND_PINHOLE}
     found |= {"mount_yaw_deg": yaw, "mount_pitch_deg": pitch, "mount_roll_deg": roll}
     found["offset_m"] = tuple(p[f"lever_{axis}_m"][i].item() for axis in "xyz")
-    if p["size_configured"][i]:
-        found |= {"width_px": p["width_px"][i].item(), "height_px": p["image_height_px"][i].item()}
+    known = p["size_configured"][i]
+    for own, drawn in (("width_px", "width_px"), ("height_px", "image_height_px")):
+        found[own] = p[drawn][i].item() if known else 0.0
     return found
 
 

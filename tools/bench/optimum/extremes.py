@@ -162,6 +162,7 @@ def settings_of(case: Case, f: dict[str, float]) -> dict[str, float]:
     middle_px = 0.5 * size_px(f)
     settings = {f"camera.f{axis}_px": f["focal_px"] for axis in "xy"}
     settings |= {f"camera.c{axis}_px": middle_px for axis in "xy"}
+    settings |= {"camera.width_px": 0.0, "camera.height_px": 0.0}
     settings |= {f"camera.offset_m[{i}]": f["arm_m"] * share for i, share in enumerate((0.8, -0.5, 0.33))}
     settings |= {
         "heading_auto": 0.0, "heading_deg": 0.0, "method": float(METHODS[case.method]),

@@ -62,6 +62,17 @@ def _key_of(key: str) -> tuple[str, str]:
     return (owner, name) if owner in CAMERA_NAMES and name in CAMERA_FIELDS else ("", "")
 
 
+def misfits(values: dict[str, float | None]) -> list[str]:
+    """Keys that no camera of this size has, as goe_init() judges: a focal length below a tenth of it, or a principal
+    point farther outside than one image."""
+    bad = []
+    for size_name, focal_name, center_name in (("width", "fx", "cx"), ("height", "fy", "cy")):
+        size, focal, center = (values[name] or 0.0 for name in (size_name, focal_name, center_name))
+        bad += [focal_name] if focal < 0.1 * size else []
+        bad += [center_name] if not -size <= center <= 2.0 * size else []
+    return bad
+
+
 def read_cameras(path: Path) -> list[Camera]:
     """Reads camera.ini with one or two cameras; an unknown, repeated, missing or non-numeric key is a LogError."""
     path = Path(path)
@@ -95,6 +106,8 @@ def read_cameras(path: Path) -> list[Camera]:
         for name in REQUIRED_CAMERA_FIELDS:
             if name not in values:
                 raise LogError(path, 0, f"{owner}.{name}", "missing")
+        for own in misfits(values):
+            raise LogError(path, 0, f"{owner}.{own}", "does not fit the size of the image")
     heading = found[CAMERA_NAMES[0]].get("heading_deg")
     return [Camera(**values | {"heading_deg": heading}) for values in found.values()]  # type: ignore[arg-type]
 

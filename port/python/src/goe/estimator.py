@@ -39,7 +39,7 @@ class Estimator(Renamed):
         bad = ffi.new("const char **")
         status = lib.goe_python_init(self._c, ffi.from_buffer("double[]", values), self._cameras, bad)
         if status != Status.OK:
-            raise SettingError(ffi.string(bad[0]).decode(), ": refused by the library")
+            raise SettingError(ffi.string(bad[0]).decode(), ": does not fit the size of the image")
 
     def update(self, image: Image) -> Estimate:
         """Takes one image, also one without a detection, and returns the estimate after it.

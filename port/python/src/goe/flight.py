@@ -394,7 +394,8 @@ class Flight:
         )  # fmt: skip
         if status != FlightStatus.OK:
             name = ffi.string(bad[0]).decode() if bad[0] != ffi.NULL else "settings"
-            raise SettingError(name, ": refused by the flight layer, which needs the size of every camera's image")
+            needs = "the size of every camera's image" if "camera" in name else "a whole number"
+            raise SettingError(name, f": refused by the flight layer, which needs {needs}")
 
     def attitude(self, sample: Attitude) -> FlightStatus:
         """Takes a sample of the attitude; those closer than 20 ms are thinned.

@@ -10,7 +10,7 @@ use goe::flight::{
 use goe::{Hazard, Image, Length, Method, Model};
 
 use crate::hash::Hash;
-use crate::logs::{tracks, LoggedTrack};
+use crate::logs::{tracks, LoggedImage, LoggedTrack};
 
 const IMAGE_PX: f32 = 1280.0;
 const LATE: usize = 2; // images
