@@ -224,7 +224,8 @@ def velocity_of(track: LoggedTrack, k: int) -> np.ndarray:
     if k == 0:
         return np.array(PLAN.velocity_ned_m_s, np.float32)
     now, before = track.images[k], track.images[k - 1]
-    s = np.float32(now.time_us - before.time_us) * np.float32(1e-6)
+    between_us = (time_of(track, k) - time_of(track, k - 1) + 2**31) % 2**32 - 2**31
+    s = np.float32(between_us) * np.float32(1e-6)
     return (np.array(now.numbers[:3], np.float32) - np.array(before.numbers[:3], np.float32)) / s
 
 

@@ -92,7 +92,7 @@ static void find_velocity(const logged_track_t *track, int k, float velocity_ned
     }
     replay_read_image(&logged_images[track->first + k], &now);
     replay_read_image(&logged_images[track->first + k - 1], &before);
-    const float s = (float)(now.pose.time_us - before.pose.time_us) * 1.0e-6f;
+    const float s = (float)(int32_t)(time_of(track, k) - time_of(track, k - 1)) * 1.0e-6f;
     for (int i = 0; i < 3; i++) {
         velocity_ned_m_s[i] = (now.pose.position_ned_m[i] - before.pose.position_ned_m[i]) / s;
     }

@@ -10,7 +10,7 @@ use goe::flight::{
 use goe::{Hazard, Image, Length, Method, Model};
 
 use crate::hash::Hash;
-use crate::logs::{tracks, LoggedImage, LoggedTrack};
+use crate::logs::{tracks, LoggedTrack};
 
 const IMAGE_PX: f32 = 1280.0;
 const LATE: usize = 2; // images
@@ -112,12 +112,12 @@ fn time_of(track: &LoggedTrack, k: usize) -> u32 {
 }
 
 /// The velocity that the logs lack: the change of the position since the image before, so that the two agree.
-fn velocity_of(images: &[LoggedImage], k: usize) -> [f32; 3] {
+fn velocity_of(track: &LoggedTrack, k: usize) -> [f32; 3] {
     if k == 0 {
         return [15.0, 1.0, -0.5];
     }
-    let (now, before) = (images[k].image().pose, images[k - 1].image().pose);
-    let s = (now.time_us - before.time_us) as f32 * 1.0e-6;
+    let (now, before) = (track.images()[k].image().pose, track.images()[k - 1].image().pose);
+    let s = time_of(track, k).wrapping_sub(time_of(track, k - 1)) as i32 as f32 * 1.0e-6;
     std::array::from_fn(|i| (now.position_ned_m[i] - before.position_ned_m[i]) / s)
 }
 
@@ -210,7 +210,7 @@ fn fly(hash: &mut Hash, track: &LoggedTrack) -> u32 {
     hash.word(0);
     let mut frames = 0;
     for (k, logged) in track.images().iter().enumerate() {
-        give_samples(hash, flight, time_of(track, k), &logged.image(), velocity_of(track.images(), k));
+        give_samples(hash, flight, time_of(track, k), &logged.image(), velocity_of(track, k));
         if k >= LATE {
             let detections = [detection(&track.images()[k - LATE].image())];
             let capture = Capture::Autopilot {
