@@ -75,9 +75,9 @@ GOE_NODISCARD goe_status_t goe_hazard(const goe_estimator_t *estimator, const go
 /* When to act. Margin and clearance are in goe_intent_t. */
 typedef struct {
     float conflict_probability_max; /* act at this probability or above it; 0 to 1; default 0.1 */
-    float act_within_s;             /* ... and if the aircraft may reach the obstacle within this time, or before it has
-                                     * flown the margin: the duration of the maneuver and some seconds to decide;
-                                     * 0 to 1e4; default 12 */
+    float act_within_s;             /* ... and if the aircraft may reach the obstacle within this time, or is too near
+                                     * already: the duration of the maneuver and some seconds to decide; 0 to 1e4;
+                                     * default 12 */
     float suspect_factor;           /* multiplies margin and clearance of a suspect estimate; 1 to 100; default 1.5 */
     float stale_growth_m_s;         /* growth of margin and clearance without a new estimate; 0 to 100; default 1 */
 } goe_rule_t;

@@ -6,7 +6,8 @@
 #include "goe_settings_list.h"
 #include "maths/goe_scalar.h"
 
-#define FOCAL_MIN 0.1f /* of the image's size: a view of 157 degrees, which no lens model here describes */
+#define FOCAL_MIN 0.05f /* of the image's size: a view of 169 degrees, which no lens model here describes */
+#define BEYOND_MAX 1.5f /* focal lengths of the principal point beyond the image, which may be a part of the sensor's */
 
 enum { SETTING_REAL, SETTING_COUNT, SETTING_TRUTH, SETTING_CHOICE };
 
@@ -112,7 +113,8 @@ static const char *implausible(const goe_camera_t *camera) {
         if (size_px > 0.0f && focals_px[i] < FOCAL_MIN * size_px) {
             return focal_names[i];
         }
-        if (size_px > 0.0f && !(centers_px[i] >= -size_px && centers_px[i] <= 2.0f * size_px)) {
+        const float beyond_px = goe_larger(-centers_px[i], centers_px[i] - size_px);
+        if (size_px > 0.0f && beyond_px > BEYOND_MAX * focals_px[i]) {
             return center_names[i];
         }
     }

@@ -92,21 +92,12 @@ static bool is_misplaced(const goe_estimate_t *estimate) {
     return estimate->reason == GOE_REASON_MOVES && (estimate->valid & GOE_HAS_VELOCITY) == 0u;
 }
 
-/* Whether the aircraft violates the margin before it has flown that far. At a creeping speed the closest approach is a long time ahead,
- * and the violation may be now. */
-static bool is_near(const goe_estimate_t *estimate, const goe_hazard_t *met, const goe_intent_t *intent) {
-    const float north_m_s = intent->velocity_ned_m_s[0] - estimate->velocity_north_m_s; /* 0 unless valid */
-    const float east_m_s = intent->velocity_ned_m_s[1] - estimate->velocity_east_m_s;
-    return sqrtf(north_m_s * north_m_s + east_m_s * east_m_s) * met->tcpa_s <= intent->margin_m;
-}
-
 /* Between the two bounds of the time, and between a small probability and a distance that is kept, too little is known to clear. */
-static goe_decision_t decision_of(const goe_estimate_t *estimate, const goe_hazard_t *met, const goe_intent_t *intent,
-                                  const goe_rule_t *rule) {
+static goe_decision_t decision_of(const goe_hazard_t *met, const goe_intent_t *intent, const goe_rule_t *rule) {
     if (met->conflict_probability < rule->conflict_probability_max) {
         return is_outside(met, intent) ? GOE_DECISION_CLEAR : GOE_DECISION_UNKNOWN;
     }
-    if (goe_earliest_tcpa_s(met) <= rule->act_within_s || is_near(estimate, met, intent)) {
+    if (goe_earliest_tcpa_s(met) <= rule->act_within_s) {
         return GOE_DECISION_ACT;
     }
     return met->tcpa_s - SURE_SIGMA * met->tcpa_sd_s > rule->act_within_s ? GOE_DECISION_CLEAR : GOE_DECISION_UNKNOWN;
@@ -129,9 +120,30 @@ static GOE_NOINLINE goe_decision_t judge(const goe_estimator_t *estimator, const
     if (status != GOE_OK) {
         return status == GOE_CONVERGING ? GOE_DECISION_UNKNOWN : GOE_DECISION_KEEP;
     }
-    const goe_decision_t decision = decision_of(&estimator->estimate, met, &wide, rule);
+    const goe_decision_t decision = decision_of(met, &wide, rule);
     const bool clears = since_s <= SILENT_S && !is_doubted(estimator) && !is_misplaced(&estimator->estimate);
     return decision == GOE_DECISION_CLEAR && !clears ? GOE_DECISION_UNKNOWN : decision;
+}
+
+/* Whether the aircraft is too near now. At a creeping speed the closest approach is a long time ahead, and says nothing of that; the hazard
+ * of an aircraft that keeps its distance does. A faster one reaches the obstacle within the rule's time from there. */
+static GOE_NOINLINE bool is_too_near(const goe_estimator_t *estimator, const goe_intent_t *intent,
+                                     const goe_rule_t *rule, goe_hazard_t *met) {
+    const goe_estimate_t *estimate = &estimator->estimate;
+    const float north_m_s = intent->velocity_ned_m_s[0] - estimate->velocity_north_m_s; /* 0 unless valid */
+    const float east_m_s = intent->velocity_ned_m_s[1] - estimate->velocity_east_m_s;
+    if (sqrtf(north_m_s * north_m_s + east_m_s * east_m_s) * rule->act_within_s > intent->margin_m) {
+        return false;
+    }
+    goe_intent_t still = *intent;
+    goe_hazard_t now;
+    still.velocity_ned_m_s[0] = estimate->velocity_north_m_s;
+    still.velocity_ned_m_s[1] = estimate->velocity_east_m_s;
+    if (judge(estimator, &still, intent->since_image_s, rule, &now) != GOE_DECISION_ACT) {
+        return false;
+    }
+    *met = now;
+    return true;
 }
 
 /* The caller may not know that images are refused, and since when. So the rule also judges the time of the newest of them. That
@@ -159,6 +171,10 @@ goe_decision_t goe_decide(const goe_estimator_t *estimator, const goe_intent_t *
     goe_decision_t decision = judge(estimator, intent, intent ? intent->since_image_s : 0.0f, used, &met);
     if (decision == GOE_DECISION_CLEAR || decision == GOE_DECISION_UNKNOWN) {
         decision = judge_refused(estimator, intent, used, decision, &met);
+    }
+    if ((decision == GOE_DECISION_CLEAR || decision == GOE_DECISION_UNKNOWN) &&
+        is_too_near(estimator, intent, used, &met)) {
+        decision = GOE_DECISION_ACT;
     }
     if (hazard) {
         *hazard = met;

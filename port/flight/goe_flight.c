@@ -31,6 +31,9 @@
 /* Of an obstacle, as goe_flight.h lists it. */
 #define REPORTED (GOE_HAS_POSITION | GOE_HAS_HEIGHT | GOE_HAS_WIDTH | GOE_HAS_LENGTH | GOE_HAS_ORIENTATION)
 
+#define UNLOCATED_DEG 5.0f /* by which the bearings of a detection without a place may change before the next one */
+#define DEPTH_SHARE 0.25f  /* of the range, by which an obstacle of unknown length may reach nearer than its outline */
+
 #define OUTLINED (GOE_HAS_POSITION | GOE_HAS_WIDTH) /* of an obstacle with an outline at a place */
 
 /* ---------------------------------------------------------------------------------------------------------- settings -- */
@@ -781,27 +784,32 @@ static float nearer_m(const goe_flight_slot_t *slot, const float away_ne_m[2]) {
     return slot->suspect ? POSITION_MAX_M : 2.0f * goe_flight_slot_sd_along_m(slot, away_ne_m[0], away_ne_m[1]);
 }
 
-/* Where an obstacle was detected that has no position or an old one, or whose width is not known. The box of another one is wider than its
- * circle if the obstacle reaches far back, as a wall at the side does: it counts, too, unless all of the circle is beyond max_cm. */
-static bool closes_box(const goe_flight_t *flight, const goe_flight_slot_t *slot, uint32_t max_cm) {
+/* The box of an obstacle with an outline reaches beyond it if the obstacle reaches far back, as a wall at the side does, and then its near
+ * end may be nearer than its sigma says. So the box counts, unless all of the outline is well beyond max_cm. */
+static bool may_reach(const goe_flight_t *flight, const goe_flight_slot_t *slot, uint32_t max_cm) {
     const goe_flight_history_position_t *own = goe_flight_history_newest_position(&flight->history);
-    if (!slot->used || (slot->valid & OUTLINED) != OUTLINED || slot->unlocated || !own) {
-        return slot->used;
+    if (!own || !slot->in_view || is_passed_over(flight, slot)) {
+        return false;
     }
     const float away[2] = {slot->center_ne_m[0] - own->ned_m[0], slot->center_ne_m[1] - own->ned_m[1]};
-    return slot->in_view && !is_passed_over(flight, slot) &&
-           goe_flight_geometry_reaches(max_cm, away, goe_flight_slot_radius_m(slot), nearer_m(slot, away));
+    const float far_m =
+        (slot->valid & GOE_HAS_LENGTH) != 0u ? 0.0f : DEPTH_SHARE * sqrtf(away[0] * away[0] + away[1] * away[1]);
+    return goe_flight_geometry_reaches(max_cm, away, goe_flight_slot_radius_m(slot), nearer_m(slot, away) + far_m);
 }
 
+/* Where an obstacle was detected that has no position or an old one, or whose width is not known; and the boxes of the others. */
 static void close_sectors(const goe_flight_t *flight, uint32_t max_cm, uint16_t sector_cm[GOE_FLIGHT_SECTORS]) {
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
-        if (closes_box(flight, &flight->slot[i], max_cm)) {
-            goe_flight_geometry_close_sectors(sector_cm, &flight->slot[i].bearings);
+        const goe_flight_slot_t *slot = &flight->slot[i];
+        if (slot->used && ((slot->valid & OUTLINED) != OUTLINED || slot->unlocated)) {
+            goe_flight_geometry_close_sectors(sector_cm, &slot->bearings, UNLOCATED_DEG);
+        } else if (slot->used && may_reach(flight, slot, max_cm)) {
+            goe_flight_geometry_close_sectors(sector_cm, &slot->bearings, 0.0f);
         }
     }
     for (int i = 0; i < GOE_FLIGHT_CANDIDATES; i++) {
         if (flight->waiting.place[i].images != 0) {
-            goe_flight_geometry_close_sectors(sector_cm, &flight->waiting.place[i].bearings);
+            goe_flight_geometry_close_sectors(sector_cm, &flight->waiting.place[i].bearings, UNLOCATED_DEG);
         }
     }
 }

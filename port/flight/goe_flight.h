@@ -242,8 +242,8 @@ typedef struct {
     bool suspect;          /* the worst obstacle's estimate is suspect: margins were widened */
     bool detector_alive;   /* every camera sent a readable frame within detector_timeout_s: an empty one, or one with a
                               valid detection. Once false, it stays false until the next such frame */
-    bool pose_agrees;      /* in the latest 10 s no position contradicted the velocities: none was off by more than 3 m
-                              (down 2 m) plus 30 % of the way of a second. If false, a convention is wrong (axes, sign,
+    bool pose_agrees;      /* in the latest 10 s no position contradicted the velocities: none was off by more than 4 m
+                              (down 3 m) plus 30 % of the way of a second, or 10 % of the way of 10 s. If false, a convention is wrong (axes, sign,
                               unit, time), or the position jumped: nothing is clear, and hazards may be missing. The
                               layer corrects nothing */
     bool pose_alive;       /* pose_agrees, and samples of attitude and position came within 0.5 s */
@@ -331,9 +331,17 @@ typedef struct { /* goe_marks.c: the autopilot's reset counters */
     float jumps_ned_m[3];                /* sum of all known jumps, limited to 1e6 */
 } goe_flight_marks_t;
 
-typedef struct { /* goe_travel.c: the way by the velocities, and by the positions */
-    uint32_t begun_us, newest_us, doubted_us;
-    float begun_ned_m[3], by_velocity_m[3];
+typedef struct { /* goe_travel.c: a way by the velocities, its length, and where it began by the positions */
+    uint32_t begun_us;
+    float begun_ned_m[3], by_velocity_m[3], across_m, down_m;
+} goe_flight_way_t;
+
+#define GOE_FLIGHT_TRAVELS 2
+
+typedef struct { /* goe_travel.c */
+    goe_flight_way_t way[GOE_FLIGHT_TRAVELS]; /* of one second, and of ten */
+    uint32_t newest_us, doubted_us;
+    float velocity_ned_m_s[3];
     goe_flag_t begun, doubted;
 } goe_flight_travel_t;
 

@@ -241,10 +241,11 @@ void goe_flight_geometry_bearings(const goe_flight_camera_t *camera, const float
     bearings->half_deg = unknown ? GOE_FLIGHT_ANY_BEARING : (int16_t)half_deg;
 }
 
-void goe_flight_geometry_close_sectors(uint16_t sector_cm[GOE_FLIGHT_SECTORS], const goe_flight_bearings_t *bearings) {
+void goe_flight_geometry_close_sectors(uint16_t sector_cm[GOE_FLIGHT_SECTORS], const goe_flight_bearings_t *bearings,
+                                       float widen_deg) {
     for (int i = 0; i < GOE_FLIGHT_SECTORS; i++) {
         const float off_deg = apart_deg((float)bearings->middle_deg, (float)i * SECTOR_DEG);
-        if (goe_flight_within(off_deg, (float)bearings->half_deg + 1.5f * SECTOR_DEG)) {
+        if (goe_flight_within(off_deg, (float)bearings->half_deg + widen_deg + 0.5f * SECTOR_DEG)) {
             sector_cm[i] = GOE_FLIGHT_SECTOR_UNKNOWN;
         }
     }

@@ -29,8 +29,9 @@ void goe_flight_geometry_open_sectors(uint16_t sector_cm[GOE_FLIGHT_SECTORS], ui
 void goe_flight_geometry_bearings(const goe_flight_camera_t *camera, const float q[4], const float extent_px[4],
                                   goe_flight_bearings_t *bearings);
 
-/* The sectors of these bearings, and one more on each side, are unknown. */
-void goe_flight_geometry_close_sectors(uint16_t sector_cm[GOE_FLIGHT_SECTORS], const goe_flight_bearings_t *bearings);
+/* The sectors that these bearings touch, if they are wider by widen_deg on each side, are unknown. */
+void goe_flight_geometry_close_sectors(uint16_t sector_cm[GOE_FLIGHT_SECTORS], const goe_flight_bearings_t *bearings,
+                                       float widen_deg);
 
 /* Whether a circle, moved nearer by nearer_m, is within max_cm. */
 bool goe_flight_geometry_reaches(uint32_t max_cm, const float away_ne_m[2], float radius_m, float nearer_m);

@@ -195,21 +195,23 @@ static void the_defaults_lack_only_the_camera(void) {
     check_good();
 }
 
-/* GIVEN a size THEN a focal length in millimeters and the principal point of another size are refused; without a size they pass. */
+/* GIVEN a size THEN a focal length in millimeters and the principal point of another sensor are refused, but not a part of the sensor's
+ * image; without a size they pass. */
 static void a_camera_fits_its_size(void) {
     static const struct {
         const char *field;
         size_t at;
         float good[2], bad[2];
-    } cases[] = {{"camera.fx_px", offsetof(goe_settings_t, camera.fx_px), {128.0f, 9.0e4f}, {127.0f, 4.2f}},
-                 {"camera.fy_px", offsetof(goe_settings_t, camera.fy_px), {72.0f, 9.0e4f}, {71.0f, 4.2f}},
-                 {"camera.cx_px", offsetof(goe_settings_t, camera.cx_px), {-1280.0f, 2560.0f}, {-1281.0f, 2561.0f}},
-                 {"camera.cy_px", offsetof(goe_settings_t, camera.cy_px), {-720.0f, 1440.0f}, {-721.0f, 1441.0f}}};
+    } cases[] = {{"camera.fx_px", offsetof(goe_settings_t, camera.fx_px), {64.0f, 9.0e4f}, {63.9f, 4.2f}},
+                 {"camera.fy_px", offsetof(goe_settings_t, camera.fy_px), {36.0f, 9.0e4f}, {35.9f, 4.2f}},
+                 {"camera.cx_px", offsetof(goe_settings_t, camera.cx_px), {-1350.0f, 2630.0f}, {-1351.0f, 2631.0f}},
+                 {"camera.cy_px", offsetof(goe_settings_t, camera.cy_px), {-1350.0f, 2070.0f}, {-1351.0f, 2071.0f}}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         for (int k = 0; k < 2; k++) {
             setUp();
             settings.camera.width_px = 1280.0f;
             settings.camera.height_px = 720.0f;
+            settings.camera.fx_px = settings.camera.fy_px = 900.0f;
             memcpy((char *)&settings + cases[i].at, &cases[i].good[k], sizeof(float));
             check_good();
             memcpy((char *)&settings + cases[i].at, &cases[i].bad[k], sizeof(float));

@@ -63,13 +63,13 @@ def _key_of(key: str) -> tuple[str, str]:
 
 
 def misfits(values: dict[str, float | None]) -> list[str]:
-    """Keys that no camera of this size has, as goe_init() judges: a focal length below a tenth of it, or a principal
-    point farther outside than one image."""
+    """Keys that no camera of this size has, as goe_init() judges: a focal length below a twentieth of it, or a
+    principal point farther outside than 1.5 focal lengths."""
     bad = []
     for size_name, focal_name, center_name in (("width", "fx", "cx"), ("height", "fy", "cy")):
         size, focal, center = (values[name] or 0.0 for name in (size_name, focal_name, center_name))
-        bad += [focal_name] if focal < 0.1 * size else []
-        bad += [center_name] if not -size <= center <= 2.0 * size else []
+        bad += [focal_name] if focal < 0.05 * size else []
+        bad += [center_name] if size and max(-center, center - size) > 1.5 * focal else []
     return bad
 
 

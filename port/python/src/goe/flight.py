@@ -257,7 +257,8 @@ class Assessment:
     unplaced: int
     """Detected obstacles without a position: no order avoids them."""
     pose_agrees: bool
-    """In the latest 10 s no position contradicted the velocities. If false, a convention is wrong, or the position jumped."""
+    """In the latest 10 s no position contradicted the velocities. If false, a convention is wrong, or the position
+    jumped."""
 
 
 class Place(NamedTuple):
