@@ -151,6 +151,26 @@ def test_the_noise_of_boxes_is_found(boxes: list[Path], capsys: pytest.CaptureFi
     assert shares is not None and all(float(share) > 80.0 for share in shares.groups())  # twelve tracks
 
 
+def test_rows_before_the_first_box_change_nothing(
+    boxes: list[Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The library's track starts with the first box, so the truth is relative to that image."""
+    printed = []
+    for name in ("cut", "blank"):
+        logs = []
+        for box in boxes[:4]:
+            log = read_log(box)
+            first_s = next(frame.t_s for frame in log.frames if frame.box_px is not None)
+            late = [f for f in log.frames if f.t_s >= first_s + 0.6]
+            early = [replace(f, box_px=None) for f in log.frames if f.t_s < first_s + 0.6]
+            log.frames = [*early, *late] if name == "blank" else late
+            write_log(tmp_path / name / box.name, log)
+            logs.append(str(tmp_path / name / box.name))
+        assert main(["noise", *logs]) == 0
+        printed.append(capsys.readouterr().out)
+    assert "within 2 sigma" in printed[0] and printed[1] == printed[0]
+
+
 def test_the_line_is_one_that_goe_replay_takes(boxes: list[Path], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["noise", *map(str, boxes[:4])]) == 0
     lines = capsys.readouterr().out.splitlines()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import dropwhile
 from pathlib import Path
 
 import numpy as np
@@ -46,7 +47,8 @@ def _whole(frame: Frame) -> bool:
 
 def box_tracks(folder: Path) -> Iterator[tuple[Flight, bool]]:
     """A flight for each track with boxes, split at resets of the autopilot's filter, and whether its truth is known.
-    Leaves out tracks with a moving truth, and images with a bad pose."""
+    Leaves out tracks with a moving truth, images with a bad pose, and those before the first box, where the library's
+    track starts."""
     log = read_log(folder)
     if log.camera2 is not None:
         raise LogError(folder / "camera.ini", 0, "camera2", "a second camera; noise is fitted to one camera")
@@ -57,8 +59,9 @@ def box_tracks(folder: Path) -> Iterator[tuple[Flight, bool]]:
         good = [frame for frame in frames if _whole(frame)]
         for count in dict.fromkeys(frame.reset_count for frame in good):
             part = [frame for frame in good if frame.reset_count == count]
-            if any(frame.box_px is not None for frame in part):
-                known = truth is not None and math.isfinite(truth.center_n_m) and part[0] is good[0]
+            part = list(dropwhile(lambda frame: frame.box_px is None, part))
+            if part:
+                known = truth is not None and math.isfinite(truth.center_n_m) and count == good[0].reset_count
                 yield _flight_of(log.camera, part, truth if known else None, f"{folder.name}/{key}"), known
 
 
