@@ -183,6 +183,55 @@ def test_a_known_jump_is_taken_along(convert: Callable[..., tuple[ObservationLog
         assert np.abs(np.array([f.position_m for f in frames]) - wanted).max() < 0.02
 
 
+UNCOUNTED = {  # NED m and degrees, and what the command prints
+    (2.5, -3.0, 0.0, 0.0): ": a step: +2.50, -3.00, -0.00 m",
+    (0.0, 0.0, -8.0, 0.0): ": a step: -0.00, +0.00, -8.00 m",
+    (20.0, 0.0, 0.0, 0.0): ": a step: +20.00, +0.00, -0.00 m",
+    (0.0, 0.0, 0.0, 11.0): ": a turn by 11.0 deg: the track is split",
+}
+
+
+@pytest.mark.parametrize("jump", UNCOUNTED)
+def test_a_jump_that_px4_does_not_count_is_detected(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], jump: tuple[float, ...]
+) -> None:
+    at = START_S + 5.34
+    flown = replace(FLOWN, faults=[Fault(at, jump[:3], yaw_deg=jump[3])])  # type: ignore[arg-type]
+    topics = {
+        name: [column for column in columns if "reset_counter" not in column[1]]
+        for name, columns in ulog_topics(flown).items()
+    }
+    write_ulog(tmp_path / "a.ulg", topics)
+    write_detections(tmp_path, flown, 0.0)
+    assert main(words("ulog", tmp_path / "a.ulg", "--offset", "0")) == 0
+    text = capsys.readouterr().out
+    assert text.count("reset at ") == 1
+    printed, wanted = (re.sub(r"[+-]0\.00", "0", line) for line in (text, UNCOUNTED[jump]))
+    assert wanted in printed
+    _, after = around(read_log(tmp_path / "log").tracks()[4], at)
+    assert after.reset_count == 1
+    assert after.reset_delta_m == (None if jump[3] else pytest.approx(jump[:3], abs=0.05))
+
+
+@pytest.mark.parametrize("fault", [Fault(START_S + 5.34, (4.0, 1.0, -3.0)), Fault(START_S + 5.34, yaw_deg=20.0)])
+def test_a_counted_jump_is_counted_once(convert: Callable[..., tuple[ObservationLog, str]], fault: Fault) -> None:
+    log, text = convert("ulog", replace(FLOWN, faults=[fault]), 0.0, "--offset", "0")
+    assert text.count("reset at ") == 1 and "_reset_counter" in text
+    assert log.frames[-1].reset_count == 1
+
+
+def test_a_velocity_in_another_unit_is_no_jump_at_each_sample(tmp_path: Path) -> None:
+    topics = ulog_topics(replace(FLOWN, rate_hz=10.0))
+    topics["vehicle_local_position"] = [
+        (kind, name, values / 0.3048 if name in ("vx", "vy", "vz") else values)
+        for kind, name, values in topics["vehicle_local_position"]
+    ]
+    write_ulog(tmp_path / "a.ulg", topics)
+    write_detections(tmp_path, FLOWN, 0.0)
+    assert main(words("ulog", tmp_path / "a.ulg", "--offset", "0")) == 0
+    assert all(frame.reset_count == 0 for frame in read_log(tmp_path / "log").frames)
+
+
 def test_two_jumps_between_two_images_are_summed(convert: Callable[..., tuple[ObservationLog, str]]) -> None:
     faults = [Fault(START_S + 5.28, (1.0, 2.0, 0.0)), Fault(START_S + 5.34, (0.5, -4.0, 0.0))]
     log, _ = convert("ulog", replace(FLOWN, faults=faults), 0.0, "--offset", "0")

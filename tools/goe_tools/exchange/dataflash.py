@@ -12,7 +12,7 @@ import numpy as np
 
 from ..logs.fields import LogError
 from .recording import Jump, Recording, Series, made_upright, make_attitude, make_series
-from .resets import attitude_jumps, merged, position_jumps, unexplained_m
+from .resets import attitude_jumps, merged, position_jumps, unexplained_m, unreported
 
 FILTERS = ("XK", "NK")
 EVENT_YAW_RESET = 62
@@ -152,11 +152,6 @@ def _clearance(path: Path, messages: dict[str, Table], attitude: Series) -> Seri
     return None
 
 
-def _unreported(found: list[Jump], reported: list[Jump]) -> list[Jump]:
-    """Jumps detected from motion that no reported jump explains within the search time."""
-    return [one for one in found if all(abs(one.time_s - other.time_s) > JUMP_SEARCH_S for other in reported)]
-
-
 def read_dataflash(path: Path) -> Recording:
     wanted = [f"{kind}{part}" for kind in FILTERS for part in ("F1", "Q", "F4")]
     messages = _messages(path, [*wanted, "IMU", "RFND", "TERR", "EV"])
@@ -182,9 +177,9 @@ def read_dataflash(path: Path) -> Recording:
     attitude = make_attitude(path, f"{name_q}.Q1 to Q4", _time_s(path, name_q, turn), q)
     gyro = _gyro(path, messages.get("IMU"))
     reported = _reported_jumps(path, name_4, status, position, velocity) + changes + _events(path, messages.get("EV"))
-    found = _unreported(position_jumps(position, velocity, f"{name_1}: a step"), reported)
+    found = unreported(position_jumps(position, velocity, f"{name_1}: a step"), reported, JUMP_SEARCH_S)
     turned = attitude_jumps(attitude, gyro, f"{name_q}: a turn by") if gyro is not None else []
-    found += _unreported(turned, [jump for jump in reported if jump.delta_m is None])
+    found += unreported(turned, [jump for jump in reported if jump.delta_m is None], JUMP_SEARCH_S)
     return Recording(
         path, position, attitude, gyro, velocity, _clearance(path, messages, attitude), merged(reported + found)
     )

@@ -15,6 +15,7 @@ STEP_SHARE = 0.1  # ... and above this share of the distance since the last samp
 TURN_RAD = math.radians(3.0)  # an attitude error above this ...
 TURN_SHARE = 0.2  # ... and above this share of the turn is a jump
 LONGEST_S = 0.5  # between samples; jumps in a longer gap are undetectable
+RARE, RARE_SHARE = 5, 0.02  # more steps than both, of the samples: no resets, but signals that do not belong together
 
 
 def unexplained_m(position: Series, velocity: Series) -> np.ndarray:
@@ -24,16 +25,22 @@ def unexplained_m(position: Series, velocity: Series) -> np.ndarray:
     return np.diff(position.value, axis=0) - way
 
 
+def _if_rare(jumps: list[Jump], samples: int) -> list[Jump]:
+    """No jumps if there are too many for resets: then unit, axes or sign of a signal are wrong."""
+    return jumps if len(jumps) <= max(RARE, RARE_SHARE * samples) else []
+
+
 def position_jumps(position: Series, velocity: Series, cause: str) -> list[Jump]:
     """Steps of the position that the velocity does not explain, with their size."""
     off = unexplained_m(position, velocity)
     way = np.linalg.norm(np.diff(position.value, axis=0) - off, axis=1)
     large = np.linalg.norm(off, axis=1) > STEP_M + STEP_SHARE * way
     large &= np.diff(position.time_s) <= LONGEST_S
-    return [
+    jumps = [
         Jump(float(position.time_s[k + 1]), tuple(float(x) for x in off[k]), cause)  # type: ignore[arg-type]
         for k in np.flatnonzero(large)
     ]
+    return _if_rare(jumps, len(position.time_s))
 
 
 def attitude_jumps(attitude: Series, gyro: Series, cause: str) -> list[Jump]:
@@ -49,7 +56,12 @@ def attitude_jumps(attitude: Series, gyro: Series, cause: str) -> list[Jump]:
         off = 2.0 * math.atan2(float(np.linalg.norm(left[1:])), abs(float(left[0])))
         if off > TURN_RAD + TURN_SHARE * (float(angle[k]) - off):
             result.append(Jump(float(end), None, f"{cause} {math.degrees(off):.1f} deg"))
-    return result
+    return _if_rare(result, len(attitude.time_s))
+
+
+def unreported(found: list[Jump], reported: list[Jump], within_s: float) -> list[Jump]:
+    """Jumps detected from motion that no reported jump explains within this time."""
+    return [one for one in found if all(abs(one.time_s - other.time_s) > within_s for other in reported)]
 
 
 def merged(jumps: list[Jump]) -> list[Jump]:

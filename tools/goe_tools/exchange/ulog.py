@@ -2,7 +2,9 @@
 
 vehicle_local_position: x, y, z, vx, vy, vz, dist_bottom; xy_reset_counter with delta_xy, z_reset_counter with delta_z
 vehicle_attitude: q; quat_reset_counter
-vehicle_angular_velocity: xyz; in older logs sensor_combined: gyro_rad"""
+vehicle_angular_velocity: xyz; in older logs sensor_combined: gyro_rad
+
+Jumps that no counter reports are detected from the velocity and the rates."""
 
 from __future__ import annotations
 
@@ -12,12 +14,13 @@ import numpy as np
 
 from ..logs.fields import LogError
 from .recording import Jump, Recording, Series, make_attitude, make_series
-from .resets import merged, unexplained_m
+from .resets import attitude_jumps, merged, position_jumps, unexplained_m, unreported
 
 POSITION, ATTITUDE = "vehicle_local_position", "vehicle_attitude"
 GYROS = (("vehicle_angular_velocity", "xyz"), ("sensor_combined", "gyro_rad"))
 US = 1e-6
 AGREES_M, AGREES_SHARE = 0.5, 0.2  # agreement of a reported jump with the positions around it
+NEAR_S = 0.25  # a step as near as this to a reported jump is that jump
 
 Columns = dict[str, np.ndarray]
 
@@ -138,9 +141,13 @@ def read_ulog(path: Path) -> Recording:
     q = _columns(path, ATTITUDE, turn, *(f"q[{i}]" for i in range(4)))
     attitude_s = _time_s(turn)
     attitude = make_attitude(path, f"{ATTITUDE}.q", attitude_s, q)
-    jumps = _position_jumps(place, time_s)
+    gyro = _gyro(path, topics)
+    jumps, turns = _position_jumps(place, time_s), _attitude_jumps(turn, attitude_s)
     notes += _doubts(jumps, position, velocity)
+    steps = position_jumps(position, velocity, f"{POSITION}: a step") if velocity is not None else []
+    twists = attitude_jumps(attitude, gyro, f"{ATTITUDE}: a turn by") if gyro is not None else []
+    unannounced = unreported(steps, jumps, NEAR_S) + unreported(twists, turns, NEAR_S)
     return Recording(
-        path, position, attitude, _gyro(path, topics), velocity, _clearance(path, place, time_s),
-        merged(jumps + _attitude_jumps(turn, attitude_s)), notes,
+        path, position, attitude, gyro, velocity, _clearance(path, place, time_s),
+        merged(jumps + turns + unannounced), notes,
     )  # fmt: skip
