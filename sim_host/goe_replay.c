@@ -293,7 +293,7 @@ static bool too_many_tracks(const options_t *options, const frame_t *frame) {
 
 /* One row, to its track's estimator. */
 static bool replay_row(const options_t *options, const frame_t *frame, track_table_t *tracks, FILE *stream,
-                       goe_estimate_t *estimate, tally_t *tally) {
+                       goe_estimate_t *estimate, tally_t *tally, log_hints_t *hints) {
     goe_image_t image;
     goe_estimator_t *estimator = track_table_get(tracks, frame->id);
     if (estimator == NULL) {
@@ -302,6 +302,9 @@ static bool replay_row(const options_t *options, const frame_t *frame, track_tab
     frame_to_image(frame, &image);
     const goe_status_t status = goe_update(estimator, &image, estimate);
     count_row(tally, status, estimate);
+    if (status == GOE_BAD_TIME && image.pose.time_us != GOE_TIME_UNKNOWN) {
+        log_hints_late(hints, frame);
+    }
     return estimate_write_row(stream, frame->time_text, frame->id, status, estimate, options->residuals != 0) ||
            write_failed(options);
 }
@@ -324,7 +327,7 @@ static bool replay_rows(const options_t *options, frame_reader_t *reader, track_
     while (done && (result = frame_reader_next(reader, &frame, &error)) == FRAME_READER_ROW) {
         log_hints_add(&hints, &frame);
         read_progress_row(&progress, frame_reader_share(reader));
-        done = replay_row(options, &frame, tracks, stream, &estimate, tally);
+        done = replay_row(options, &frame, tracks, stream, &estimate, tally, &hints);
     }
     read_progress_end(&progress);
     if (result == FRAME_READER_ERROR) {

@@ -84,6 +84,7 @@ static void add_height(log_hints_t *hints, const frame_t *frame) {
         hints->below += up < 0.0 && !frame->given[FRAME_AGL_M] ? 1u : 0u;
         return;
     }
+    hints->below += agl < 0.0 ? 1u : 0u;
     const double ratio = agl / up;
     if (hints->heights++ == 0) {
         hints->first_up = up;
@@ -119,6 +120,12 @@ void log_hints_add(log_hints_t *hints, const frame_t *frame) {
     (void)memcpy(hints->last, position, sizeof hints->last);
     add_motion(hints, frame);
     add_height(hints, frame);
+}
+
+void log_hints_late(log_hints_t *hints, const frame_t *frame) {
+    if (hints->late++ == 0) {
+        hints->late_line = frame->line;
+    }
 }
 
 /* ----------------------------------------------------------------------------------------------------------- print -- */
@@ -196,9 +203,11 @@ static double strange_ratio(const log_hints_t *hints) {
 static void print_heights(const log_hints_t *hints, const place_t *place) {
     const double ratio = hints->heights >= IMAGES_MIN ? strange_ratio(hints) : 0.0;
     if (ratio < 0.0 || is_most(hints->below, hints->images)) {
+        const char *below = hints->heights > 0 ? "the camera is below the ground by agl_m"
+                                               : "the camera is below the ground, and agl_m is empty";
         begin(place);
         (void)fprintf(place->stream, "d_m: %s: is it up? d_m is down, negative above the origin\n",
-                      ratio < 0.0 ? "it grows as agl_m does" : "the camera is below the ground, and agl_m is empty");
+                      ratio < 0.0 ? "it grows as agl_m does" : below);
     } else if (ratio > 0.0) {
         begin(place);
         (void)fprintf(place->stream, "%s: %.3g times %s: feet? both are in meters\n", ratio > 1.0 ? "agl_m" : "d_m",
@@ -213,6 +222,13 @@ void log_hints_print(const log_hints_t *hints, const char *program, const char *
         (void)fprintf(stream,
                       "%lu row%s without a finite pose or with a number that is not finite, the first in line %lu\n",
                       hints->broken, hints->broken == 1 ? "" : "s", hints->broken_line);
+    }
+    if (hints->late > 0) {
+        begin(&place);
+        (void)fprintf(stream,
+                      "t_s: %lu row%s not later than the rows of the same id before, the first in line %lu: goe "
+                      "refuses this as bad_time; sort the rows by t_s\n",
+                      hints->late, hints->late == 1 ? " is" : "s are", hints->late_line);
     }
     if (hints->images >= IMAGES_MIN) {
         print_times(hints, &place);

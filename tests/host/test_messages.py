@@ -117,6 +117,7 @@ INVERSE = (
     "qw: the attitude does not fit the motion, and its inverse does: "
     "the quaternion turns the body's axes into north, east, down"
 )
+BELOW_BY_AGL = "d_m: the camera is below the ground by agl_m: is it up? d_m is down, negative above the origin"
 WARNINGS = [
     (times(1e3, "t_s"), MILLISECONDS),
     (times(1e-2, "t_s"), TOO_FAST),
@@ -127,6 +128,8 @@ WARNINGS = [
     (lambda table: change(inverse)(turned(15.0)(table)), INVERSE),
     (lambda table: times(-1.0, "d_m")(descending(table)), UPWARD),
     (change(lambda row: {"d_m": 40, "agl_m": ""}), BELOW),
+    (change(lambda row: {"d_m": 40, "agl_m": -40}), BELOW_BY_AGL),
+    (change(lambda row: {"d_m": -40, "agl_m": -3}), BELOW_BY_AGL),
     (lambda table: times(FOOT, "agl_m")(descending(table)), "agl_m: 3.28 times -d_m: feet? both are in meters"),
     (lambda table: times(FOOT, *PLACE)(descending(table)), "d_m: 3.28 times -agl_m: feet? both are in meters"),
 ]
@@ -224,6 +227,22 @@ def test_rows_that_are_not_numbers(tmp_path: Path, capsys: pytest.CaptureFixture
     text = "3 rows without a finite pose or with a number that is not finite, the first in line 5\n"
     assert said(folder) == (0, f"warning: {folder / 'frames.csv'}: {text}")
     assert python_said(folder, capsys) == f"warning: {folder / 'frames.csv'}: {text}"
+
+
+def test_rows_out_of_the_order_of_time(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Of each id on its own: the rows of one track after those of another are in order."""
+    table = rows()
+    other = [row | {"id": "99"} for row in table]
+    folder = write(tmp_path / "log", [*table, *other])
+    assert said(folder) == (0, "") and python_said(folder, capsys) == ""
+    for moved_by, count in ((1, "1 row is"), (3, "3 rows are")):
+        late = [*table[: 12 - moved_by], table[12], *table[12 - moved_by : 12], *table[13:]]
+        folder = write(tmp_path / str(moved_by), [*late, *other])
+        text = (
+            f"warning: {folder / 'frames.csv'}: t_s: {count} not later than the rows of the same id before, "
+            f"the first in line {15 - moved_by}: goe refuses this as bad_time; sort the rows by t_s\n"
+        )
+        assert said(folder) == (0, text) and python_said(folder, capsys) == text
 
 
 @pytest.mark.parametrize("name", ["frames.csv", "camera.ini"])

@@ -106,8 +106,9 @@ def _of_heights(up: np.ndarray, agl: np.ndarray, given: np.ndarray) -> str:
     end = "is it up? d_m is down, negative above the origin"
     if ratio < 0.0:
         return f"d_m: it grows as agl_m does: {end}"
-    if np.mean(~given & (up < 0.0)) > MOST:
-        return f"d_m: the camera is below the ground, and agl_m is empty: {end}"
+    if np.mean(np.where(given, agl < 0.0, up < 0.0)) > MOST:
+        by = " by agl_m" if known.any() else ", and agl_m is empty"
+        return f"d_m: the camera is below the ground{by}: {end}"
     if ratio:
         name, other = ("agl_m", "-d_m") if ratio > 1.0 else ("d_m", "-agl_m")
         return f"{name}: {1.0 / FOOT_M:.3g} times {other}: feet? both are in meters"

@@ -296,6 +296,8 @@ def read_frames(path: Path, cameras: int = len(CAMERA_NAMES)) -> list[Frame]:
     path = Path(path)
     frames: list[Frame] = []
     broken, first = 0, 0
+    late, first_late = 0, 0
+    latest: dict[int, float] = {}
 
     def check(header: list[str], path: Path, line: int) -> None:
         check_pairs(header, path, line)
@@ -315,9 +317,17 @@ def read_frames(path: Path, cameras: int = len(CAMERA_NAMES)) -> list[Frame]:
             if _is_broken(frame):
                 broken, first = broken + 1, first or line
         frames.append(frame)
+        if frame.t_s > latest.get(frame.id, -math.inf):
+            latest[frame.id] = frame.t_s
+        elif not math.isnan(frame.t_s):
+            late, first_late = late + 1, first_late or line
     if broken:
         rows = "1 row" if broken == 1 else f"{broken} rows"
         warn(path, f"{rows} without a finite pose or with a number that is not finite, the first in line {first}")
+    if late:
+        rows = "1 row is" if late == 1 else f"{late} rows are"
+        where = f"not later than the rows of the same id before, the first in line {first_late}"
+        warn(path, f"t_s: {rows} {where}: goe refuses this as bad_time; sort the rows by t_s")
     return frames
 
 
