@@ -16,13 +16,14 @@ from pathlib import Path
 import numpy as np
 
 from ..flights.rotations import matrices
-from ..logs.fields import LogError
+from ..logs.fields import LogError, warn
 from ..logs.numbers import finite, positive
 from ..logs.obslog import Camera, Frame, ObservationLog, read_cameras
 from ..logs.own_log import write_own_log
 from .clock import find_offset
 from .dataflash import read_dataflash
 from .detections import read_detections, sees
+from .doubts import doubt_of_height, doubt_of_velocity, hints_on_conventions
 from .recording import Poses, Recording, check_size
 from .tlog import read_tlog
 from .ulog import read_ulog
@@ -148,6 +149,16 @@ def _report_recording(recording: Recording) -> None:
         print(f"... and {len(recording.jumps) - REPORTED_JUMPS} more resets")
 
 
+def _warn_of_doubts(poses: Poses, height: str, ground_d_m: float) -> None:
+    """Signals of the log that contradict each other."""
+    doubts = [doubt_of_velocity(poses.recording), *hints_on_conventions(poses)]
+    if height == HEIGHTS[0]:
+        doubts.append(doubt_of_height(poses, ground_d_m))
+    for doubt in doubts:
+        if doubt:
+            warn(poses.recording.path, doubt)
+
+
 def _offset(arguments: argparse.Namespace, frames: list[Frame], cameras: list[Camera], poses: Poses) -> float:
     if arguments.offset is not None:
         return float(arguments.offset)
@@ -181,6 +192,7 @@ def run(arguments: argparse.Namespace) -> int:
     recording = _read(arguments)
     _report_recording(recording)
     poses = Poses(recording)
+    _warn_of_doubts(poses, arguments.height, arguments.ground)
     offset_s = _offset(arguments, frames, cameras, poses)
     result = add_poses(frames, cameras, poses, offset_s, Wish(arguments.height, arguments.ground, arguments.gap))
     _report(result)
