@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from autopilot_logs import Fault, Flown, ulog_topics, write_detections, write_ulog
 from goe_tools.__main__ import main
+from goe_tools.exchange import offset
 
 pytest.importorskip("pyulog", reason="pyulog is not installed (tools/setup.sh)")
 
@@ -105,3 +106,121 @@ def test_a_hill_is_no_contradiction(tmp_path: Path, capsys: pytest.CaptureFixtur
 def test_the_order_of_the_quaternion_is_hinted_at(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (line,) = warnings_of(tmp_path, capsys, {"q": lambda q: q[:, [1, 2, 3, 0]]})
     assert "does if the quaternion is in the order x, y, z, w" in line
+
+
+# ------------------------------------------------------------------------------------------------ offset and detections
+
+Rewrite = Callable[[list[float]], list[float]]  # t_s, then the four sides
+
+
+def converted(folder: Path, capsys: pytest.CaptureFixture[str], rewrite: Rewrite, *more: str,
+              changes: dict[str, Change] | None = None) -> tuple[int, str, str]:  # fmt: skip
+    """Converts a table with changed rows, and a log with changed fields; returns status, output and messages."""
+    topics = ulog_topics(FLOWN)
+    for name in ("vehicle_local_position", "vehicle_attitude"):
+        topics[name] = [(kind, field, (changes or {}).get(field, lambda x: x)(v)) for kind, field, v in topics[name]]
+    log = write_ulog(folder / "a.ulg", topics)
+    table, camera = write_detections(folder, FLOWN, 0.0)
+    header, *rows = [line.split(",") for line in table.read_text().splitlines()]
+    lines = [",".join(header)]
+    for row in rows:
+        t_s, *sides = rewrite([float(row[0]), *map(float, row[2:6])])
+        lines.append(",".join([repr(t_s), row[1], *map(repr, sides), row[6]]))
+    table.write_text("\n".join(lines) + "\n")
+    words = ["--detections", str(table), "--camera", str(camera), "--out", str(folder / "log")]
+    status = main(["convert", "--ulog", str(log), *words, *more])
+    printed = capsys.readouterr()
+    return status, printed.out, printed.err
+
+
+def test_the_offset_comes_with_its_fit(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    status, text, messages = converted(tmp_path, capsys, lambda row: row)
+    assert (status, messages) == (0, "")
+    assert "time offset, from 144 of 144 rows: " in text and "residual 0.74 times the usual noise of boxes" in text
+
+
+def test_width_and_height_in_place_of_right_and_bottom(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    def rewrite(row: list[float]) -> list[float]:
+        return [*row[:3], row[3] - row[1], row[4] - row[2]]
+
+    status, _, messages = converted(tmp_path, capsys, rewrite)
+    assert status == 2 and "are these width and height, or exchanged columns?" in messages
+    assert "turns and boxes fit at no offset within -0.5 to 0.5 s: the best is " in messages
+    assert "times the usual noise of boxes" in messages and "'Symptoms'" in messages and "none" not in messages
+    assert converted(tmp_path, capsys, rewrite, "--offset", "0")[0] == 0
+
+
+CONVENTIONS: list[Change] = [
+    lambda q: q[:, [1, 2, 3, 0]],
+    lambda q: q * [1.0, -1.0, -1.0, -1.0],
+    lambda q: np.repeat(q[:1], len(q), 0),
+]
+
+
+@pytest.mark.parametrize("change", CONVENTIONS)
+def test_another_convention_is_named_as_a_cause(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], change: Change
+) -> None:
+    status, _, messages = converted(tmp_path, capsys, lambda row: row, changes={"q": change})
+    assert status == 2 and "another convention" in messages and "'Symptoms'" in messages
+    symptoms = Path(__file__).resolve().parents[2] / "tools" / "goe_tools" / "exchange" / "README.md"
+    assert "## Symptoms" in symptoms.read_text()
+
+
+def test_a_poor_fit_is_warned_of(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(offset, "POOR", 0.5)
+    status, _, messages = converted(tmp_path, capsys, lambda row: row)
+    assert status == 0 and "the offset leaves 0.74 times the usual noise of boxes: see " in messages
+
+
+def test_few_rows_that_determine_the_offset(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The others are close to the image border."""
+
+    def rewrite(row: list[float]) -> list[float]:
+        return row if row[0] > 26.0 else [row[0], 1.0, *row[2:]]
+
+    status, _, messages = converted(tmp_path, capsys, rewrite)
+    assert status == 0 and "rows determine the offset: the others are none of a whole obstacle" in messages
+
+
+TIMES: list[tuple[Rewrite, str, str]] = [
+    (lambda row: [1e3 * row[0], *row[1:]], "t_s runs from 21000.000 to 2", "milliseconds? t_s is in seconds"),
+    (lambda row: [1e6 * row[0], *row[1:]], "t_s runs from 21000000.000 to 2", "microseconds? t_s is in seconds"),
+    (lambda row: [1.8e9 + row[0], *row[1:]], "t_s runs from 1800000021.000 to 18", "Unix time? the clocks have"),
+    (
+        lambda row: [row[0] - 100.0, *row[1:]],
+        "t_s runs from -79.000 to -",
+        "give --about, the autopilot's time minus t_s",
+    ),
+]
+
+
+@pytest.mark.parametrize(("rewrite", "span", "hint"), TIMES)
+def test_times_of_another_unit_or_epoch(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], rewrite: Rewrite, span: str, hint: str
+) -> None:
+    for more, reason in (((), "no track has known poses"), (("--offset", "0"), "no row has a pose")):
+        status, _, messages = converted(tmp_path, capsys, rewrite, *more)
+        assert status == 2 and reason in messages
+        assert span in messages and "and the poses from 20.000 to 31.000 s" in messages and hint in messages
+
+
+def test_boxes_in_shares_of_the_image(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    status, _, messages = converted(tmp_path, capsys, lambda row: [row[0], *(side / 1280.0 for side in row[1:])])
+    assert status == 2 and "all sides are between 0 and 1: shares of the image?" in messages
+    assert "0 of 144 rows show a whole obstacle" in messages
+
+
+def test_boxes_of_a_larger_image(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    _, _, messages = converted(
+        tmp_path, capsys, lambda row: [row[0], *(2.0 * side for side in row[1:])], "--offset", "0"
+    )
+    assert "boxes leave the image of 1280 x 1280 px" in messages
+
+
+def test_few_rows_with_a_pose(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    status, text, messages = converted(tmp_path, capsys, lambda row: row, "--offset", "6")
+    assert status == 0 and "left out: " in text
+    assert "rows have a pose: t_s runs from 21.000 to " in messages and "+6 s to be added to t_s" in messages

@@ -18,8 +18,9 @@ The attitude is the autopilot's; if it was logged slowly, the gyro's rates inter
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -47,11 +48,12 @@ NEAREST_M = 1.0
 
 @dataclass(frozen=True)
 class Offset:
-    """Seconds to add to the camera's times, their sigma, and the number of rows used."""
+    """Seconds to add to the camera's times, and their sigma."""
 
     offset_s: float
     sigma_s: float
-    rows: int
+    images: int  # rows of the table that took part
+    misfit: float  # residual, in units of the usual noise of boxes
     at_the_end: bool  # the best offset is at an end of the search interval
 
 
@@ -87,6 +89,11 @@ def _at_border(frame: Frame, camera: Camera) -> bool:
     return not (left > margin and top > margin and right < camera.width - margin and bottom < camera.height - margin)
 
 
+def is_whole(frame: Frame, camera: Camera) -> bool:
+    """Whether the row shows the whole obstacle."""
+    return _middle(frame) is not None and not _at_border(frame, camera)
+
+
 def _whitening(time_s: np.ndarray, size_rad: np.ndarray, white_rad: np.ndarray) -> np.ndarray:
     """(K, K): makes errors of that model independent, with variance 1."""
     correlation = np.exp(-np.abs(time_s[:, None] - time_s) / FADES_S)
@@ -100,7 +107,7 @@ def marks_of(frames: Sequence[Frame], cameras: Sequence[Camera]) -> Marks | None
     for frame in frames:
         camera = cameras[frame.camera]
         middle = _middle(frame)
-        if middle is None or _at_border(frame, camera):
+        if middle is None or not is_whole(frame, camera):
             continue
         point, _ = undistort(camera, np.array(middle[:2]))
         direction = mounting(camera) @ np.array([*point, 1.0])
@@ -224,9 +231,11 @@ def attitude_for(poses: Poses, start_s: float, end_s: float) -> Series:
 
 
 def find_offset(
-    frames: Sequence[Frame], cameras: Sequence[Camera], poses: Poses, about_s: float, reach_s: float, gap_s: float
-) -> Offset | None:
-    """The offset within ``about_s`` +- ``reach_s``; None if no track is long enough."""
+    frames: Sequence[Frame], cameras: Sequence[Camera], poses: Poses, about_s: float, reach_s: float, gap_s: float,
+    tell: Callable[[float], None] = lambda share: None,
+) -> Offset | None:  # fmt: skip
+    """The offset within ``about_s`` +- ``reach_s``; None if no track is long enough. ``tell`` gets the share of the
+    work that is done."""
     times = (about_s - reach_s, about_s + reach_s)
     tracks = _tracks(frames, cameras, poses, times, gap_s)
     if not tracks:
@@ -235,18 +244,28 @@ def find_offset(
     end = max(float(marks.time_s[-1]) for marks in tracks) + times[1]
     search = Search(tracks, poses, attitude_for(poses, start, end))
     grid = np.linspace(*times, 2 * max(round(reach_s / GRID_S), 1) + 1)
-    best = float(grid[int(np.argmin([search.cost(offset) for offset in grid]))])
+    parts = len(grid) + len(FINE_S) * len(PARABOLA) + 1
+    done = itertools.count(1)
+
+    def cost(offset: float) -> float:
+        result = search.cost(offset)
+        tell(next(done) / parts)
+        return result
+
+    best = float(grid[int(np.argmin([cost(offset) for offset in grid]))])
     search.weigh(best)
     square, least = 0.0, 0.0
     for step in FINE_S:
-        square, slope, least = np.polyfit(step * PARABOLA, [search.cost(best + step * k) for k in PARABOLA], 2)
+        square, slope, least = np.polyfit(step * PARABOLA, [cost(best + step * k) for k in PARABOLA], 2)
         if square > 0.0:
             move = min(max(-slope / (2.0 * square), -GRID_S), GRID_S)
             least += slope * move + square * move**2
             best += move
     rows = sum(2 * len(marks.time_s) for marks in tracks)
     outside = not times[0] + GRID_S / 2 < best < times[1] - GRID_S / 2
+    freedom = max(rows - 6 * len(tracks) - 1, 1)
+    misfit = math.sqrt(max(least, 0.0) / freedom)
     if not square > 0.0:
-        return Offset(best, math.inf, rows, outside)
-    variance = max(least, 0.0) / max(rows - 6 * len(tracks) - 1, 1) / square
-    return Offset(best, math.sqrt(max(variance, search.spread(best) / square**2)), rows, outside)
+        return Offset(best, math.inf, rows // 2, misfit, outside)
+    variance = misfit**2 / square
+    return Offset(best, math.sqrt(max(variance, search.spread(best) / square**2)), rows // 2, misfit, outside)

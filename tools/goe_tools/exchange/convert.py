@@ -8,7 +8,6 @@ interpolation between two samples. The result uses the autopilot's time."""
 from __future__ import annotations
 
 import argparse
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -20,10 +19,10 @@ from ..logs.fields import LogError, warn
 from ..logs.numbers import finite, positive
 from ..logs.obslog import Camera, Frame, ObservationLog, read_cameras
 from ..logs.own_log import write_own_log
-from .clock import find_offset
 from .dataflash import read_dataflash
 from .detections import read_detections, sees
-from .doubts import doubt_of_height, doubt_of_velocity, hints_on_conventions
+from .doubts import doubt_of_height, doubt_of_velocity, doubts_of_boxes, hints_on_conventions
+from .offset import Searched, found_offset, spans, warn_of_few
 from .recording import Poses, Recording, check_size
 from .tlog import read_tlog
 from .ulog import read_ulog
@@ -31,7 +30,6 @@ from .ulog import read_ulog
 HEIGHTS = ("origin", "sensor")
 GAP_S = 0.5
 REACH_S = 0.5
-WORST_SIGMA_S = 0.02  # of an estimated offset: 0.5 degrees at 24 degrees a second
 REPORTED_JUMPS, REPORTED_IMAGES = 20, 5  # printed one by one
 
 
@@ -159,22 +157,6 @@ def _warn_of_doubts(poses: Poses, height: str, ground_d_m: float) -> None:
             warn(poses.recording.path, doubt)
 
 
-def _offset(arguments: argparse.Namespace, frames: list[Frame], cameras: list[Camera], poses: Poses) -> float:
-    if arguments.offset is not None:
-        return float(arguments.offset)
-    found = find_offset(frames, cameras, poses, arguments.about, arguments.within, arguments.gap)
-    span = f"within {arguments.about - arguments.within:g} to {arguments.about + arguments.within:g} s"
-    way_out = "use --offset, or give the search interval with --about and --within"
-    if found is None:
-        raise LogError(arguments.detections, 0, "t_s", f"no track has known poses {span} of offset; {way_out}")
-    if found.at_the_end or not found.sigma_s <= WORST_SIGMA_S:
-        estimate = f"{found.offset_s:+.4f} +- {found.sigma_s:.4f} s" if math.isfinite(found.sigma_s) else "none"
-        reason = f"turns and boxes determine no offset {span}: {estimate}; {way_out}"
-        raise LogError(arguments.detections, 0, "t_s", reason)
-    print(f"time offset, from {found.rows} rows: {found.offset_s:+.4f} +- {found.sigma_s:.4f} s to be added to t_s")
-    return found.offset_s
-
-
 def _report(result: Converted) -> None:
     for time_s, reason in result.left_out[:REPORTED_IMAGES]:
         print(f"left out: row at {time_s:.3f} s: {reason}")
@@ -189,15 +171,22 @@ def _report(result: Converted) -> None:
 def run(arguments: argparse.Namespace) -> int:
     cameras = read_cameras(arguments.camera)
     frames = read_detections(arguments.detections, len(cameras))
+    for doubt in doubts_of_boxes(frames, cameras):
+        warn(arguments.detections, doubt)
     recording = _read(arguments)
     _report_recording(recording)
     poses = Poses(recording)
     _warn_of_doubts(poses, arguments.height, arguments.ground)
-    offset_s = _offset(arguments, frames, cameras, poses)
+    offset_s = arguments.offset
+    if offset_s is None:
+        searched = Searched(arguments.about, arguments.within, arguments.gap)
+        offset_s = found_offset(arguments.detections, frames, cameras, poses, searched)
     result = add_poses(frames, cameras, poses, offset_s, Wish(arguments.height, arguments.ground, arguments.gap))
     _report(result)
     if not result.frames:
-        raise LogError(arguments.detections, 0, "t_s", "no row has a pose: do the clocks differ by the offset only?")
+        reason = f"no row has a pose: {spans(frames, recording, offset_s)}"
+        raise LogError(arguments.detections, 0, "t_s", reason)
+    warn_of_few(arguments.detections, len(result.frames), frames, recording, offset_s)
     log = ObservationLog(cameras[0], result.frames, camera2=cameras[1] if len(cameras) > 1 else None)
     comment = f"{recording.path.name} and {arguments.detections.name}, t_s {offset_s:+.6f} s"
     write_own_log(arguments.out, log, comment, [arguments.camera, arguments.detections, recording.path])

@@ -1,4 +1,5 @@
-"""Compares signals of an autopilot's log with each other: position and velocity, height and distance sensor.
+"""Compares signals of an autopilot's log with each other: position and velocity, height and distance sensor. It also
+checks the detector's boxes.
 
 Nothing is refused or corrected: a doubt names the numbers and likely mistakes."""
 
@@ -10,6 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..logs.hints import hints_of
+from ..logs.obslog import Camera, Frame
 from .recording import Jump, Poses, Recording, Series
 from .resets import LONGEST_S, unexplained_m
 
@@ -25,6 +27,8 @@ HEIGHT_LEAST_M = 2.0  # on the ground nothing is compared
 HEIGHT_SAMPLES = 10
 MOST = 0.8  # of the samples
 HINT_RATE_HZ = 5.0
+BOXES_LEAST, ODD_BOXES = 5, 0.2  # boxes, and share of them from which they are remarked on
+SHARES_MAX, BEYOND = 1.5, 0.05  # largest side of a box in shares of the image; beyond the image, share of its size
 FOOT_TOLERANCE = 0.1
 
 
@@ -151,6 +155,31 @@ def _against_sensor(poses: Poses, ground_d_m: float) -> str:
         f"at {time_s[flies][middle]:.3f} s {clearance.name} measures {measured[middle]:.1f} m, and the height above "
         f"the ground at d = {ground_d_m:g} m is {height[middle]:.1f} m: {cause}"
     )
+
+
+def doubts_of_boxes(frames: Sequence[Frame], cameras: Sequence[Camera]) -> list[str]:
+    """Boxes in shares of the image, with exchanged sides, or outside the image."""
+    whole = [frame for frame in frames if frame.box_px is not None and None not in frame.box_px]
+    if len(whole) < BOXES_LEAST:
+        return []
+    box = np.array([frame.box_px for frame in whole], float)
+    size = np.array([(cameras[frame.camera].width, cameras[frame.camera].height) for frame in whole], float)
+    if np.nanmax(np.abs(box)) <= SHARES_MAX:
+        return ["box_left_px: all sides are between 0 and 1: shares of the image? boxes are in pixels"]
+    result = []
+    exchanged = int(((box[:, 2] <= box[:, 0]) | (box[:, 3] <= box[:, 1])).sum())
+    if exchanged > ODD_BOXES * len(box):
+        result.append(
+            f"box_right_px: right is not right of left, or bottom not below top, in {exchanged} of {len(box)} boxes: "
+            "are these width and height, or exchanged columns?"
+        )
+    beyond = np.maximum(-box[:, :2], box[:, 2:] - size) > BEYOND * size
+    if beyond.any(1).mean() > ODD_BOXES:
+        result.append(
+            f"box_left_px: {int(beyond.any(1).sum())} of {len(box)} boxes leave the image of {size[0, 0]:g} x "
+            f"{size[0, 1]:g} px: is camera.ini that of another image size, or are columns exchanged?"
+        )
+    return result
 
 
 def hints_on_conventions(poses: Poses) -> list[str]:
