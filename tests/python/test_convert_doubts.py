@@ -182,7 +182,7 @@ def test_few_rows_that_determine_the_offset(tmp_path: Path, capsys: pytest.Captu
         return row if row[0] > 26.0 else [row[0], 1.0, *row[2:]]
 
     status, _, messages = converted(tmp_path, capsys, rewrite)
-    assert status == 0 and "rows determine the offset: the others are none of a whole obstacle" in messages
+    assert status == 0 and "rows determine the offset: the others show no whole obstacle" in messages
 
 
 TIMES: list[tuple[Rewrite, str, str]] = [

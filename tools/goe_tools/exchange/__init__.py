@@ -3,6 +3,7 @@
 recording     the flight in an autopilot's log, and its pose at any time
 resets        detects jumps of the autopilot's filter from the motion
 doubts        contradictions between the signals of a log, and odd boxes
+ulog_file     the messages of PX4's log without damaged parts
 ulog          PX4's log
 dataflash     ArduPilot's log
 tlog          a ground station's log of MAVLink messages

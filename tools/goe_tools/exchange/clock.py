@@ -232,9 +232,9 @@ def attitude_for(poses: Poses, start_s: float, end_s: float) -> Series:
 
 def find_offset(
     frames: Sequence[Frame], cameras: Sequence[Camera], poses: Poses, about_s: float, reach_s: float, gap_s: float,
-    tell: Callable[[float], None] = lambda share: None,
+    report: Callable[[float], None] = lambda share: None,
 ) -> Offset | None:  # fmt: skip
-    """The offset within ``about_s`` +- ``reach_s``; None if no track is long enough. ``tell`` gets the share of the
+    """The offset within ``about_s`` +- ``reach_s``; None if no track is long enough. ``report`` gets the share of the
     work that is done."""
     times = (about_s - reach_s, about_s + reach_s)
     tracks = _tracks(frames, cameras, poses, times, gap_s)
@@ -249,7 +249,7 @@ def find_offset(
 
     def cost(offset: float) -> float:
         result = search.cost(offset)
-        tell(next(done) / parts)
+        report(next(done) / parts)
         return result
 
     best = float(grid[int(np.argmin([cost(offset) for offset in grid]))])

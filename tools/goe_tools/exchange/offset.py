@@ -109,8 +109,8 @@ def found_offset(
     if found.misfit > POOR:
         warn(table, f"the offset leaves {found.misfit:.2g} times the usual noise of boxes: see {MISTAKES}")
     if found.images < LEAST_SHARE * len(frames):
-        reason = "of a whole obstacle, with a pose at every offset searched"
-        warn(table, f"only {found.images} of {len(frames)} rows determine the offset: the others are none {reason}")
+        reason = "the others show no whole obstacle, or have no pose at some offset of the interval"
+        warn(table, f"only {found.images} of {len(frames)} rows determine the offset: {reason}")
     return found.offset_s
 
 

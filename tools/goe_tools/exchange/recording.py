@@ -66,9 +66,9 @@ class Recording:
 def make_series(path: Path, name: str, time_s: np.ndarray, value: np.ndarray) -> Series:
     """Checks a signal; a LogError contains its name and the time. Drops repeated samples."""
     time_s, value = np.asarray(time_s, float), np.asarray(value, float)
-    value = value.reshape(len(time_s), -1)
     if len(time_s) < LEAST_SAMPLES:
         raise LogError(path, 0, name, f"{len(time_s)} samples, needs at least {LEAST_SAMPLES}")
+    value = value.reshape(len(time_s), -1)
     step = np.diff(time_s)
     back = np.flatnonzero(step < 0.0)
     if len(back):

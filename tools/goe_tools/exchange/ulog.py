@@ -8,13 +8,15 @@ Jumps that no counter reports are detected from the velocity and the rates."""
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 
 import numpy as np
 
-from ..logs.fields import LogError
-from .recording import Jump, Recording, Series, make_attitude, make_series
+from ..logs.fields import LogError, warn
+from .recording import LEAST_SAMPLES, Jump, Recording, Series, make_attitude, make_series
 from .resets import attitude_jumps, merged, position_jumps, unexplained_m, unreported
+from .ulog_file import sound
 
 POSITION, ATTITUDE = "vehicle_local_position", "vehicle_attitude"
 GYROS = (("vehicle_angular_velocity", "xyz"), ("sensor_combined", "gyro_rad"))
@@ -31,7 +33,8 @@ def _topics(path: Path) -> tuple[dict[str, Columns], list[str]]:
 
     names = [POSITION, ATTITUDE, *(name for name, _ in GYROS)]
     try:
-        log = pyulog.ULog(str(path), names)
+        file = sound(path)
+        log = pyulog.ULog(io.BytesIO(file.content), names)
     except OSError as error:
         raise LogError(path, 0, "", error.strerror or str(error)) from None
     except Exception as error:  # on unknown content pyulog raises struct, index and key errors
@@ -39,7 +42,9 @@ def _topics(path: Path) -> tuple[dict[str, Columns], list[str]]:
     result: dict[str, Columns] = {}
     for data in sorted(log.data_list, key=lambda one: one.multi_id):
         result.setdefault(data.name, data.data)
-    notes = ["the file is damaged: unreadable parts are left out"] if log.file_corruption else []
+    for note in file.notes():
+        warn(path, note)
+    notes = ["the file is damaged: unreadable parts are left out"] if log.file_corruption and not file.damages else []
     if log.dropouts:
         notes.append(f"the logger lost {sum(one.duration for one in log.dropouts)} ms in {len(log.dropouts)} dropouts")
     return result, notes
@@ -130,6 +135,9 @@ def read_ulog(path: Path) -> Recording:
     time_s, valid = _time_s(place), np.ones(len(place["timestamp"]), bool)
     for name in ("xy_valid", "z_valid"):
         valid &= place[name].astype(bool) if name in place else True
+    if valid.sum() < LEAST_SAMPLES:
+        reason = f"marks {valid.sum()} of {len(valid)} samples as valid: the autopilot knew no position"
+        raise LogError(path, 0, f"{POSITION}.xy_valid, z_valid", reason)
     if not valid.all():
         notes.append(f"{POSITION}: {int((~valid).sum())} samples are marked invalid and left out")
     xyz = _columns(path, POSITION, place, "x", "y", "z")
