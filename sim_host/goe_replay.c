@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 
 #include "camera_file.h"
@@ -163,6 +164,18 @@ static bool is_file(const char *path) {
     return stat(path, &status) == 0 && S_ISREG(status.st_mode);
 }
 
+/* The option of `goe_tools convert` for an autopilot's log; NULL: the name is not that of one. */
+static const char *convert_option(const char *path) {
+    static const char *const options[][2] = {{".ulg", "ulog"}, {".bin", "dataflash"}, {".tlog", "tlog"}};
+    const char *end = strrchr(path, '.');
+    for (size_t i = 0; end != NULL && i < sizeof options / sizeof options[0]; i++) {
+        if (strcasecmp(end, options[i][0]) == 0) {
+            return options[i][1];
+        }
+    }
+    return NULL;
+}
+
 static bool parse_arguments(poptContext context, const struct poptOption *table, int argc, const char *const *argv,
                             options_t *options) {
     const int result = poptGetNextOpt(context);
@@ -189,6 +202,13 @@ static bool parse_arguments(poptContext context, const struct poptOption *table,
     }
     if (directory != NULL && is_file(directory)) {
         char reason[CHOICE_FAULT_MAX];
+        const char *option = convert_option(directory);
+        if (option != NULL) {
+            (void)snprintf(reason, sizeof reason,
+                           "is an autopilot's log; make an observation log of it: python -m goe_tools convert --%s",
+                           option);
+            return complain(directory, reason);
+        }
         const char *slash = strrchr(directory, '/');
         (void)snprintf(reason, sizeof reason, "is a file; name its folder, %.*s",
                        slash != NULL ? (int)(slash - directory) : 1, slash != NULL ? directory : ".");

@@ -255,6 +255,16 @@ def test_a_file_in_place_of_its_folder(tmp_path: Path, capsys: pytest.CaptureFix
     assert python_said(folder / name, capsys) == f"{folder / name}: is a file; name its folder, {folder}"
 
 
+@pytest.mark.parametrize(("name", "option"), [("a.ulg", "ulog"), ("b.BIN", "dataflash"), ("c.tlog", "tlog")])
+def test_an_autopilots_log_in_place_of_a_folder(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, option: str
+) -> None:
+    (tmp_path / name).write_bytes(b"")
+    reason = f"is an autopilot's log; make an observation log of it: python -m goe_tools convert --{option}"
+    assert said(tmp_path / name) == (2, f"{tmp_path / name}: {reason} (see goe_replay --help)\n")
+    assert python_said(tmp_path / name, capsys) == f"{tmp_path / name}: {reason}"
+
+
 def test_a_long_read_shows_on_a_terminal_how_far_it_is(tmp_path: Path) -> None:
     """From a pipe that pauses for longer than the two seconds before the first progress line."""
     camera, text = str(CORNER / "camera.ini"), (CORNER / "frames.csv").read_text()

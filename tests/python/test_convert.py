@@ -264,7 +264,7 @@ def test_a_cut_does_not_spoil_the_offset(convert: Callable[..., tuple[Observatio
 def test_an_image_between_the_samples_of_a_cut_is_left_out(convert: Callable[..., tuple[ObservationLog, str]]) -> None:
     flown = replace(FLOWN, rate_hz=5.0, gyro_hz=200.0, faults=[Fault(START_S + 5.4, yaw_deg=20.0)])
     log, text = convert("ulog", flown, 0.0, "--offset", "0")
-    assert "left out: row at 25.250 s: the filter jumped between the samples around it, at 25.400 s" in text
+    assert "left out: row at 25.250 s, ids 4, 9: the filter jumped between the samples around it, at 25.400 s" in text
     assert all(not START_S + 5.2 < frame.t_s < START_S + 5.4 for frame in log.frames)
 
 

@@ -1,4 +1,4 @@
-"""PX4 logs that are cut, damaged or without a position: ``convert`` reports the missing part and makes no reset of it."""
+"""PX4 logs that are cut, damaged or without a position: ``convert`` reports the loss and makes no reset of it."""
 
 from __future__ import annotations
 

@@ -8,6 +8,7 @@ interpolation between two samples. The result uses the autopilot's time."""
 from __future__ import annotations
 
 import argparse
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -45,7 +46,7 @@ class Wish:
 @dataclass
 class Converted:
     frames: list[Frame]
-    left_out: list[tuple[float, str]]  # autopilot's time, reason
+    left_out: list[tuple[float, int, str]]  # autopilot's time, id, reason
 
 
 def _jump_since(poses: Poses, before: int, now: int) -> tuple[float, float, float] | None:
@@ -83,7 +84,7 @@ def add_poses(
     result, counted = Converted([], []), {}
     for k, frame in enumerate(frames):
         if not good[k]:
-            result.left_out.append((float(time_s[k]), _why_not(poses, float(time_s[k]))))
+            result.left_out.append((float(time_s[k]), frame.id, _why_not(poses, float(time_s[k]))))
             continue
         camera = cameras[frame.camera]
         arm = turn[k] @ np.array([camera.offset_x_m, camera.offset_y_m, camera.offset_z_m])
@@ -158,10 +159,16 @@ def _warn_of_doubts(poses: Poses, height: str, ground_d_m: float) -> None:
 
 
 def _report(result: Converted) -> None:
-    for time_s, reason in result.left_out[:REPORTED_IMAGES]:
-        print(f"left out: row at {time_s:.3f} s: {reason}")
-    if len(result.left_out) > REPORTED_IMAGES:
-        print(f"... and {len(result.left_out) - REPORTED_IMAGES} more rows are left out")
+    images: dict[tuple[float, str], list[int]] = {}
+    for time_s, key, reason in result.left_out:
+        images.setdefault((time_s, reason), []).append(key)
+    printed = 0
+    for (time_s, reason), keys in itertools.islice(images.items(), REPORTED_IMAGES):
+        word = "id" if len(keys) == 1 else "ids"
+        print(f"left out: row at {time_s:.3f} s, {word} {', '.join(map(str, keys))}: {reason}")
+        printed += len(keys)
+    if len(result.left_out) > printed:
+        print(f"... and {len(result.left_out) - printed} more rows are left out")
     for key in sorted({frame.id for frame in result.frames}):
         rows = [frame for frame in result.frames if frame.id == key]
         resets = rows[-1].reset_count - rows[0].reset_count

@@ -71,6 +71,7 @@ TRUTH_COLUMNS = (
 
 
 HINT_ROWS_MAX = 20_000  # the beginning of a longer log suffices
+CONVERT_OPTIONS = {".ulg": "ulog", ".bin": "dataflash", ".tlog": "tlog"}  # of the command that reads such a file
 LOG_NAMES = ("camera.ini", "frames.csv", "truth.csv", "truth_frames.csv")
 SLOTS = {"slots": True} if sys.version_info >= (3, 10) else {}  # a long log has a million objects
 
@@ -364,6 +365,10 @@ def log_folder(path: Path) -> Path:
     """The folder of a log, also if ``path`` is a file in it, as a shell's completion may produce."""
     path = Path(path)
     if path.is_file():
+        option = CONVERT_OPTIONS.get(path.suffix.lower())
+        if option is not None:
+            remedy = f"make an observation log of it: python -m goe_tools convert --{option}"
+            raise LogError(path, 0, "", f"is an autopilot's log; {remedy}")
         reason = "is a file; name its folder"
         raise LogError(path, 0, "", f"{reason}, {path.parent}" if path.name in LOG_NAMES else f"{reason}")
     if not path.is_dir():
