@@ -175,6 +175,15 @@ def test_a_poor_fit_is_warned_of(
     assert status == 0 and "the offset leaves 0.74 times the usual noise of boxes: see " in messages
 
 
+def test_the_search_shows_its_progress(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shares: list[float] = []
+    monkeypatch.setattr(offset.Progress, "show", lambda self, share: shares.append(share))
+    assert converted(tmp_path, capsys, lambda row: row)[0] == 0
+    assert shares == sorted(shares) and shares[0] == 0.0 and 0.9 < shares[-1] <= 1.0 and len(shares) > 30
+
+
 def test_few_rows_that_determine_the_offset(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The others are close to the image border."""
 

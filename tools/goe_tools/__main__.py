@@ -9,6 +9,9 @@ import sys
 if __name__ == "__main__" and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
     signal.signal(signal.SIGINT, lambda *_: os._exit(130))  # Ctrl-C during the slow imports; cli.main() takes over
 
+if __name__ == "__main__":
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # numpy: the matrices are small, threads hinder each other
+
 from collections.abc import Sequence
 
 from . import cli

@@ -44,6 +44,7 @@ HUBER = 2.5  # sigmas: rows farther off get a smaller weight
 CORRELATED_IMAGES = 12  # up to this distance errors may be correlated
 FAR_M = 1e5
 NEAREST_M = 1.0
+PREPARED = 0.5  # share of the time until the search begins
 
 
 @dataclass(frozen=True)
@@ -104,13 +105,14 @@ def _whitening(time_s: np.ndarray, size_rad: np.ndarray, white_rad: np.ndarray) 
 def marks_of(frames: Sequence[Frame], cameras: Sequence[Camera]) -> Marks | None:
     """None: too few images show the whole obstacle."""
     time_s, ray, offset, size, white = [], [], [], [], []
+    mounts = [mounting(camera) for camera in cameras]
     for frame in frames:
         camera = cameras[frame.camera]
         middle = _middle(frame)
         if middle is None or not is_whole(frame, camera):
             continue
         point, _ = undistort(camera, np.array(middle[:2]))
-        direction = mounting(camera) @ np.array([*point, 1.0])
+        direction = mounts[frame.camera] @ np.array([*point, 1.0])
         time_s.append(frame.t_s)
         ray.append(direction / np.linalg.norm(direction))
         offset.append([camera.offset_x_m, camera.offset_y_m, camera.offset_z_m])
@@ -139,7 +141,7 @@ def _crosses(vector: np.ndarray) -> np.ndarray:
 
 def _whitened(marks: Marks, values: np.ndarray) -> np.ndarray:
     """Whitened rows (K, 2, n)."""
-    return np.einsum("akj,jan->kan", marks.whitening, values) * marks.weight[..., None]
+    return (marks.whitening @ values.transpose(1, 0, 2)).transpose(1, 0, 2) * marks.weight[..., None]
 
 
 class Search:
@@ -198,11 +200,12 @@ class Search:
 
 
 def _tracks(frames: Sequence[Frame], cameras: Sequence[Camera], poses: Poses, times: tuple[float, float],
-            gap_s: float) -> list[Marks]:  # fmt: skip
+            gap_s: float, report: Callable[[float], None]) -> list[Marks]:  # fmt: skip
     """The marks of every obstacle, split at filter jumps of unknown size; only images whose pose the log contains at
     each offset between the two."""
-    result = []
-    for rows in by_id(frames).values():
+    result, obstacles = [], by_id(frames)
+    for number, rows in enumerate(obstacles.values()):
+        report(number / len(obstacles))
         at = np.array([frame.t_s for frame in rows])
         good = np.ones(len(rows), bool)
         for offset in np.linspace(*times, 5):
@@ -237,7 +240,7 @@ def find_offset(
     """The offset within ``about_s`` +- ``reach_s``; None if no track is long enough. ``report`` gets the share of the
     work that is done."""
     times = (about_s - reach_s, about_s + reach_s)
-    tracks = _tracks(frames, cameras, poses, times, gap_s)
+    tracks = _tracks(frames, cameras, poses, times, gap_s, lambda share: report(PREPARED * share))
     if not tracks:
         return None
     start = min(float(marks.time_s[0]) for marks in tracks) + times[0]
@@ -249,7 +252,7 @@ def find_offset(
 
     def cost(offset: float) -> float:
         result = search.cost(offset)
-        report(next(done) / parts)
+        report(PREPARED + (1.0 - PREPARED) * next(done) / parts)
         return result
 
     best = float(grid[int(np.argmin([cost(offset) for offset in grid]))])

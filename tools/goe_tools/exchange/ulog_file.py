@@ -29,7 +29,7 @@ class Damage:
 
 @dataclass
 class Sound:
-    """The readable content, and what is missing."""
+    """The readable content, and the missing parts."""
 
     content: bytes
     damages: list[Damage] = field(default_factory=list)
