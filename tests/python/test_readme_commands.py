@@ -88,6 +88,7 @@ class By:
 
 
 # A key that ends in "..." covers all commands that begin with it.
+CHAIN = 'CHAIN, EXAMPLE = ("convert", "goe_replay", "table", "view"), ("goe_sim",)'
 RUN_BY = {
     "tools/test.sh": By(".ci/run", "tools/test.sh"),
     "tools/test.sh --quick": By("tests/python/test_test_run.py", '"tools/test.sh", "--quick"'),
@@ -131,6 +132,10 @@ RUN_BY = {
     "tools/evidence.sh ...": By("tests/python/test_evidence.py", '"tools" / "evidence.sh"'),
     "tools/setup.sh": By("tools/test.sh", "setup.sh"),
     "goe_replay": By("tests/host/test_replay.py", "goe_replay"),
+    "goe_replay log --out estimates.csv": By("tests/python/test_chain.py", CHAIN),
+    "goe_sim --obstacle ...": By("tests/python/test_chain.py", CHAIN),
+    "python -m goe_tools table...": By("tests/python/test_chain.py", CHAIN),
+    "python -m goe_tools view log --out log.html": By("tests/python/test_chain.py", CHAIN),
     "goe_replay --set": By("tests/host/test_replay.py", '"--set"'),
     "goe_replay --settings": By("tools/ci/settings_table.py", '"--settings"'),
     "goe_sim": By("tests/sim/test_sim_log.py", "goe_sim"),
