@@ -103,9 +103,21 @@ def test_a_hill_is_no_contradiction(tmp_path: Path, capsys: pytest.CaptureFixtur
     assert warnings_of(tmp_path, capsys, {"dist_bottom": lambda x: x + 15.0}) == []
 
 
-def test_the_order_of_the_quaternion_is_hinted_at(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (line,) = warnings_of(tmp_path, capsys, {"q": lambda q: q[:, [1, 2, 3, 0]]})
-    assert "does if the quaternion is in the order x, y, z, w" in line
+ATTITUDES: list[tuple[Change, str]] = [
+    (lambda q: q[:, [1, 2, 3, 0]], "is the quaternion in the order x, y, z, w?"),
+    (lambda q: q * [1.0, -1.0, -1.0, -1.0], "is it the inverse quaternion?"),
+    (lambda q: np.repeat(q[:1], len(q), 0), "is the attitude frozen, or are the rates in degrees?"),
+]
+
+
+@pytest.mark.parametrize(("change", "cause"), ATTITUDES)
+def test_an_attitude_against_the_rates(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], change: Change, cause: str
+) -> None:
+    line, *more = warnings_of(tmp_path, capsys, {"q": change})
+    assert "vehicle_attitude.q turns by " in line and "% of the turns: " in line and line.endswith(cause)
+    assert len(more) == ("order" in cause)
+    assert all("does if the quaternion is in the order x, y, z, w" in other for other in more)
 
 
 # ------------------------------------------------------------------------------------------------ offset and detections

@@ -22,7 +22,7 @@ from ..logs.obslog import Camera, Frame, ObservationLog, read_cameras
 from ..logs.own_log import write_own_log
 from .dataflash import read_dataflash
 from .detections import read_detections, sees
-from .doubts import doubt_of_height, doubt_of_velocity, doubts_of_boxes, hints_on_conventions
+from .doubts import doubt_of_attitude, doubt_of_height, doubt_of_velocity, doubts_of_boxes, hints_on_conventions
 from .offset import Searched, found_offset, spans, warn_of_few
 from .recording import Poses, Recording, check_size
 from .tlog import read_tlog
@@ -150,7 +150,7 @@ def _report_recording(recording: Recording) -> None:
 
 def _warn_of_doubts(poses: Poses, height: str, ground_d_m: float) -> None:
     """Signals of the log that contradict each other."""
-    doubts = [doubt_of_velocity(poses.recording), *hints_on_conventions(poses)]
+    doubts = [doubt_of_velocity(poses.recording), doubt_of_attitude(poses.recording), *hints_on_conventions(poses)]
     if height == HEIGHTS[0]:
         doubts.append(doubt_of_height(poses, ground_d_m))
     for doubt in doubts:

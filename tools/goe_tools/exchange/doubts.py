@@ -1,4 +1,5 @@
-"""Compares signals of an autopilot's log with each other: position and velocity, height and distance sensor. It also
+"""Compares signals of an autopilot's log with each other: position and velocity, attitude and rates, height and
+distance sensor. It also
 checks the detector's boxes.
 
 Nothing is refused or corrected: a doubt names the numbers and likely mistakes."""
@@ -10,9 +11,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ..flights.rotations import multiply
 from ..logs.hints import hints_of
 from ..logs.obslog import Camera, Frame
-from .recording import Jump, Poses, Recording, Series
+from .recording import Jump, Poses, Recording, Series, conjugate, slerp, turned_by, within
 from .resets import LONGEST_S, unexplained_m
 
 SPAN_S = 1.0  # of one comparison of position and velocity; the limits are those of the flight layer (port/flight)
@@ -22,6 +24,10 @@ FOOT_M = 0.3048
 UNITS = {
     "feet": FOOT_M, "centimeters": 0.01, "millimeters": 0.001, "knots": 0.514444, "kilometers per hour": 1.0 / 3.6,
 }  # fmt: skip
+TURN_SPAN_S, TURN_SPANS = 0.5, 400  # of one comparison of attitude and rates, and about how many
+TURN_LEAST_DEG, TURN_OFF_DEG, TURN_LEAST = 3.0, 1.5, 5  # turns to compare, their difference, and least number
+TURN_RATE_HZ = 20.0  # of the rates; slower ones do not give the turn
+REAL_LAST = [3, 0, 1, 2]  # columns of a quaternion in the order x, y, z, w
 HEIGHT_OFF_M, HEIGHT_OFF_SHARE = 10.0, 0.5  # more than both: no hill, but another unit or origin
 HEIGHT_LEAST_M = 2.0  # on the ground nothing is compared
 HEIGHT_SAMPLES = 10
@@ -106,6 +112,64 @@ def doubt_of_velocity(recording: Recording) -> str:
     return (
         f"from {start_s[first]:.3f} s the position moves by {ways[0]} m (north, east, down) in {SPAN_S:g} s, and "
         f"{velocity.name} gives {ways[1]} m; such differences in {100.0 * wrong.mean():.3g} % of the time: {cause}"
+    )
+
+
+def _apart_deg(turns: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """(K,) angles between rotations (K, 4)."""
+    left = multiply(conjugate(turns), others)
+    return np.degrees(2.0 * np.arctan2(np.linalg.norm(left[:, 1:], axis=1), np.abs(left[:, 0])))
+
+
+def _turns(recording: Recording, gyro: Series) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """For spans without a gap or a jump: start (K,), attitudes at both ends and turn by the rates, each (K, 4)."""
+    attitude = recording.attitude
+    start = max(attitude.time_s[0], gyro.time_s[0])
+    starts = np.arange(start, min(attitude.time_s[-1], gyro.time_s[-1]) - TURN_SPAN_S, TURN_SPAN_S)
+    starts = starts[:: max(len(starts) // TURN_SPANS, 1)]
+    good = np.ones(len(starts), bool)
+    for series in (attitude, gyro):
+        for share in (0.0, 0.5, 1.0):
+            good &= within(series, starts + share * TURN_SPAN_S, LONGEST_S)
+    for jump in recording.jumps:
+        good &= ~((starts < jump.time_s) & (jump.time_s <= starts + TURN_SPAN_S))
+    starts = starts[good]
+    by_rates = [turned_by(gyro, one, one + TURN_SPAN_S) for one in starts]
+    first, last = slerp(attitude, starts), slerp(attitude, starts + TURN_SPAN_S)
+    return starts, first, last, np.array(by_rates).reshape(-1, 4)
+
+
+def doubt_of_attitude(recording: Recording) -> str:
+    """A contradiction between most turns of the attitude and the rates, and a likely mistake. Empty: none."""
+    gyro = recording.gyro
+    if gyro is None or gyro.rate_hz < TURN_RATE_HZ:
+        return ""
+    start_s, first, last, by_rates = _turns(recording, gyro)
+    if len(start_s) == 0:
+        return ""
+    turn = multiply(conjugate(first), last)
+    none = np.tile([1.0, 0.0, 0.0, 0.0], (len(turn), 1))
+    angles = [_apart_deg(turns, none) for turns in (turn, by_rates)]
+    apart = _apart_deg(turn, by_rates)
+    moves = np.maximum(*angles) > TURN_LEAST_DEG
+    wrong = moves & (apart > TURN_OFF_DEG + OFF_SHARE * np.maximum(*angles))
+    if moves.sum() < TURN_LEAST or wrong.sum() <= 0.5 * moves.sum():
+        return ""
+    swapped = multiply(conjugate(first[:, REAL_LAST]), last[:, REAL_LAST])
+    inverse = multiply(first, conjugate(last))
+    if np.median(angles[0][wrong]) < FITS * np.median(angles[1][wrong]):
+        cause = "is the attitude frozen, or are the rates in degrees?"
+    elif np.median(_apart_deg(inverse, by_rates)[wrong]) < 0.5 * np.median(apart[wrong]):
+        cause = "is it the inverse quaternion?"
+    elif np.median(_apart_deg(swapped, by_rates)[wrong]) < 0.5 * np.median(apart[wrong]):
+        cause = "is the quaternion in the order x, y, z, w?"
+    else:
+        cause = "another order or inverse of the quaternion, other axes, or rates in degrees?"
+    k = int(np.argmax(wrong))
+    return (
+        f"from {start_s[k]:.3f} s {recording.attitude.name} turns by {angles[0][k]:.1f} degrees in {TURN_SPAN_S:g} s, "
+        f"and {gyro.name} gives {angles[1][k]:.1f} degrees, {apart[k]:.1f} degrees apart; such differences in "
+        f"{100.0 * wrong.sum() / moves.sum():.3g} % of the turns: {cause}"
     )
 
 
