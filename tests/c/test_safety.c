@@ -381,8 +381,9 @@ static float any_from(float least, float most) {
 
 /* goe_init() refuses a size that focal length and principal point contradict. */
 static float fitting(float size_px, float focal_px, float center_px) {
-    const float size = size_px > 10.0f * focal_px ? 9.99f * focal_px : size_px;
-    return center_px >= -size && center_px <= 2.0f * size ? size : 0.0f;
+    const float size = size_px > 20.0f * focal_px ? 19.9f * focal_px : size_px;
+    const float beyond = fmaxf(-center_px, center_px - size);
+    return beyond <= 1.49f * focal_px ? size : 0.0f;
 }
 
 static void any_noise(goe_settings_t *s) {

@@ -488,7 +488,7 @@ static void conflicts_are_reported_where_px4_has_the_topic() {
 
 static void set_camera(GoeParameters &parameters) {
     goe_camera_t &camera = parameters.estimator.camera;
-    camera.fx_px = camera.fy_px = 2e4f; /* focal length and size that contradict no other value in module.yaml */
+    camera.fx_px = camera.fy_px = 1e5f; /* focal length and size that contradict no other value in module.yaml */
     camera.cx_px = camera.cy_px = 640.f;
     camera.width_px = camera.height_px = 1e5f;
 }

@@ -18,7 +18,7 @@ from .recording import Jump, Poses, Recording, Series, conjugate, slerp, turned_
 from .resets import LONGEST_S, unexplained_m
 
 SPAN_S = 1.0  # of one comparison of position and velocity; the limits are those of the flight layer (port/flight)
-OFF_M, OFF_DOWN_M, OFF_SHARE = 3.0, 2.0, 0.3  # level, down, and as a share of the way
+OFF_M, OFF_DOWN_M, OFF_SHARE = 4.0, 3.0, 0.3  # level, down, and as a share of the way
 FITS = 0.15  # a mistake explains the motion if it leaves this share of it
 FOOT_M = 0.3048
 UNITS = {
