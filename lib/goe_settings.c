@@ -101,24 +101,24 @@ static const char *first_bad(const unsigned char *from, size_t count) {
     return NULL;
 }
 
+static bool is_too_short(float focal_px, float size_px) { return focal_px < FOCAL_MIN * size_px; }
+
+static bool is_beyond(float center_px, float focal_px, float size_px) {
+    return size_px > 0.0f && goe_larger(-center_px, center_px - size_px) > BEYOND_MAX * focal_px;
+}
+
 /* The name of a setting that no camera has: a focal length in millimeters, or the principal point of another image size. */
 static const char *implausible(const goe_camera_t *camera) {
-    const float sizes_px[2] = {camera->width_px, camera->height_px};
-    const float focals_px[2] = {camera->fx_px, camera->fy_px};
-    const float centers_px[2] = {camera->cx_px, camera->cy_px};
-    static const char *const focal_names[2] = {"camera.fx_px", "camera.fy_px"};
-    static const char *const center_names[2] = {"camera.cx_px", "camera.cy_px"};
-    for (int i = 0; i < 2; i++) {
-        const float size_px = sizes_px[i];
-        if (size_px > 0.0f && focals_px[i] < FOCAL_MIN * size_px) {
-            return focal_names[i];
-        }
-        const float beyond_px = goe_larger(-centers_px[i], centers_px[i] - size_px);
-        if (size_px > 0.0f && beyond_px > BEYOND_MAX * focals_px[i]) {
-            return center_names[i];
-        }
+    if (is_too_short(camera->fx_px, camera->width_px)) {
+        return "camera.fx_px";
     }
-    return NULL;
+    if (is_too_short(camera->fy_px, camera->height_px)) {
+        return "camera.fy_px";
+    }
+    if (is_beyond(camera->cx_px, camera->fx_px, camera->width_px)) {
+        return "camera.cx_px";
+    }
+    return is_beyond(camera->cy_px, camera->fy_px, camera->height_px) ? "camera.cy_px" : NULL;
 }
 
 #if GOE_CAMERAS_MAX > 1

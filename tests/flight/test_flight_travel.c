@@ -64,7 +64,20 @@ static void true_flights_agree(void) {
     }
 }
 
-typedef enum { ZERO, EAST_NORTH, UP, CENTIMETERS, FORWARD, STUCK, MILLISECONDS, EAST_NORTH_PLACE, MISTAKES } mistake_t;
+typedef enum {
+    ZERO,
+    EAST_NORTH,
+    UP,
+    CENTIMETERS,
+    FORWARD,
+    STUCK,
+    MILLISECONDS,
+    DECLINATION,
+    WIND,
+    HALVED,
+    EAST_NORTH_PLACE,
+    MISTAKES
+} mistake_t;
 
 static void mistake(mistake_t which, goe_flight_position_t *sample) {
     float *v = sample->velocity_ned_m_s;
@@ -96,6 +109,18 @@ static void mistake(mistake_t which, goe_flight_position_t *sample) {
         case MILLISECONDS:
             sample->time_us /= 1000u;
             break;
+        case DECLINATION: /* 15 degrees */
+            v[0] = 0.966f * v[0] - 0.259f * v[1];
+            v[1] = 0.966f * v[1] + 0.259f * swap;
+            break;
+        case WIND: /* through the air */
+            v[1] += 5.0f;
+            break;
+        case HALVED:
+            for (int i = 0; i < 3; i++) {
+                v[i] *= 0.5f;
+            }
+            break;
         case EAST_NORTH_PLACE:
         case MISTAKES:
         default:
@@ -105,7 +130,7 @@ static void mistake(mistake_t which, goe_flight_position_t *sample) {
     }
 }
 
-/* GIVEN a velocity, a position or a time in a wrong convention THEN within 12 s of a turn the pose disagrees, and stays so. */
+/* [GOE_FLIGHT_TRAVELS] GIVEN a velocity, a position or a time in a wrong convention, also one that a second does not show, THEN within 12 s of a turn the pose disagrees, and stays so. */
 static void wrong_conventions_are_noticed(void) {
     for (int which = 0; which < MISTAKES; which++) {
         setUp();
