@@ -10,7 +10,7 @@
 #define E7_MAX 9.0e8f     /* 90 degrees */
 #define POLE_COSINE_MIN 0.017f
 #define TURN_E7 3600000000
-#define LENS_ROUNDS 12
+#define LENS_ROUNDS 16
 #define LENS_OFF 1.0e-3f /* focal lengths: less than a tenth of a degree */
 #define AHEAD_MIN 0.02f  /* of a direction, along the optical axis */
 #define STEEP 100.0f     /* tangent of a right angle, for bearings: straight down or up may be in between */
@@ -80,19 +80,22 @@ static bool distort(const float lens[5], float x, float y, float distorted[3]) {
 /* The inverse, by x <- x + (distorted - distort(x)) / slope, with the larger slope, so that no step overshoots. Returns false if it does
  * not converge. */
 static bool undistort(const float lens[5], const float distorted[2], float *x, float *y) {
-    float again[3];
     *x = distorted[0];
     *y = distorted[1];
     for (int round = 0; round < LENS_ROUNDS; round++) {
+        float again[3];
         if (!distort(lens, *x, *y, again)) {
             return false;
         }
-        *x += (distorted[0] - again[0]) / again[2];
-        *y += (distorted[1] - again[1]) / again[2];
+        const float off_x = distorted[0] - again[0];
+        const float off_y = distorted[1] - again[1];
+        if (goe_flight_within(off_x, LENS_OFF) && goe_flight_within(off_y, LENS_OFF)) {
+            return true;
+        }
+        *x += off_x / again[2];
+        *y += off_y / again[2];
     }
-    const bool one_to_one = distort(lens, *x, *y, again);
-    return one_to_one && goe_flight_within(again[0] - distorted[0], LENS_OFF) &&
-           goe_flight_within(again[1] - distorted[1], LENS_OFF);
+    return false;
 }
 
 bool goe_flight_geometry_project(const goe_flight_camera_t *camera, const goe_flight_history_pose_t *pose,
