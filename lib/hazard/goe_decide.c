@@ -171,10 +171,9 @@ goe_decision_t goe_decide(const goe_estimator_t *estimator, const goe_intent_t *
     goe_decision_t decision = judge(estimator, intent, intent ? intent->since_image_s : 0.0f, used, &met);
     if (decision == GOE_DECISION_CLEAR || decision == GOE_DECISION_UNKNOWN) {
         decision = judge_refused(estimator, intent, used, decision, &met);
-    }
-    if ((decision == GOE_DECISION_CLEAR || decision == GOE_DECISION_UNKNOWN) &&
-        is_too_near(estimator, intent, used, &met)) {
-        decision = GOE_DECISION_ACT;
+        if (decision != GOE_DECISION_ACT && is_too_near(estimator, intent, used, &met)) {
+            decision = GOE_DECISION_ACT;
+        }
     }
     if (hazard) {
         *hazard = met;
