@@ -31,8 +31,8 @@ typedef enum {
 
 /* Pinhole camera with a Brown-Conrady lens, in OpenCV's conventions, and its mounting. If all mounting angles are 0, the camera
  * looks along body x, image x is body y, and image y is body z. The mounting turns the camera by yaw about z, then by pitch
- * about the new y, then by roll about the newest x. If the
- * size is not 0, the focal length is at least a twentieth of it, and the principal point at most 1.5 focal lengths outside the image. */
+ * about the new y, then by roll about the newest x. If the size is not 0, the focal length is at least a twentieth of it, and the
+ * principal point at most 1.5 focal lengths outside the image. */
 typedef struct {
     float fx_px;           /* focal length along x; 1 to 1e5 px; no default: must be set */
     float fy_px;           /* focal length along y; 1 to 1e5 px; no default: must be set */
