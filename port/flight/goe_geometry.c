@@ -82,7 +82,7 @@ static bool distort(const float lens[5], float x, float y, float distorted[3]) {
 static bool undistort(const float lens[5], const float distorted[2], float *x, float *y) {
     *x = distorted[0];
     *y = distorted[1];
-    for (int round = 0; round < LENS_ROUNDS; round++) {
+    for (int turn = 0; turn < LENS_ROUNDS; turn++) {
         float again[3];
         if (!distort(lens, *x, *y, again)) {
             return false;
@@ -226,10 +226,10 @@ void goe_flight_geometry_bearings(const goe_flight_camera_t *camera, const float
     goe_flight_rotation(q, body_to_ned);
     bool unknown = !look_through(camera, body_to_ned, 0.5f * (extent_px[0] + extent_px[2]),
                                  0.5f * (extent_px[1] + extent_px[3]), middle);
-    for (int i = 0; i < 9;
-         i++) { /* corners, and middles of the sides, which a lens bends outward; i = 4 is the middle */
+    for (int i = 0; i < 9; i++) { /* corners, and middles of the sides, which a lens bends outward; i = 4: the middle */
+        const int row = i / 3;
         const float right = 0.5f * (float)(i % 3);
-        const float down = 0.5f * (float)(i / 3);
+        const float down = 0.5f * (float)row;
         unknown = !look_through(camera, body_to_ned, extent_px[0] + right * (extent_px[2] - extent_px[0]),
                                 extent_px[1] + down * (extent_px[3] - extent_px[1]), ray) ||
                   unknown;

@@ -152,8 +152,8 @@ def test_the_status_goes_on(fleet: Fleet, name: str) -> None:
     lost = 0.36 if "lossy" in name else 0.0
     times = [heard.time_s for heard in fleet[name].autopilot.heard_of("GOE_STATUS")]
     assert len(times) >= (FLIGHT_S - 2.5) * (1.0 - lost) - 1.0
-    assert not fleet[name].statuses()[-1].alive & ~3
-    assert fleet[name].statuses()[-1].alive == 3
+    assert not fleet[name].statuses()[-1].alive & ~7
+    assert fleet[name].statuses()[-1].alive == 7
 
 
 # --------------------------------------------------------------------------------------------------- what it says of it

@@ -114,7 +114,7 @@ def test_the_status_comes_once_a_second(fleet: Fleet, name: str) -> None:
 def test_the_status_reports_the_inputs(fleet: Fleet, name: str) -> None:
     statuses = fleet[name].statuses()
     middle, last = statuses[len(statuses) // 2], statuses[-1]
-    assert middle.alive == 3 and middle.self_check == 0 and middle.obstacles == len(fleet[name].plan.obstacles)
+    assert middle.alive == 7 and middle.self_check == 0 and middle.obstacles == len(fleet[name].plan.obstacles)
     assert last.taken > 80 and last.taken > middle.taken > 0
     counters = ("refused", "weak", "evicted", "full", "resets", "lost")
     assert {key: getattr(last, key) for key in counters} == dict.fromkeys(counters, 0)
@@ -233,12 +233,12 @@ def test_only_wanted_classes_are_taken(fleet: Fleet) -> None:
     """The detector counts as alive nevertheless."""
     flight = fleet["other class"]
     assert flight.of("GOE_OBSTACLE") == []
-    assert flight.statuses()[-2].alive == 3
+    assert flight.statuses()[-2].alive == 7
 
 
 def test_points_are_taken(fleet: Fleet) -> None:
     last = fleet["points"].statuses()[-1]
-    assert last.taken > 80 and last.refused == 0 and last.alive == 3
+    assert last.taken > 80 and last.refused == 0 and last.alive == 7
 
 
 # --------------------------------------------------------------------------------------------------- standard messages

@@ -153,7 +153,7 @@ def test_times_are_of_the_new_clock(fleet: Fleet, events: Events, name: str) -> 
     for status in heard:
         reported = 1e-3 * status.message.time_boot_ms
         assert reported == pytest.approx(flight.autopilot.clock.at(status.time_s), abs=1.0)
-    assert heard[-1].message.alive == 3
+    assert heard[-1].message.alive == 7
 
 
 def test_delays_are_right_again_after_a_restart(fleet: Fleet) -> None:
