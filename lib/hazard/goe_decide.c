@@ -125,8 +125,8 @@ static GOE_NOINLINE goe_decision_t judge(const goe_estimator_t *estimator, const
     return decision == GOE_DECISION_CLEAR && !clears ? GOE_DECISION_UNKNOWN : decision;
 }
 
-/* Whether the aircraft is too near now. At a creeping speed the closest approach is a long time ahead, and says nothing of that; the hazard
- * of an aircraft that keeps its distance does. A faster one reaches the obstacle within the rule's time from there. */
+/* Whether the aircraft is too near now, which the hazard of an aircraft that keeps its distance says. At a creeping speed the closest
+ * approach is a long time ahead even then. At a higher speed it is not: from within the margin it comes within the rule's time. */
 static GOE_NOINLINE bool is_too_near(const goe_estimator_t *estimator, const goe_intent_t *intent,
                                      const goe_rule_t *rule, goe_hazard_t *met) {
     const goe_estimate_t *estimate = &estimator->estimate;

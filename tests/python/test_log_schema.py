@@ -263,6 +263,31 @@ def test_cameras_that_the_schema_allows_are_read(tmp_path: Path, replay: Callabl
             assert getattr(cameras[-1], name) == (None if value == "auto" else value)
 
 
+@pytest.mark.parametrize(
+    ("key", "good", "bad"),
+    [
+        ("camera.fx", 64.0, 63.9),
+        ("camera.fy", 36.0, 35.9),
+        ("camera.cx", -1350.0, -1351.0),
+        ("camera.cy", 2070.0, 2071.0),
+    ],
+)
+def test_both_readers_refuse_a_lens_that_does_not_fit_the_size(
+    tmp_path: Path, replay: Callable[[Path], str], key: str, good: float, bad: float
+) -> None:
+    """The limits are those of goe_init(), written again in Python."""
+    write(tmp_path / "frames.csv", plain(FRAMES))
+    usual = {"width": 1280, "height": 720, "fx": 900, "fy": 900, "cx": 640, "cy": 360}
+    usual = {f"camera.{name}": number for name, number in usual.items()}
+    path = camera_file(tmp_path, [f"{name} = {number}" for name, number in (usual | {key: good}).items()])
+    assert replay(tmp_path) == "" and len(read_cameras(path)) == 1
+    path = camera_file(tmp_path, [f"{name} = {number}" for name, number in (usual | {key: bad}).items()])
+    reason = f"{path}: {key}: does not fit the size of the image"
+    with pytest.raises(LogError, match=re.escape(reason)):
+        read_cameras(path)
+    assert f"{key}_px: does not fit the size of the image" in replay(tmp_path)
+
+
 def test_cameras_that_the_schema_forbids_are_refused(tmp_path: Path, replay: Callable[[Path], str]) -> None:
     write(tmp_path / "frames.csv", plain(FRAMES))
 

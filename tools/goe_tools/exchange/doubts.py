@@ -1,6 +1,5 @@
 """Compares signals of an autopilot's log with each other: position and velocity, attitude and rates, height and
-distance sensor. It also
-checks the detector's boxes.
+distance sensor. It also checks the detector's boxes.
 
 Nothing is refused or corrected: a doubt names the numbers and likely mistakes."""
 

@@ -62,14 +62,18 @@ def _key_of(key: str) -> tuple[str, str]:
     return (owner, name) if owner in CAMERA_NAMES and name in CAMERA_FIELDS else ("", "")
 
 
+SHORTEST = 0.05  # focal length over size, and ...
+FARTHEST = 1.5  # ... focal lengths of the principal point outside the image, as in lib/goe_settings.c
+
+
 def misfits(values: dict[str, float | None]) -> list[str]:
-    """Keys that no camera of this size has, as goe_init() judges: a focal length below a twentieth of it, or a
-    principal point farther outside than 1.5 focal lengths."""
+    """Keys that no camera of this size has, as goe_init() judges: a focal length too short for it, or a
+    principal point too far outside."""
     bad = []
     for size_name, focal_name, center_name in (("width", "fx", "cx"), ("height", "fy", "cy")):
         size, focal, center = (values[name] or 0.0 for name in (size_name, focal_name, center_name))
-        bad += [focal_name] if focal < 0.05 * size else []
-        bad += [center_name] if size and max(-center, center - size) > 1.5 * focal else []
+        bad += [focal_name] if focal < SHORTEST * size else []
+        bad += [center_name] if size and max(-center, center - size) > FARTHEST * focal else []
     return bad
 
 
