@@ -238,6 +238,12 @@ static void open_view(goe_estimator_t *estimator, const goe_image_t *image, cons
     view->image = image;
     view->motion = &estimator->motion;
     view->camera = camera;
+    view->box_noise_rel = 0.0f;
+#if GOE_WITH_FILTER
+    if (goe_uses_filter(estimator)) { /* the filter alone has settings of the detector */
+        view->box_noise_rel = estimator->settings.detector.box_noise_rel;
+    }
+#endif
     view->camera_to_body = estimator->camera_to_body[image->camera];
     follow_motion(estimator, view);
     if (may_begin_again(estimator, view)) {

@@ -8,6 +8,7 @@
 #define UPRIGHT 0.01f      /* sine of a lean that needs no turning back */
 #define COSINE_MIN 0.5f    /* of twice the lean: beyond 30 degrees width and height of a box hardly separate */
 #define DIRECTION_MIN 0.1f /* length of the vertical in the image, focal lengths: from straight above it has none */
+#define CUT_SIGMAS 3.0f    /* of a side's slow error, by which a detector may place a cut side inside the border */
 
 GOE_STATIC_ASSERT(GOE_SIDE_LEFT == 1u << GOE_BOX_LEFT && GOE_SIDE_TOP == 1u << GOE_BOX_TOP &&
                       GOE_SIDE_RIGHT == 1u << GOE_BOX_RIGHT && GOE_SIDE_BOTTOM == 1u << GOE_BOX_BOTTOM,
@@ -26,6 +27,20 @@ static unsigned near_border(const goe_camera_t *camera, const goe_sides_t *sides
         set |= is_near(sides->px[i], size_px, distance_px) ? 1u << i : 0u;
     }
     return set & sides->usable;
+}
+
+/* Top and bottom that the border may cut: the row of a foot or a head that is outside the image would place the obstacle too far away, or
+ * too low, by many sigma. The slow error is that of the box which ends at the border. Left and right are judged as a whole box, by `cut`. */
+static unsigned may_be_cut(const goe_camera_t *camera, const goe_sides_t *sides, float noise_rel) {
+    const float share = CUT_SIGMAS * noise_rel;
+    const float top_px = sides->px[GOE_BOX_TOP];
+    const float bottom_px = sides->px[GOE_BOX_BOTTOM];
+    const float last_px = camera->height_px - 1.0f;
+    if (!(camera->height_px > 0.0f) || !goe_sides_see(sides, GOE_SIDE_TOP | GOE_SIDE_BOTTOM)) {
+        return 0u;
+    }
+    return (top_px < share * bottom_px ? GOE_SIDE_TOP : 0u) |
+           (last_px - bottom_px < share * (last_px - top_px) ? GOE_SIDE_BOTTOM : 0u);
 }
 
 /* A side that is not measured may hold anything. The visible part ends at the image's border. */
@@ -52,7 +67,9 @@ void goe_sides_read(const goe_camera_t *camera, goe_view_t *view, goe_faults_t *
         goe_fault_count(faults, GOE_SWAPPED);
         sides->usable = 0;
     }
-    sides->usable = (uint8_t)(sides->usable & ~near_border(camera, sides, camera->border_rel));
+    const unsigned cut =
+        near_border(camera, sides, camera->border_rel) | may_be_cut(camera, sides, view->box_noise_rel);
+    sides->usable = (uint8_t)(sides->usable & ~cut);
     if (!swapped && (sides->usable & (sides->usable - 1u)) == 0u) { /* none or one */
         goe_fault_count(faults, GOE_BOX_INCOMPLETE);
     }

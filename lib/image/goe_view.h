@@ -43,6 +43,7 @@ typedef struct {
     const goe_image_t *image;        /* as it was given */
     const goe_motion_t *motion;      /* the track's own motion up to this image */
     const goe_camera_t *camera;      /* that took it */
+    float box_noise_rel;             /* setting; 0: window method */
     const float *camera_to_body;     /* rotations, row by row */
     float camera_to_trajectory[9];
 } goe_view_t;

@@ -226,6 +226,28 @@ static float forget_height(const goe_solid_t *solid, const goe_touch_t *t, goe_g
     return moved * moved * HIDDEN_VARIANCE;
 }
 
+/* Whether the whole upright edge that left or right touches lies beyond the one level side that is not measured, outside the image: then the
+ * side ends where the border crosses the roof or the base, which no row describes. */
+/*@ requires goe_observation_is_open(obs) && \valid_read(solid) && \valid_read(t); */
+static bool is_outside(const goe_observation_t *obs, const goe_solid_t *solid, const goe_touch_t *t) {
+    const goe_camera_t *camera = obs->camera;
+    const float *r = solid->unbiased_from_camera;
+    const float *p = t->point;
+    const bool from_above = !goe_sides_see(obs->sides, GOE_SIDE_BOTTOM);
+    if (from_above == !goe_sides_see(obs->sides, GOE_SIDE_TOP) || !(camera->height_px > 0.0f)) {
+        return false;
+    }
+    const float end = from_above ? solid->roof : solid->ground; /* the nearest to the image */
+    const float z = r[2] * p[0] + r[5] * end + r[8] * p[2];
+    if (!(z >= GOE_AHEAD_MIN)) {
+        return true;
+    }
+    const float x = (r[0] * p[0] + r[3] * end + r[6] * p[2]) / z;
+    const float y = (r[1] * p[0] + r[4] * end + r[7] * p[2]) / z;
+    const float px = line_at(camera, GOE_BOX_TOP, x, y).at * camera->fy_px + camera->cy_px;
+    return from_above ? px > camera->height_px : px < 0.0f;
+}
+
 GOE_NOINLINE float *goe_touch_add(goe_rows_t *rows, const goe_observation_t *obs, const goe_solid_t *solid, size_t side,
                                   float variance, goe_touch_t *touch, goe_gradient_t *gradient) {
     if (!goe_sides_see(obs->sides, 1u << side)) {
@@ -234,6 +256,9 @@ GOE_NOINLINE float *goe_touch_add(goe_rows_t *rows, const goe_observation_t *obs
     const float measured = goe_touch_coordinate(obs->camera, obs->sides, side);
     const bool level = goe_touch_is_level(side);
     if (!touch_side(obs, solid, side, measured, touch) || (level && touch->other)) {
+        return NULL;
+    }
+    if (!level && is_outside(obs, solid, touch)) {
         return NULL;
     }
     const line_t line = line_at(obs->camera, side, touch->x, touch->y);

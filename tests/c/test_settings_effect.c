@@ -63,7 +63,7 @@ static const effect_t effects[] = {
     {"navigation.position_white_sd_m", CHIMNEY, 1.0f, GROWS, SHOWN(sigma.z0_m)},
     {"navigation.height_white_sd_m", CHIMNEY, 5.0f, GROWS, SHOWN(sigma.height_m)},
     {"navigation.terrain_slope_sd", CHIMNEY, 0.2f, GROWS, SHOWN(sigma.height_m)},
-    {"navigation.terrain_height_sd_m", CUT, 20.0f, GROWS, SHOWN(sigma.height_m)},
+    {"navigation.terrain_height_sd_m", BOXES, 20.0f, GROWS, SHOWN(sigma.height_m)},
     {"detector.point_noise_px", TRUCK, 2.0f, GROWS, SHOWN(sigma.z0_m)},
     {"detector.point_noise_rel", CHIMNEY, 0.1f, GROWS, SHOWN(sigma.width_m)},
     {"detector.point_correlation", CHIMNEY, 0.8f, GROWS, SHOWN(sigma.width_m)},

@@ -107,6 +107,35 @@ static void a_side_at_the_border_is_not_measured(void) {
     }
 }
 
+/* [detector.box_noise_rel]
+ * GIVEN a top or a bottom that is nearer to the border than 3 times the slow error of a box which ends there THEN the border may have cut
+ * it, and it is not measured; left and right stay as they are. Where one of them is not measured, the box's height is not known, and
+ * without slow error or without the image's height there is no such distance. */
+static void a_top_or_bottom_that_may_be_cut_is_not_measured(void) {
+    const unsigned wide = GOE_SIDE_LEFT | GOE_SIDE_RIGHT;
+    view.box_noise_rel = 0.0666667f; /* 3 times, of 500 px: 100 px */
+    see(200.0f, 101.0f, 600.0f, 500.0f, GOE_SIDES_ALL);
+    TEST_ASSERT_EQUAL_HEX(GOE_SIDES_ALL, view.sides.usable);
+    see(200.0f, 99.0f, 600.0f, 500.0f, GOE_SIDES_ALL);
+    TEST_ASSERT_EQUAL_HEX(wide | GOE_SIDE_BOTTOM, view.sides.usable);
+    TEST_ASSERT_FALSE(view.sides.cut);
+    see(101.0f, 299.0f, 898.0f, 698.0f, GOE_SIDES_ALL);
+    TEST_ASSERT_EQUAL_HEX(GOE_SIDES_ALL, view.sides.usable);
+    see(101.0f, 299.0f, 898.0f, 700.0f, GOE_SIDES_ALL);
+    TEST_ASSERT_EQUAL_HEX(wide | GOE_SIDE_TOP, view.sides.usable);
+    see(200.0f, 299.0f, 600.0f, 700.0f, wide | GOE_SIDE_BOTTOM);
+    TEST_ASSERT_EQUAL_HEX(wide | GOE_SIDE_BOTTOM, view.sides.usable);
+    see(200.0f, 50.0f, 600.0f, 500.0f, wide | GOE_SIDE_TOP);
+    TEST_ASSERT_EQUAL_HEX(wide | GOE_SIDE_TOP, view.sides.usable);
+    camera.height_px = 0.0f;
+    see(200.0f, 299.0f, 600.0f, 700.0f, GOE_SIDES_ALL);
+    TEST_ASSERT_EQUAL_HEX(GOE_SIDES_ALL, view.sides.usable);
+    camera.height_px = HEIGHT_PX;
+    view.box_noise_rel = 0.0f;
+    see(200.0f, 299.0f, 600.0f, 700.0f, GOE_SIDES_ALL);
+    TEST_ASSERT_EQUAL_HEX(GOE_SIDES_ALL, view.sides.usable);
+}
+
 static void a_border_that_is_not_known_is_none(void) {
     camera.width_px = camera.height_px = 0.0f;
     see(-5.0f, -5.0f, 5000.0f, 5000.0f, GOE_SIDES_ALL);
@@ -220,6 +249,7 @@ int main(void) {
     RUN_TEST(a_bit_that_is_no_side_is_none);
     RUN_TEST(a_side_at_the_border_is_not_measured);
     RUN_TEST(a_missing_side_ends_at_the_border);
+    RUN_TEST(a_top_or_bottom_that_may_be_cut_is_not_measured);
     RUN_TEST(a_border_that_is_not_known_is_none);
     RUN_TEST(a_box_is_cut_by_left_and_right_alone);
     RUN_TEST(sides_out_of_order_do_not_count);

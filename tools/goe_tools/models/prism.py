@@ -40,7 +40,7 @@ given, too. All derivatives use complex steps, to detect errors in the library's
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -58,6 +58,7 @@ AXIS = np.array([0, 1, 0, 1])  # of each side's image coordinate
 OUTWARD = np.array([-1.0, -1.0, 1.0, 1.0])
 AHEAD_MIN = 0.02  # of a touching point, units of Z0
 LEVEL_MIN = 1e-6  # horizontal part of a normal
+CUT_SIGMAS = 3.0  # of box_noise_rel: top and bottom this near to the border may be cut
 HIDDEN_VARIANCE = 16 / 3  # of half the edge squared: uniform, in 16 images that share it
 EXACT_ROUNDS = 60
 EXACT = 1e-15  # focal lengths
@@ -121,12 +122,13 @@ class Sight:
     moved_m: np.ndarray  # (3,) camera since the axes' origin
     height_m: float  # of the camera above ground, from the first height and the changes of down
     given_height_m: float
+    image_height_px: float  # 0: not known
 
     def turned(self, turn: np.ndarray, origin_m: np.ndarray) -> Sight:
         """The image in axes with another direction and origin."""
         return Sight(
             self.time_s, self.camera, self.side, self.cut, turn @ self.axes_from_camera, turn @ self.axes_from_body,
-            turn @ (self.moved_m - origin_m), self.height_m, self.given_height_m,
+            turn @ (self.moved_m - origin_m), self.height_m, self.given_height_m, self.image_height_px,
         )  # fmt: skip
 
 
@@ -138,7 +140,7 @@ def focal_px(camera: Camera) -> np.ndarray:
 def measured_sides(
     box_px: np.ndarray, image_size_px: tuple[float, float], errors: ErrorModel
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Sides (K, 4), NaN if out of order or at the border, and whether the border cuts the box (K,)."""
+    """Sides (K, 4), NaN if out of order or perhaps cut, and whether the border cuts the box (K,)."""
     sides = np.array(box_px, float)
     with np.errstate(invalid="ignore"):
         swapped = (sides[:, BOX_LEFT] >= sides[:, BOX_RIGHT]) | (sides[:, BOX_TOP] >= sides[:, BOX_BOTTOM])
@@ -149,8 +151,15 @@ def measured_sides(
             distance = share * image_size_px[0]
             return (size > 0) & ((sides < distance) | (sides > size - 1 - distance))
 
+        share = CUT_SIGMAS * errors.box_noise_rel
+        top, bottom = sides[:, BOX_TOP], sides[:, BOX_BOTTOM]
+        last = image_size_px[1] - 1
+        high = [BOX_TOP, BOX_BOTTOM]
+        cut_there = np.stack([top < share * bottom, last - bottom < share * (last - top)], 1) & (last > 0)
+        may_be_cut = cut_there & np.isfinite(sides[:, high]).all(1, keepdims=True)
         cut = near(errors.truncation_rel)[:, [BOX_LEFT, BOX_RIGHT]].any(1)
         sides[near(errors.border_rel)] = np.nan
+        sides[:, high] = np.where(may_be_cut, np.nan, sides[:, high])
     return sides, cut | ~np.isfinite(sides[:, [BOX_LEFT, BOX_RIGHT]]).all(1)
 
 
@@ -169,7 +178,7 @@ def sights(flight: Flight, errors: ErrorModel) -> list[Sight]:
     return [
         Sight(
             float(t), camera, side[k], bool(cut[k]), t_from_camera[k], t_from_body[k], moved[k],
-            float(flight.height_m[0] - moved[k, 1]), float(flight.height_m[k]),
+            float(flight.height_m[0] - moved[k, 1]), float(flight.height_m[k]), float(flight.image_size_px[1]),
         )
         for k, t in enumerate(flight.time_s)
     ]  # fmt: skip
@@ -283,13 +292,29 @@ def row_of(sight: Sight, state: np.ndarray, side: int, at: float) -> Row | None:
     return Row(side, float(coordinate(sight, unknowns, side, touch)), slope)
 
 
+def is_outside(sight: Sight, unknowns: np.ndarray, side: int, at: float) -> bool:
+    """Whether the whole upright edge that left or right touches lies outside the image, beyond the one level side that is
+    not measured. Then the side ends where the border crosses the roof or the base."""
+    from_above, from_below = ~np.isfinite(sight.side[[BOX_BOTTOM, BOX_TOP]])
+    if from_above == from_below or not sight.image_height_px > 0:
+        return False
+    end = replace(touching(sight, unknowns, side, at), foot=not from_above)
+    if not in_camera(sight, unknowns, end)[2] >= AHEAD_MIN:
+        return True
+    y_px = float(coordinate(sight, unknowns, BOX_TOP, end)) * sight.camera.fy + sight.camera.cy
+    return y_px > sight.image_height_px if from_above else y_px < 0.0
+
+
 def visible_row_of(sight: Sight, state: np.ndarray, side: int, at: float) -> Row | None:
     """Like ``row_of``, unless no level side shows the end that a left or right side touches. Then the visible part may
-    end anywhere between foot and roof: the row takes the middle and has no derivative by the heights, (R27a)."""
+    end anywhere between foot and roof: the row takes the middle and has no derivative by the heights, (R27a). None if
+    the edge lies outside the image."""
     row = row_of(sight, state, side, at)
     if row is None or AXIS[side] == 1:
         return row
     unknowns = np.concatenate([state, np.zeros(UNKNOWNS - len(state))])
+    if is_outside(sight, unknowns, side, at):
+        return None
     foot = touching(sight, unknowns, side, at).foot
     if np.isfinite(sight.side[BOX_BOTTOM if foot else BOX_TOP]):
         return row
