@@ -24,6 +24,7 @@ void goe_align_points(const goe_camera_t *camera, goe_view_t *view, goe_faults_t
     goe_pixel_t replaced[GOE_FEATURES];
     const goe_pixel_t *pixels = goe_image_pixels(view->image);
     view->sides.usable = 0;
+    view->sides.doubtful = 0;
     view->sides.cut = false;
     view->seen = false;
     if (view->image->box.sides != 0) {

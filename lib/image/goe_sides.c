@@ -29,14 +29,14 @@ static unsigned near_border(const goe_camera_t *camera, const goe_sides_t *sides
     return set & sides->usable;
 }
 
-/* Top and bottom that the border may cut: the row of a foot or a head that is outside the image would place the obstacle too far away, or
- * too low, by many sigma. The slow error is that of the box which ends at the border. Left and right are judged as a whole box, by `cut`. */
+/* Top and bottom that the border may cut: a detector draws a cut side up to some sigma inside it. The slow error is that of the box which
+ * ends at the border. Left and right are judged as a whole box, by `cut`. */
 static unsigned may_be_cut(const goe_camera_t *camera, const goe_sides_t *sides, float noise_rel) {
     const float share = CUT_SIGMAS * noise_rel;
     const float top_px = sides->px[GOE_BOX_TOP];
     const float bottom_px = sides->px[GOE_BOX_BOTTOM];
     const float last_px = camera->height_px - 1.0f;
-    if (!(camera->height_px > 0.0f) || !goe_sides_see(sides, GOE_SIDE_TOP | GOE_SIDE_BOTTOM)) {
+    if (!(last_px > 0.0f) || !goe_sides_see(sides, GOE_SIDE_TOP | GOE_SIDE_BOTTOM)) {
         return 0u;
     }
     return (top_px < share * bottom_px ? GOE_SIDE_TOP : 0u) |
@@ -67,9 +67,9 @@ void goe_sides_read(const goe_camera_t *camera, goe_view_t *view, goe_faults_t *
         goe_fault_count(faults, GOE_SWAPPED);
         sides->usable = 0;
     }
-    const unsigned cut =
-        near_border(camera, sides, camera->border_rel) | may_be_cut(camera, sides, view->box_noise_rel);
-    sides->usable = (uint8_t)(sides->usable & ~cut);
+    const unsigned doubtful = may_be_cut(camera, sides, view->box_noise_rel);
+    sides->usable = (uint8_t)(sides->usable & ~near_border(camera, sides, camera->border_rel));
+    sides->doubtful = (uint8_t)(sides->usable & doubtful);
     if (!swapped && (sides->usable & (sides->usable - 1u)) == 0u) { /* none or one */
         goe_fault_count(faults, GOE_BOX_INCOMPLETE);
     }

@@ -30,6 +30,7 @@ typedef enum { GOE_BOX_LEFT, GOE_BOX_TOP, GOE_BOX_RIGHT, GOE_BOX_BOTTOM, GOE_BOX
 typedef struct {
     float px[GOE_BOX_SIDES]; /* raw image */
     uint8_t usable;          /* GOE_SIDE_... */
+    uint8_t doubtful;        /* of these, the level ones that the image's border may cut */
     bool cut;                /* left or right is missing, or near the image's border */
 } goe_sides_t;
 

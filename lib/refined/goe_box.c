@@ -296,9 +296,9 @@ static void add_side(const goe_observation_t *obs, const outline_t *o, const goe
 static void add_sides(const goe_observation_t *obs, const outline_t *o, goe_rows_t *rows) {
     goe_solid_t solid;
     const float width = o->edges.front.along.x + goe_absolute(o->edges.side.along.x);
-    goe_touch_open(obs, obs->height_m, &solid);
     solid.corner = o->corner;
     solid.corners = CORNERS;
+    goe_touch_open(obs, obs->height_m, &solid);
     const float wide = goe_touch_variance(obs, GOE_BOX_LEFT, goe_touch_size(obs, GOE_BOX_LEFT, width));
     const float high = goe_touch_variance(obs, GOE_BOX_TOP, goe_touch_size(obs, GOE_BOX_TOP, o->ground - o->top));
     add_side(obs, o, &solid, GOE_BOX_LEFT, wide, rows);

@@ -153,6 +153,7 @@ unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *sett
     obs->kind = filter->kind.wrong ? &UNKNOWN : &view->image->kind;
     obs->is_round = goe_filter_has_started(filter) ? filter->kind.is_round : starts_round(settings->model, obs->kind);
     obs->height_m = filter->datum.height_m;
+    obs->is_placed = (filter->known & GOE_HAS_POSITION) != 0u;
     obs->fade = 0.0f;
     obs->shift = 0.0f;
     take_noise(obs, filter, &view->image->noise);

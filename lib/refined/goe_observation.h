@@ -28,6 +28,7 @@ typedef struct {
     float depth_variance; /* box: of GOE_DEPTH_DIFFERENCE */
     float grown2;         /* (excess of width or height over the predicted one, in sigmas)^2 */
     bool two_faces;       /* box: both were visible, its length is estimated */
+    bool is_placed;       /* the latest image knew the position */
     bool is_round;        /* by its class, or by the settings */
     bool base;            /* both outer base corners are visible */
     bool edge;            /* an edge of the base is visible */

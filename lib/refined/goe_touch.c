@@ -50,20 +50,6 @@ float goe_touch_variance(const goe_observation_t *obs, size_t side, float size) 
 
 /* ------------------------------------------------------------------------------------------------------------- touch -- */
 
-/* n - e x n of the camera's axes, by the given attitude. */
-void goe_touch_open(const goe_observation_t *obs, float height_m, goe_solid_t *solid) {
-    const float *x = obs->state;
-    const float *r = obs->camera_to_axes;
-    float *to = solid->unbiased_from_camera;
-    solid->ground = height_m * x[GOE_INVERSE_RANGE] + x[GOE_GROUND];
-    solid->roof = height_m * x[GOE_INVERSE_RANGE] - x[GOE_TOP];
-    for (size_t i = 0; i < 3; i++) {
-        to[i] = r[i] - obs->ey * r[6 + i] + obs->ez * r[3 + i];
-        to[3 + i] = r[3 + i] - obs->ez * r[i] + obs->ex * r[6 + i];
-        to[6 + i] = r[6 + i] - obs->ex * r[3 + i] + obs->ey * r[i];
-    }
-}
-
 /* A vector of the camera's axes in those of a rotation. */
 static inline void turn(const float r[9], const float v[3], float to[3]) {
     to[0] = r[0] * v[0] + r[1] * v[1] + r[2] * v[2];
@@ -165,11 +151,12 @@ static bool touch_bent(const goe_observation_t *obs, const goe_solid_t *solid, s
     return touch(solid, bent, end, t);
 }
 
-/* Touches by the plane through the raw coordinate `at`. With a lens foot and head are tried, as the line is not straight between
+/* Touches by the plane through the side. With a lens foot and head are tried, as the line is not straight between
  * them. */
 /*@ requires goe_observation_is_open(obs) && goe_solid_is_closed(solid) && \valid(t) && side < GOE_BOX_SIDES; */
-static bool touch_side(const goe_observation_t *obs, const goe_solid_t *solid, size_t side, float at, goe_touch_t *t) {
+static bool touch_side(const goe_observation_t *obs, const goe_solid_t *solid, size_t side, goe_touch_t *t) {
     const goe_camera_t *camera = obs->camera;
+    const float at = goe_touch_coordinate(camera, obs->sides, side);
     const float sign = sign_of(side);
     const bool level = goe_touch_is_level(side);
     const float straight[3] = {level ? 0.0f : sign, level ? sign : 0.0f, -sign * at};
@@ -186,6 +173,42 @@ static bool touch_side(const goe_observation_t *obs, const goe_solid_t *solid, s
     }
     t->other = other;
     return true;
+}
+
+static bool shows(const goe_solid_t *solid, size_t side) { return (solid->seen >> side & 1u) != 0u; }
+
+/* Whether the point lies above the image (side: top) or below it (bottom), through the lens. */
+/*@ requires goe_observation_is_open(obs) && \valid_read(t) && side < GOE_BOX_SIDES; */
+static bool is_beyond(const goe_observation_t *obs, const goe_touch_t *t, size_t side) {
+    const goe_camera_t *camera = obs->camera;
+    const float px = line_at(camera, side, t->x, t->y).at * camera->fy_px + camera->cy_px;
+    return side == GOE_BOX_TOP ? px < 0.0f : px > camera->height_px;
+}
+
+/* Bit of a doubtful top or bottom that the border cuts: until the position is known, or where the solid reaches beyond the border. Taken as
+ * the foot, it would place the obstacle too far away by many sigma. */
+/*@ requires goe_observation_is_open(obs) && goe_solid_is_closed(solid) && side < GOE_BOX_SIDES; */
+static unsigned cut_bit(const goe_observation_t *obs, const goe_solid_t *solid, size_t side) {
+    goe_touch_t t;
+    const unsigned doubtful = obs->sides->doubtful & (1u << side);
+    const bool shown =
+        doubtful == 0u || (obs->is_placed && touch_side(obs, solid, side, &t) && !is_beyond(obs, &t, side));
+    return shown ? 0u : doubtful;
+}
+
+/* n - e x n of the camera's axes, by the given attitude. */
+void goe_touch_open(const goe_observation_t *obs, float height_m, goe_solid_t *solid) {
+    const float *x = obs->state;
+    const float *r = obs->camera_to_axes;
+    float *to = solid->unbiased_from_camera;
+    solid->ground = height_m * x[GOE_INVERSE_RANGE] + x[GOE_GROUND];
+    solid->roof = height_m * x[GOE_INVERSE_RANGE] - x[GOE_TOP];
+    for (size_t i = 0; i < 3; i++) {
+        to[i] = r[i] - obs->ey * r[6 + i] + obs->ez * r[3 + i];
+        to[3 + i] = r[3 + i] - obs->ez * r[i] + obs->ex * r[6 + i];
+        to[6 + i] = r[6 + i] - obs->ex * r[3 + i] + obs->ey * r[i];
+    }
+    solid->seen = obs->sides->usable ^ cut_bit(obs, solid, GOE_BOX_TOP) ^ cut_bit(obs, solid, GOE_BOX_BOTTOM);
 }
 
 /* --------------------------------------------------------------------------------------------------------------- row -- */
@@ -211,9 +234,8 @@ static void find_gradient(const goe_observation_t *obs, const goe_solid_t *solid
 
 /* Whether the end of the solid that the side touches may be hidden, or outside the image: no level side of the box, and no base
  * corner, shows it. */
-static bool is_hidden(const goe_observation_t *obs, const goe_touch_t *t) {
-    return t->other ||
-           (!goe_sides_see(obs->sides, t->foot ? GOE_SIDE_BOTTOM : GOE_SIDE_TOP) && !(t->foot && obs->edge));
+static bool is_hidden(const goe_observation_t *obs, const goe_solid_t *solid, const goe_touch_t *t) {
+    return t->other || (!shows(solid, t->foot ? GOE_BOX_BOTTOM : GOE_BOX_TOP) && !(t->foot && obs->edge));
 }
 
 /* (R27a): then the side touches the visible part's end, anywhere between foot and head. The row takes the middle and says
@@ -226,44 +248,27 @@ static float forget_height(const goe_solid_t *solid, const goe_touch_t *t, goe_g
     return moved * moved * HIDDEN_VARIANCE;
 }
 
-/* Whether the whole upright edge that left or right touches lies beyond the one level side that is not measured, outside the image: then the
- * side ends where the border crosses the roof or the base, which no row describes. */
+/* Whether the end of the upright edge that left or right touches lies outside the image, beyond the opposite level side, which is not
+ * measured: then all of the edge does, and the side ends where the border crosses the roof or the base, which no row describes. */
 /*@ requires goe_observation_is_open(obs) && \valid_read(solid) && \valid_read(t); */
 static bool is_outside(const goe_observation_t *obs, const goe_solid_t *solid, const goe_touch_t *t) {
-    const goe_camera_t *camera = obs->camera;
-    const float *r = solid->unbiased_from_camera;
-    const float *p = t->point;
-    const bool from_above = !goe_sides_see(obs->sides, GOE_SIDE_BOTTOM);
-    if (from_above == !goe_sides_see(obs->sides, GOE_SIDE_TOP) || !(camera->height_px > 0.0f)) {
-        return false;
-    }
-    const float end = from_above ? solid->roof : solid->ground; /* the nearest to the image */
-    const float z = r[2] * p[0] + r[5] * end + r[8] * p[2];
-    if (!(z >= GOE_AHEAD_MIN)) {
-        return true;
-    }
-    const float x = (r[0] * p[0] + r[3] * end + r[6] * p[2]) / z;
-    const float y = (r[1] * p[0] + r[4] * end + r[7] * p[2]) / z;
-    const float px = line_at(camera, GOE_BOX_TOP, x, y).at * camera->fy_px + camera->cy_px;
-    return from_above ? px > camera->height_px : px < 0.0f;
+    const size_t beyond = t->foot ? GOE_BOX_TOP : GOE_BOX_BOTTOM;
+    return obs->camera->height_px > 0.0f && !shows(solid, beyond) && is_beyond(obs, t, beyond);
 }
 
 GOE_NOINLINE float *goe_touch_add(goe_rows_t *rows, const goe_observation_t *obs, const goe_solid_t *solid, size_t side,
                                   float variance, goe_touch_t *touch, goe_gradient_t *gradient) {
-    if (!goe_sides_see(obs->sides, 1u << side)) {
+    if (!shows(solid, side)) {
         return NULL;
     }
     const float measured = goe_touch_coordinate(obs->camera, obs->sides, side);
     const bool level = goe_touch_is_level(side);
-    if (!touch_side(obs, solid, side, measured, touch) || (level && touch->other)) {
-        return NULL;
-    }
-    if (!level && is_outside(obs, solid, touch)) {
+    if (!touch_side(obs, solid, side, touch) || (level ? touch->other : is_outside(obs, solid, touch))) {
         return NULL;
     }
     const line_t line = line_at(obs->camera, side, touch->x, touch->y);
     find_gradient(obs, solid, touch, &line, gradient);
-    const float hidden = !level && is_hidden(obs, touch) ? forget_height(solid, touch, gradient) : 0.0f;
+    const float hidden = !level && is_hidden(obs, solid, touch) ? forget_height(solid, touch, gradient) : 0.0f;
     float *by = goe_rows_add(rows, (goe_feature_t)feature_of[side], level ? GOE_ALONG_Y : GOE_ALONG_X, measured,
                              variance + hidden, gradient);
     rows->side[rows->count - 1u] = (uint8_t)side;

@@ -16,7 +16,8 @@ typedef struct {
     goe_ellipse_t ellipse;
     const goe_xz_t *corner;
     size_t corners;
-    float ground, roof;            /* Y; as the next: goe_touch_open() */
+    float ground, roof;            /* Y; as the next two: goe_touch_open() */
+    unsigned seen;                 /* GOE_SIDE_...: sides that are measured, and that no border seems to cut */
     float unbiased_from_camera[9]; /* rotation, row by row */
 } goe_solid_t;
 
@@ -54,8 +55,8 @@ float goe_touch_white_variance(const goe_observation_t *obs, size_t side, float 
 /*@ requires goe_observation_is_open(obs) && side < GOE_BOX_SIDES; */
 float goe_touch_variance(const goe_observation_t *obs, size_t side, float size);
 
-/* Sets the common part of all sides of an image: ground and roof by the camera's height, and the camera's axes in the state's, freed of
- * the attitude bias. */
+/* Sets the common part of all sides of an image: ground and roof by the camera's height, the camera's axes in the state's, freed of the
+ * attitude bias, and the sides that give rows. The footprint is set before. */
 /*@ requires goe_observation_is_open(obs) && \valid(solid); */
 void goe_touch_open(const goe_observation_t *obs, float height_m, goe_solid_t *solid);
 

@@ -142,7 +142,7 @@ static void fly(double distance_m, double margin_m, double sink_m_s, int count[4
 }
 
 /* [GOE_DECISION_CLEAR, detector.box_noise_rel]
- * GIVEN a descent beside a building below the lower border of the image, whose box wanders by its detector's noise, also at that border,
+ * GIVEN a descent next to a building below the lower border of the image, whose box wanders by its detector's noise, also at that border,
  * WHEN the building is nearer than the margin and less than the clearance below THEN at most 2 % of the decisions are "clear", from errors of
  * the box beyond 3 sigma, and 97 % are "act". Before, 18 % were "clear": a bottom or a side that the border cuts placed the building by up
  * to 20 m too far away. */

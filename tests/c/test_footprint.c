@@ -262,6 +262,7 @@ static void see_box(float left, float top, float right, float bottom) {
     }
     sides.usable = GOE_SIDES_ALL;
     sides.cut = false;
+    sides.doubtful = 0;
 }
 
 /* GIVEN a first box THEN the filter starts with the range that its foot gives over flat ground, its near side being nearer than its

@@ -51,6 +51,7 @@ static void see(double ahead, double wider, double taller) {
     }
     sides.usable = GOE_SIDES_ALL;
     sides.cut = false;
+    sides.doubtful = 0;
 }
 
 static double growth(void) {

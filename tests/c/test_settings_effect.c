@@ -49,7 +49,7 @@ static const effect_t effects[] = {
     {"camera.width_px", CUT, 0.0f, DIFFERS, NOTHING_SHOWN},
     {"camera.height_px", CUT, 0.0f, DIFFERS, NOTHING_SHOWN},
     {"camera.border_rel", CUT, 0.3f, DIFFERS, NOTHING_SHOWN},
-    {"camera.truncation_rel", CUT, 0.5f, GROWS, SHOWN(sigma.z0_m)},
+    {"camera.truncation_rel", CUT, 0.1f, GROWS, SHOWN(sigma.z0_m)},
     {"method", TRUCK, GOE_METHOD_WINDOW, DIFFERS, NOTHING_SHOWN},
     {"model", TRUCK, GOE_MODEL_DISC, DIFFERS, NOTHING_SHOWN},
     {"heading_auto", TRUCK, 0.0f, DIFFERS, NOTHING_SHOWN},

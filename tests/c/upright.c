@@ -75,6 +75,7 @@ void upright_measure(const upright_t *solid, const double state[GOE_STATES], goe
     }
     sides->usable = GOE_SIDES_ALL;
     sides->cut = false;
+    sides->doubtful = 0;
 }
 
 static double slope(const upright_t *solid, const double truth[GOE_STATES], size_t side, int i) {

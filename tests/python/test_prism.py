@@ -30,6 +30,7 @@ from goe_tools.models.prism import (
     S,
     Sight,
     W,
+    doubtful_sides,
     exact_side,
     measured_sides,
     rim_point,
@@ -370,17 +371,26 @@ def test_sides_that_are_measured() -> None:
         [30.0, 200.0, 300.0, 400.0],  # left near the border: cut
         [10.0, 5.0, 300.0, 475.0],  # left, top and bottom at it
         [nan, 200.0, 300.0, 400.0],
-        [100.0, 20.0, 300.0, 460.0],  # top and bottom near it: perhaps cut, and not measured
-        [100.0, 20.0, 300.0, 100.0],  # ... the top alone
-        [100.0, 20.0, 300.0, nan],  # the box's height is not known
+        [100.0, 20.0, 300.0, 460.0],  # top and bottom near it: not cut, but doubtful
     ])  # fmt: skip
     sides, cut = measured_sides(boxes, (1000.0, 480.0), ErrorModel())
-    assert np.isfinite(sides).sum(1).tolist() == [4, 0, 0, 4, 1, 3, 2, 3, 3]
-    assert cut.tolist() == [False, True, True, True, True, True, False, False, False]
-    sides, _ = measured_sides(boxes, (1000.0, 480.0), ErrorModel(box_noise_rel=0.0))
-    assert np.isfinite(sides).sum(1).tolist() == [4, 0, 0, 4, 1, 3, 4, 4, 3]
-    sides, _ = measured_sides(boxes, (0.0, 0.0), ErrorModel())
-    assert np.isfinite(sides).sum(1).tolist() == [4, 0, 0, 4, 4, 3, 4, 4, 3]
+    assert np.isfinite(sides).sum(1).tolist() == [4, 0, 0, 4, 1, 3, 4]
+    assert cut.tolist() == [False, True, True, True, True, True, False]
+    assert np.isfinite(measured_sides(boxes, (0.0, 0.0), ErrorModel())[0]).sum(1).tolist() == [4, 0, 0, 4, 4, 3, 4]
+
+
+def test_sides_that_may_be_cut() -> None:
+    boxes = np.array([
+        [100.0, 200.0, 300.0, 400.0],
+        [100.0, 20.0, 300.0, 460.0],  # top and bottom near the border
+        [100.0, 20.0, 300.0, 90.0],  # the bottom is far from it
+        [100.0, 20.0, 300.0, np.nan],  # the box's height is not known
+    ])  # fmt: skip
+    doubtful = doubtful_sides(boxes, 480.0, ErrorModel())
+    assert doubtful[:, [BOX_TOP, BOX_BOTTOM]].tolist() == [[False, False], [True, True], [False, False], [False, False]]
+    assert not doubtful[:, [BOX_LEFT, BOX_RIGHT]].any()
+    assert not doubtful_sides(boxes, 480.0, ErrorModel(box_noise_rel=0.0)).any()
+    assert not doubtful_sides(boxes, 0.0, ErrorModel()).any()
 
 
 # -------------------------------------------------------------------------------------------------------- the bound

@@ -116,6 +116,7 @@ class Sight:
     time_s: float
     camera: Camera
     side: np.ndarray  # (4,) raw coordinates, focal lengths; NaN where not measured
+    doubtful: np.ndarray  # (4,) whether the border may have cut it: top and bottom
     cut: bool  # left or right is missing, or near the border
     axes_from_camera: np.ndarray  # (3, 3) estimated
     axes_from_body: np.ndarray
@@ -127,7 +128,8 @@ class Sight:
     def turned(self, turn: np.ndarray, origin_m: np.ndarray) -> Sight:
         """The image in axes with another direction and origin."""
         return Sight(
-            self.time_s, self.camera, self.side, self.cut, turn @ self.axes_from_camera, turn @ self.axes_from_body,
+            self.time_s, self.camera, self.side, self.doubtful, self.cut,
+            turn @ self.axes_from_camera, turn @ self.axes_from_body,
             turn @ (self.moved_m - origin_m), self.height_m, self.given_height_m, self.image_height_px,
         )  # fmt: skip
 
@@ -140,7 +142,7 @@ def focal_px(camera: Camera) -> np.ndarray:
 def measured_sides(
     box_px: np.ndarray, image_size_px: tuple[float, float], errors: ErrorModel
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Sides (K, 4), NaN if out of order or perhaps cut, and whether the border cuts the box (K,)."""
+    """Sides (K, 4), NaN if out of order or at the border, and whether the border cuts the box (K,)."""
     sides = np.array(box_px, float)
     with np.errstate(invalid="ignore"):
         swapped = (sides[:, BOX_LEFT] >= sides[:, BOX_RIGHT]) | (sides[:, BOX_TOP] >= sides[:, BOX_BOTTOM])
@@ -151,16 +153,20 @@ def measured_sides(
             distance = share * image_size_px[0]
             return (size > 0) & ((sides < distance) | (sides > size - 1 - distance))
 
-        share = CUT_SIGMAS * errors.box_noise_rel
-        top, bottom = sides[:, BOX_TOP], sides[:, BOX_BOTTOM]
-        last = image_size_px[1] - 1
-        high = [BOX_TOP, BOX_BOTTOM]
-        cut_there = np.stack([top < share * bottom, last - bottom < share * (last - top)], 1) & (last > 0)
-        may_be_cut = cut_there & np.isfinite(sides[:, high]).all(1, keepdims=True)
         cut = near(errors.truncation_rel)[:, [BOX_LEFT, BOX_RIGHT]].any(1)
         sides[near(errors.border_rel)] = np.nan
-        sides[:, high] = np.where(may_be_cut, np.nan, sides[:, high])
     return sides, cut | ~np.isfinite(sides[:, [BOX_LEFT, BOX_RIGHT]]).all(1)
+
+
+def doubtful_sides(box_px: np.ndarray, image_height_px: float, errors: ErrorModel) -> np.ndarray:
+    """(K, 4): top and bottom so near to the border that it may have cut them."""
+    share = CUT_SIGMAS * errors.box_noise_rel
+    last = image_height_px - 1
+    top, bottom = box_px[:, BOX_TOP], box_px[:, BOX_BOTTOM]
+    doubtful = np.zeros(box_px.shape, bool)
+    doubtful[:, BOX_TOP] = (last > 0) & np.isfinite(bottom) & (top < share * bottom)
+    doubtful[:, BOX_BOTTOM] = (last > 0) & np.isfinite(top) & (last - bottom < share * (last - top))
+    return doubtful
 
 
 def sights(flight: Flight, errors: ErrorModel) -> list[Sight]:
@@ -174,10 +180,11 @@ def sights(flight: Flight, errors: ErrorModel) -> list[Sight]:
     t_from_body = t_from_ned @ ned_from_body
     t_from_camera = t_from_body @ mounting(camera)
     px, cut = measured_sides(flight.box_px, flight.image_size_px, errors)
+    doubtful = doubtful_sides(flight.box_px, flight.image_size_px[1], errors)
     side = (px - np.array([camera.cx, camera.cy])[AXIS]) / focal_px(camera)
     return [
         Sight(
-            float(t), camera, side[k], bool(cut[k]), t_from_camera[k], t_from_body[k], moved[k],
+            float(t), camera, side[k], doubtful[k], bool(cut[k]), t_from_camera[k], t_from_body[k], moved[k],
             float(flight.height_m[0] - moved[k, 1]), float(flight.height_m[k]), float(flight.image_size_px[1]),
         )
         for k, t in enumerate(flight.time_s)
@@ -292,17 +299,31 @@ def row_of(sight: Sight, state: np.ndarray, side: int, at: float) -> Row | None:
     return Row(side, float(coordinate(sight, unknowns, side, touch)), slope)
 
 
+def shown(sight: Sight, state: np.ndarray, is_placed: bool) -> Sight:
+    """The image without the doubtful sides that the border cuts: until the position is known, or where the obstacle
+    reaches beyond the border."""
+    unknowns = np.concatenate([state, np.zeros(UNKNOWNS - len(state))])
+    side = sight.side.copy()
+    for i in np.flatnonzero(sight.doubtful & np.isfinite(side)):
+        row = row_of(sight, state, i, side[i]) if is_placed else None
+        px = 0.0
+        if row is not None:
+            touch = touching(sight, unknowns, i, side[i])
+            px = float(coordinate(sight, unknowns, i, touch)) * sight.camera.fy + sight.camera.cy
+        beyond = px < 0.0 if i == BOX_TOP else px > sight.image_height_px
+        if row is None or beyond:
+            side[i] = np.nan
+    return replace(sight, side=side)
+
+
 def is_outside(sight: Sight, unknowns: np.ndarray, side: int, at: float) -> bool:
-    """Whether the whole upright edge that left or right touches lies outside the image, beyond the one level side that is
-    not measured. Then the side ends where the border crosses the roof or the base."""
-    from_above, from_below = ~np.isfinite(sight.side[[BOX_BOTTOM, BOX_TOP]])
-    if from_above == from_below or not sight.image_height_px > 0:
+    """Whether the end of the upright edge that left or right touches lies outside the image, beyond the opposite level
+    side, which is not measured. Then the side ends where the border crosses the roof or the base."""
+    end = touching(sight, unknowns, side, at)
+    if np.isfinite(sight.side[BOX_TOP if end.foot else BOX_BOTTOM]) or not sight.image_height_px > 0:
         return False
-    end = replace(touching(sight, unknowns, side, at), foot=not from_above)
-    if not in_camera(sight, unknowns, end)[2] >= AHEAD_MIN:
-        return True
     y_px = float(coordinate(sight, unknowns, BOX_TOP, end)) * sight.camera.fy + sight.camera.cy
-    return y_px > sight.image_height_px if from_above else y_px < 0.0
+    return y_px < 0.0 if end.foot else y_px > sight.image_height_px
 
 
 def visible_row_of(sight: Sight, state: np.ndarray, side: int, at: float) -> Row | None:

@@ -62,6 +62,7 @@ from .prism import (
     focal_px,
     quantities,
     quantity_slopes,
+    shown,
     sights,
     turned,
     visible_row_of,
@@ -322,7 +323,8 @@ class PrismFilter:
     def _rows(self, sight: Sight, q_variance: float) -> Rows | None:
         """Residuals and derivatives as measured, and white variances that include the linearization error."""
         errors = self.errors
-        found = [visible_row_of(sight, self.state, i, sight.side[i]) for i in range(4) if np.isfinite(sight.side[i])]
+        seen = shown(sight, self.state, self.known)
+        found = [visible_row_of(seen, self.state, i, seen.side[i]) for i in range(4) if np.isfinite(seen.side[i])]
         rows = [row for row in found if row is not None]
         if not rows:
             return None
