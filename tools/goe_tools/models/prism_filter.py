@@ -325,8 +325,7 @@ class PrismFilter:
         errors = self.errors
         seen = shown(sight, self.state, self.known)
         found = [visible_row_of(seen, self.state, i, seen.side[i]) for i in range(4) if np.isfinite(seen.side[i])]
-        rows = [row for row in found if row is not None]
-        if not rows:
+        if not (rows := [row for row in found if row is not None]):
             return None
         side = np.array([row.side for row in rows])
         slope = np.array([row.slope for row in rows])
