@@ -778,7 +778,8 @@ static void test_the_log(void) {
     TEST_ASSERT_EQUAL(0, assessment.at("Wst"));
     TEST_ASSERT_EQUAL(1, assessment.at("Ob"));
     TEST_ASSERT_EQUAL(1, scripted.log["GOEA"][2].value.at("Unp"));  // detected, no range yet
-    TEST_ASSERT_EQUAL(0, scripted.log["GOEA"][30].value.at("Unp")); // placed; at the end it leaves the image
+    TEST_ASSERT_EQUAL(0, scripted.log["GOEA"][30].value.at("Unp")); // placed
+    TEST_ASSERT_EQUAL(1, assessment.at("Unp"));                     // its box has left the image
     TEST_ASSERT_EQUAL(12, int(assessment.at("Fl")) & 12);
     TEST_ASSERT_INT_WITHIN(2, 60, scripted.log["GOEA"].size()); // also before the first detection
     const auto &status = scripted.log["GOES"].back().value;

@@ -299,19 +299,21 @@ def row_of(sight: Sight, state: np.ndarray, side: int, at: float) -> Row | None:
     return Row(side, float(coordinate(sight, unknowns, side, touch)), slope)
 
 
+def is_beyond(sight: Sight, unknowns: np.ndarray, touch: Touch, border: int) -> bool:
+    """Whether the touching point lies above the image (top) or below it (bottom), through the lens."""
+    y_px = float(coordinate(sight, unknowns, BOX_TOP, touch)) * sight.camera.fy + sight.camera.cy
+    return y_px < 0.0 if border == BOX_TOP else y_px > sight.image_height_px
+
+
 def shown(sight: Sight, state: np.ndarray, is_placed: bool) -> Sight:
     """The image without the doubtful sides that the border cuts: until the position is known, or where the obstacle
     reaches beyond the border."""
     unknowns = np.concatenate([state, np.zeros(UNKNOWNS - len(state))])
     side = sight.side.copy()
     for i in np.flatnonzero(sight.doubtful & np.isfinite(side)):
-        row = row_of(sight, state, i, side[i]) if is_placed else None
-        px = 0.0
-        if row is not None:
-            touch = touching(sight, unknowns, i, side[i])
-            px = float(coordinate(sight, unknowns, i, touch)) * sight.camera.fy + sight.camera.cy
-        beyond = px < 0.0 if i == BOX_TOP else px > sight.image_height_px
-        if row is None or beyond:
+        touch = touching(sight, unknowns, i, side[i])
+        is_ahead = in_camera(sight, unknowns, touch)[2] >= AHEAD_MIN
+        if not (is_placed and is_ahead) or is_beyond(sight, unknowns, touch, i):
             side[i] = np.nan
     return replace(sight, side=side)
 
@@ -320,10 +322,10 @@ def is_outside(sight: Sight, unknowns: np.ndarray, side: int, at: float) -> bool
     """Whether the end of the upright edge that left or right touches lies outside the image, beyond the opposite level
     side, which is not measured. Then the side ends where the border crosses the roof or the base."""
     end = touching(sight, unknowns, side, at)
-    if np.isfinite(sight.side[BOX_TOP if end.foot else BOX_BOTTOM]) or not sight.image_height_px > 0:
+    border = BOX_TOP if end.foot else BOX_BOTTOM
+    if np.isfinite(sight.side[border]) or not sight.image_height_px > 0:
         return False
-    y_px = float(coordinate(sight, unknowns, BOX_TOP, end)) * sight.camera.fy + sight.camera.cy
-    return y_px < 0.0 if end.foot else y_px > sight.image_height_px
+    return is_beyond(sight, unknowns, end, border)
 
 
 def visible_row_of(sight: Sight, state: np.ndarray, side: int, at: float) -> Row | None:
