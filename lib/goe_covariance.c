@@ -69,8 +69,8 @@ static bool covariance_of_filter(const goe_estimator_t *estimator, bool for_haza
 }
 #endif
 
-/* Of an answer that the filter has left: the sigmas, and what the age adds. How the errors go together is lost; twice the variance
- * covers any two that add up, which is for a hazard to know. */
+/* Of an estimate that the filter no longer holds: its sigmas, and what the age adds. The correlations are lost. For a hazard, doubled
+ * variances cover two fully correlated errors. */
 static void covariance_of_answer(const goe_estimator_t *estimator, bool for_hazard, float ahead_s,
                                  goe_covariance_t covariance) {
     const bool lost = for_hazard && goe_latest_by_filter(estimator);

@@ -39,8 +39,8 @@ static inline uint32_t word_at(const void *from, size_t i) {
 
 GOE_STATIC_ASSERT(SEALED_FROM % WORD == 0 && SEALED_TO % WORD == 0, sealed_memory_is_whole_words);
 
-/* The sum finds every change of one word, and of two bits unless they are the same bit of two words; the turned one then finds these,
- * unless the words lie a multiple of 32 apart. */
+/* The sum detects every change of one word, and of two bits except the same bit of two words. The rotated XOR detects these, unless the
+ * words are a multiple of 32 apart. */
 static inline void add(goe_seal_t *seal, uint32_t word) {
     seal->sum += word;
     seal->turned = word ^ (seal->turned << 1 | seal->turned >> 31);

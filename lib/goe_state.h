@@ -131,9 +131,9 @@ typedef struct {
 #endif
 } goe_axes_t;
 
-/* refined/goe_box_start.c: the box that the images before saw; goe_model.c: its last one. */
+/* refined/goe_box_start.c: the box found in the previous images; goe_model.c: the last box. */
 typedef struct {
-    float extent[2];     /* lateral ones of two faces, focal lengths; or the orientation of one, rad, and nothing */
+    float extent[2];     /* two faces: lateral extents, focal lengths; one face: its orientation, rad, second unused */
     goe_flag_t both;     /* of two faces */
     uint8_t agreeing;    /* images in a row */
     uint8_t near_images; /* in which an undetected near corner still counts as missed */
@@ -165,7 +165,7 @@ typedef struct {
 typedef struct {
     float by[GOE_UNKNOWNS];
     float value;    /* focal lengths */
-    float variance; /* not positive: the side was never measured, and its error is as large as any */
+    float variance; /* not positive: the side was not measured yet, and the magnitude is the configured variance */
 } goe_side_memory_t;
 
 /* refined/goe_scatter.c: residuals of one image with those of the image before. A series: a coordinate of a feature. */
@@ -208,7 +208,7 @@ typedef struct {
     float dx_m, dz_m;
 } goe_place_t;
 
-typedef struct {         /* refined/goe_refined.c: what of the latest answer outlives the state that gave it */
+typedef struct {         /* refined/goe_answer.c: data of the latest estimate that stay valid when the state changes */
     float reach_m;       /* half of the extent about the reference point, m; prism: across the line of sight */
     goe_place_t nearer;  /* prism: from the middle of a circle of that reach to that of one as near as it is, T axes */
     float height_bias_m; /* constant error of the camera's height that the answer is freed of, m */

@@ -57,8 +57,8 @@ static void find_times(const goe_outline_t *o, const goe_course_t *course, goe_c
     goe_affine_divide(lowest, course->speed_m_s);
 }
 
-/* What bounds the spread of the time whatever the derivatives say: the outline is met between its near and its far end.
- * They do at a grazed edge, where the entry moves at once from one end to the other. */
+/* Upper bound of the time's sigma: the path meets the outline between its near and its far end. At a grazed edge the derivatives are too
+ * large, as the entry jumps from one end to the other. */
 static float time_sd_most(const goe_outline_t *o, const goe_course_t *course, goe_covariance_t covariance) {
     goe_affine_t far_end;
     goe_affine_t near_end;
@@ -94,7 +94,7 @@ static float time_sd(const goe_outline_t *o, const goe_course_t *course, const g
     return goe_bounded(sd < most ? sd : most);
 }
 
-/* The clearance at the time of `lowest`, without the part of a time's sigma that its derivatives lack. */
+/* The clearance at the time of `lowest`. `share` scales that time's derivatives, so that they give its full sigma, time_sd(). */
 static void find_clearance(const goe_course_t *course, const goe_affine_t *lowest, float share, float height_m,
                            goe_affine_t *clearance) {
     clearance->value = height_m + course->climb_m_s * lowest->value;

@@ -26,8 +26,8 @@ void goe_rule_default(goe_rule_t *rule) {
     }
 }
 
-/* What an image measures is the inverse of the time, and to that the sigma belongs: for a small sigma this is the time less two of
- * them, for a sigma of half the time it is half of the time and not none. */
+/* An image measures the inverse of the time, so the bound uses the sigma of that: for a small sigma it is the time less two sigmas, for a
+ * sigma of half the time it is half of the time, and not 0. */
 float goe_earliest_tcpa_s(const goe_hazard_t *hazard) {
     const bool finite =
         hazard && goe_larger_bits(goe_magnitude(hazard->tcpa_s), goe_magnitude(hazard->tcpa_sd_s)) < GOE_INFINITY_BITS;
@@ -59,8 +59,7 @@ static void widen(const goe_estimator_t *estimator, const goe_rule_t *rule, goe_
     }
 }
 
-/* A probability is also small where nothing is known: the wider the sigmas, the less of them lies within the distances. So a clear
- * answer has one of the two distances kept by a sigma. */
+/* Wide sigmas, too, make the probability small. So CLEAR requires that one of the two distances is kept at one sigma. */
 static bool is_outside(const goe_hazard_t *hazard, const goe_intent_t *intent) {
     const bool aside = hazard->dcpa_m - hazard->dcpa_sd_m >= intent->margin_m;
     const bool above = hazard->has_clearance && hazard->clearance_m - hazard->clearance_sd_m >= intent->clearance_m;
@@ -125,8 +124,8 @@ static GOE_NOINLINE goe_decision_t judge(const goe_estimator_t *estimator, const
     return decision == GOE_DECISION_CLEAR && !clears ? GOE_DECISION_UNKNOWN : decision;
 }
 
-/* Whether the aircraft is too near now, which the hazard of an aircraft that keeps its distance says. At a creeping speed the closest
- * approach is a long time ahead even then. At a higher speed it is not: from within the margin it comes within the rule's time. */
+/* Whether the aircraft is too near now, judged as if it were at rest relative to the obstacle. At a creeping speed the closest approach is
+ * a long time ahead even nearby. At a higher speed it is not: from within the margin it comes within the rule's time. */
 static GOE_NOINLINE bool is_too_near(const goe_estimator_t *estimator, const goe_intent_t *intent,
                                      const goe_rule_t *rule, goe_hazard_t *met) {
     const goe_estimate_t *estimate = &estimator->estimate;
@@ -146,8 +145,8 @@ static GOE_NOINLINE bool is_too_near(const goe_estimator_t *estimator, const goe
     return true;
 }
 
-/* The caller may not know that images are refused, and since when. So the rule also judges the time of the newest of them. That
- * time may be wrong: it orders, or ends a "clear", but takes nothing back. */
+/* The caller may not know that images are refused, and since when. So the rule also judges the time of the newest of them. That time may
+ * be wrong: it can only make the decision more severe. */
 static goe_decision_t judge_refused(const goe_estimator_t *estimator, const goe_intent_t *intent,
                                     const goe_rule_t *rule, goe_decision_t now, goe_hazard_t *met) {
     const float since_s = estimator->estimate.age_s;

@@ -19,7 +19,7 @@
 #define LEAP_MIN_S 0.1f        /* ... or of a time */
 #define LEAP_MIN_M_S2 40.0f    /* ... or an aircraft's acceleration */
 #define LEAPS_MAX 3            /* in a row: of more, the velocity is wrong */
-#define STEADY_SHARE 0.25f     /* of a leap: an image that lies nearer to the predicted place confirms the velocity */
+#define STEADY_SHARE 0.25f     /* of a leap's limit: an image nearer to the predicted place confirms the velocity */
 #define STEADY_IMAGES 8 /* in a row that do so, before any leaps: positions that are held from fix to fix do not */
 #define MOVING_M_S 1.0f /* least velocity that predicts a place: positions that are held have none */
 

@@ -6,8 +6,8 @@
 #include "refined/goe_filter.h"
 
 /* After an update that returned true: sets *estimate from the filter's state. A quantity is known only if the image before
- * knew it, too: sigma and value come from the same linearization, so one image alone may be lucky. Returns as
- * goe_report_quantities(). */
+ * knew it, too: sigma and value come from the same linearization, so one image alone may be lucky. Returns
+ * false, and keeps the last estimate, if the position is not known. */
 bool goe_answer_update(goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
                        goe_estimate_t *estimate);
 

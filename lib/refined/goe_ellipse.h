@@ -18,7 +18,7 @@ typedef struct {
     float reach; /* how far along that vector: the support function */
 } goe_contact_t;
 
-/* By the states of the footprint: shear, half width, log of depth over width. */
+/* Derivatives by the states of the footprint: shear, half width, log of depth over width. */
 typedef struct {
     float shear, half, depth;
 } goe_by_footprint_t;

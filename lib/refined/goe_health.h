@@ -14,10 +14,9 @@ void goe_health_take(goe_health_t *health, goe_verdict_t verdict, float nis);
 /* ... or, if every point of it was refused: nothing could fit worse. */
 void goe_health_take_refused(goe_health_t *health, goe_verdict_t verdict);
 
-/* Judges the filter after an image: counts refused points, frees the top if that alone was refused for some images. Returns
- * whether the filter has to start again: points that
- * are refused image after image captured the state when they were outliers, or the state is impossible. A box of base
- * corners that proved wrong so more than once loses them. */
+/* Judges the filter after an image: counts refused points, and frees the top if that alone was refused for some images. Returns whether
+ * the filter must start again: because points that are refused image after image captured the state when they were outliers, or because
+ * the state is impossible. After repeated failures of a box by base corners, its base corners are no longer used. */
 bool goe_health_judge(goe_filter_t *filter, goe_model_t asked, goe_verdict_t verdict);
 
 #endif

@@ -63,7 +63,7 @@ static float excess_of(const goe_filter_t *filter, size_t size, float size_m, fl
     return x[GOE_TOP] + x[GOE_GROUND] - size_m * x[GOE_INVERSE_RANGE];
 }
 
-/* One sigma of the class, units of Z0. While the range is hardly known, the visible size says in which unit, not the range. */
+/* One sigma of the class's size, units of Z0. While the range is poorly known, the visible size sets the scale, not the range. */
 static float sd_of(const goe_filter_t *filter, size_t size) {
     float by[GOE_STATES];
     const float size_m = filter->kind.size_m[size];

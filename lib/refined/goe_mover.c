@@ -10,18 +10,18 @@
 
 #if GOE_AUGMENTED
 
-#define LATENCY_PRIOR_S 0.05f   /* one sigma of what poses are late by before anything is known */
-#define LATENCY_SHARE 0.25f     /* of a latency, one sigma: a rate of turn over a span replaces that at the exposure */
-#define SPREAD_GROWN 25.0f      /* of a velocity's variance, when the obstacle begins to be followed */
-#define SPEED_MAX_M_S 20.0f     /* of what the images showed; a faster one is the linearization's */
-#define LATE_MIN_S 0.02f        /* poses are reported as late from here on ... */
-#define LATE_SIGMAS 2.7f        /* ... and if it is that much more than nothing */
-#define RATE_PREDICTED 0.8f     /* of a rate of turn, by the one before it: the mean over usual swaying */
-#define MOVES_CHI2 25.0f        /* a velocity's two degrees of freedom: 4e-6 by chance, if nothing but noise is wrong */
-#define BOXES_CHI2 45.0f        /* the same of upright boxes, which drift also because they are no ellipse's */
-#define REST_CHI2 9.0f          /* something moves if a latency leaves at least this unexplained ... */
-#define REST_SHARE 0.15f        /* ... and a velocity at most this share of that */
-#define LATE_SHARE 0.3f         /* poses are late only if a velocity leaves more than this share of that */
+#define LATENCY_PRIOR_S 0.05f /* one sigma of what poses are late by before anything is known */
+#define LATENCY_SHARE 0.25f   /* relative sigma of a latency: a mean turn rate replaces that at the exposure */
+#define SPREAD_GROWN 25.0f    /* of a velocity's variance, when the obstacle begins to be followed */
+#define SPEED_MAX_M_S 20.0f   /* of what the images showed; a faster one is the linearization's */
+#define LATE_MIN_S 0.02f      /* poses are reported as late from here on ... */
+#define LATE_SIGMAS 2.7f      /* ... and if it is that much more than nothing */
+#define RATE_PREDICTED 0.8f   /* of a rate of turn, by the one before it: the mean over usual swaying */
+#define MOVES_CHI2 25.0f /* chi-squared, two degrees of freedom of a velocity: by chance 4e-6 if there is only noise */
+#define BOXES_CHI2 45.0f /* the same of upright boxes, which drift also because they are no ellipse's */
+#define REST_CHI2 9.0f   /* something moves if a latency leaves at least this unexplained ... */
+#define REST_SHARE 0.15f /* ... and a velocity at most this share of that */
+#define LATE_SHARE 0.3f  /* poses are late only if a velocity leaves more than this share of that */
 #define MOVING_SIGMAS2 9.0f     /* a late track moves as well if its velocity is that significant */
 #define MOVES_MIN_M_S 1.0f      /* a slower motion counts as none */
 #define MOVES_S 0.4f            /* for which it says so, image after image ... */

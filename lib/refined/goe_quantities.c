@@ -122,8 +122,8 @@ typedef struct {
     goe_drift_t drift;
 } finding_t;
 
-/* The scatter widens the sigmas; validity is decided without it, as doubt must not silence an answer. Nor must the ground: it is decided as
- * if that were level, and for the height as if it were known. *error: of the derivatives in shape, which are used up. */
+/* The scatter widens the sigmas but does not affect validity, as doubt must not silence an estimate. Nor must the ground: validity assumes
+ * that it is level, and for the height that it is known. *error: derivatives in, error out. */
 GOE_NOINLINE static void find_quantity(const finding_t *f, int i, goe_quantities_t *q, goe_deviation_t *error) {
     const goe_counted_t counted = counted_of(i, goe_filter_elapsed_s(f->filter, f->motion));
     const float found = has(q, i) ? goe_deviation_project(f->filter, f->wider, counted, error) : 0.0f;
@@ -150,8 +150,8 @@ static void set_quantities(const finding_t *finding, goe_shape_t *shape, goe_qua
     }
 }
 
-/* Of the middle of the base along a direction, T axes; error->by: where the part of the states goes. But of a box it is the reference
- * point, whose errors along X and Z are known: place. */
+/* Error of the middle of the base along a direction, T axes; error->by receives its derivatives by the states. A box has its reference
+ * point instead, whose errors along X and Z are given: place. */
 /*@ requires \valid_read(f) && \valid_read(f->filter) && \valid_read(f->shape) && \valid_read(f->wider);
     requires \valid_read(place + (0 .. 1)) && \valid(error) && \valid(error->by + (0 .. GOE_STATES - 1)); */
 static void find_middle(const finding_t *f, const goe_deviation_t place[2], goe_counted_t along,

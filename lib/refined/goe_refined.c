@@ -61,7 +61,7 @@ static void allow_for_curvature(const goe_observation_t *obs, goe_rows_t *rows) 
     }
 }
 
-/* What the rows find less certain than the image before left it; not sooner, as without them the state stays as it is. */
+/* Adds the uncertainty since the latest rows. Only for an image with rows: without rows the state stays as it is. */
 static void doubt(goe_filter_t *filter, const goe_observation_t *obs) {
     goe_ground_widen(filter, &obs->settings->navigation);
     goe_ground_drift(filter, obs);
@@ -115,8 +115,8 @@ static float outline_share(const goe_detector_t *detector, float fade) {
     return detector->box_noise_rel * sqrtf((1.0f + kept) / (1.0f - kept));
 }
 
-/* What of a box's error is left since the image before; and what an image's own position error does, with the second order that
- * the uncertain range adds. */
+/* Sets how much of a box's error remains from the previous image, and the effect of this image's position noise, with the second order
+ * that the uncertain range adds. */
 static void note_time(goe_filter_t *filter, goe_observation_t *obs) {
     const goe_detector_t *detector = &obs->settings->detector;
     obs->range_variance = goe_filter_variance(filter, GOE_INVERSE_RANGE);
@@ -164,9 +164,8 @@ static bool starts_to_move(goe_filter_t *filter, const goe_observation_t *obs, c
 #endif
 }
 
-/* Whether the image shows the obstacle where the state cannot have it: behind the camera; or anywhere, by its sigma. No image corrects
- * that: a state behind the camera gives no rows, and a vague one takes nothing from them. If images know a range that was passed, it
- * may be right, and the image wrong; not for long. */
+/* Whether no image can correct the state: it lies behind the camera and gives no rows, or its range is so uncertain that rows change
+ * nothing. A known range that was passed may be right, and the image wrong, for LOST_S at most. */
 static bool is_lost(const goe_filter_t *filter, const goe_observation_t *obs) {
     const float known2 = goe_square(obs->settings->filter.range_sd_rel_max * filter->state[GOE_INVERSE_RANGE]);
     const float z = goe_observation_reference(obs).z;

@@ -25,7 +25,7 @@ void goe_shape_start(const goe_filter_t *filter, const goe_spot_t *reference, go
     const float c = filter->axes.turn_cos;
     const float s = filter->axes.turn_sin;
     const float q = x[GOE_INVERSE_RANGE];
-    const float scale_m = q > 0.0f ? 1.0f / q : 0.0f; /* a flipped bit */
+    const float scale_m = q > 0.0f ? 1.0f / q : 0.0f; /* not positive only after a bit flip */
     const goe_xz_t place = goe_filter_into_trajectory(filter, reference->at);
     goe_linear_t *height = &shape->quantity[GOE_HEIGHT];
     memset(shape, 0, sizeof *shape);

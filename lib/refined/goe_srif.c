@@ -120,9 +120,9 @@ static GOE_INLINE void pass_unknown(const reflection_t *to, float *column, float
     }
 }
 
-/* The columns from first to before last, each reflected out of those behind it, which end with the residual. r: element of the
- * triangle above the first of them, on its diagonal; right: what belongs to the residual, row by row. Of the nuisances there is none, and
- * *r is 1/sigma of each. */
+/* Eliminates the columns from first to last - 1 by reflections, and applies each to the columns after it, which end with the residual.
+ * r: element of the triangle above the first of them, on its diagonal; right: the triangle's right-hand side, row by row. Nuisances have
+ * none, and *r is 1/sigma of each. */
 /*@ requires \valid(matrix) && \valid(r) && first <= last <= GOE_RESIDUAL;
     requires right == \null || \valid(right); */
 static GOE_INLINE void reflect(goe_matrix_t *matrix, size_t first, size_t last, float *r, float *right, bool few) {
@@ -485,7 +485,7 @@ void goe_srif_from_sigmas(const float sigma[GOE_STATES], goe_triangle_t *root) {
 
 GOE_STATIC_ASSERT(GOE_CHANGED <= GOE_ROWS_MAX && GOE_CHANGED < GOE_STATES, the_changed_states_fit_into_the_rows);
 
-/* R times the derivative is square from the changed states on: these rows go in again, as if they were measured. */
+/* Replaces states. R times the derivative is no longer triangular in the changed rows: they enter again, as measurements. */
 void goe_srif_substitute(goe_triangle_t *root, const goe_substitution_t *old) {
     const size_t kept = GOE_STATES - GOE_CHANGED;
     goe_matrix_t rows;

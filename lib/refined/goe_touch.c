@@ -272,6 +272,7 @@ GOE_NOINLINE float *goe_touch_add(goe_rows_t *rows, const goe_observation_t *obs
     float *by = goe_rows_add(rows, (goe_feature_t)feature_of[side], level ? GOE_ALONG_Y : GOE_ALONG_X, measured,
                              variance + hidden, gradient);
     rows->side[rows->count - 1u] = (uint8_t)side;
+    /* A foot moves with the ground, a head with the top. */
     by[GOE_GROUND] = touch->foot ? gradient->y : 0.0f;
     by[GOE_TOP] = touch->foot ? 0.0f : -gradient->y;
     return by;

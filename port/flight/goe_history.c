@@ -15,7 +15,7 @@
 #define CHANGES 4                                        /* of the rate, from sample to sample, that count */
 #define NONE (-1)
 #define NORM_MIN 0.5f
-/* Of what the rms change of the rate bends the straight line, one sigma: recorded flights, samples 200 ms apart. */
+/* Error of the interpolation over that of a straight line, one sigma: recorded flights, samples 200 ms apart. */
 #define MISSED_BY_CUBIC 0.2f
 #define MISSED_BY_PARABOLA 0.5f
 
@@ -40,7 +40,7 @@ static uint32_t time_of(const goe_flight_history_t *h, int ring, int back) {
                              : h->position[place(h->position_next, back)].time_us;
 }
 
-/* Where a sample of this time goes, the ring's end moved on if it needs a place of its own; NONE: it is not newer. */
+/* Index for a sample of this time. Advances the ring if the sample needs a place of its own. NONE: it is not newer. */
 static int make_place(goe_flight_history_t *h, int ring, uint32_t time_us) {
     uint8_t *next = ring == ATTITUDES ? &h->attitude_next : &h->position_next;
     uint8_t *count = ring == ATTITUDES ? &h->attitude_count : &h->position_count;

@@ -40,7 +40,7 @@
 #define TURNED 0.99f     /* cosine of 8 degrees: from there on the aircraft obeys */
 #define EARLY 0.33f      /* of roll_in_s: an autopilot may obey so soon */
 #define WHOLE 0.9f       /* more than this share makes no way better */
-#define SHARE_S 4.0f     /* of time that a whole margin is worth, between ways that are free */
+#define SHARE_S 4.0f     /* s: what a whole margin is worth, between free ways */
 #define SAME_SIDE_S 0.5f /* ... and the side that was ordered before */
 
 /* Everything about one obstacle on a course: right is positive aside. */
@@ -668,8 +668,8 @@ static void rise(goe_flight_t *flight, const look_t *look) {
     }
 }
 
-/* Of an approach that was left to a side, as no climb seemed to be in time: once one is, it is aborted. An aircraft that lands next to
- * an obstacle lands next to the runway. */
+/* On approach, a go-around replaces an order to a side as soon as a climb is in time. An aircraft that lands next to an obstacle lands
+ * next to the runway. */
 static void break_off(goe_flight_t *flight, const look_t *look) {
     const goe_flight_reaction_t *r = &flight->reaction;
     encounter_t e;
@@ -687,7 +687,7 @@ static void break_off(goe_flight_t *flight, const look_t *look) {
     }
 }
 
-/* An order of unknown kind, or about a slot that does not exist, is none: the active hazard fault_counts another. */
+/* Clears an order with a corrupt field. A hazard that is still active then causes a new order. */
 static void mend(goe_flight_reaction_t *r) {
     const bool finite = goe_flight_all_finite(r->target_ned_m, 3) && goe_flight_all_finite(r->from_ned_m, 3) &&
                         goe_flight_all_finite(r->course_ne, 2) && goe_flight_all_finite(r->along_ne, 2) &&

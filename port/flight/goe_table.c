@@ -95,8 +95,8 @@ static int claimant(const goe_flight_t *flight, const goe_flight_slot_view_t *vi
     return best;
 }
 
-/* Slots without a detection in this image; before it is complete, those alone that had none in the image before either: their own
- * detection may still come. */
+/* Slots without a detection in this image. Before it is complete, slots with one in the previous image are left out: theirs may still
+ * come. */
 static uint32_t lost_slots(const goe_flight_t *flight, const goe_flight_slot_view_t *view, uint32_t taken,
                            bool complete) {
     uint32_t bits = 0u;
