@@ -1,4 +1,4 @@
-/* What becomes the answer, and what of it outlives the filter. SPDX-License-Identifier: MIT */
+/* Sets the estimate from the filter's state, and keeps the data of it that goe_hazard() needs later. SPDX-License-Identifier: MIT */
 #include "refined/goe_answer.h"
 
 #include <math.h>
@@ -11,9 +11,9 @@
 
 #if GOE_WITH_FILTER
 
-#define REACH_MAX_M 1.0e6f /* as all positions */
+#define REACH_MAX_M 1.0e6f /* the limit of all positions */
 
-/* Keeps what goe_hazard() needs of an answer when no new one follows. */
+/* Keeps the data of the estimate that goe_hazard() needs while no new estimate follows. */
 static void keep_answer(goe_filter_t *filter) {
     goe_answer_t *answer = &filter->answer;
     goe_xz_t nearer_m;
@@ -28,7 +28,7 @@ static void keep_answer(goe_filter_t *filter) {
     answer->by_kind = false;
 }
 
-/* Whether a position lies behind the camera, with all of its extent, in an image that shows the obstacle ahead. */
+/* Whether the obstacle is behind the camera with its entire extent, in an image that shows it ahead. */
 static bool lies_behind(const goe_filter_t *filter, const goe_quantities_t *quantities, const goe_motion_t *motion) {
     goe_xz_t nearer_m;
     const float circle_m = goe_near_side_reach(filter, &nearer_m);
@@ -37,13 +37,13 @@ static bool lies_behind(const goe_filter_t *filter, const goe_quantities_t *quan
            -(reach_m + (quantities->box ? quantities->value[GOE_LENGTH] : 0.0f));
 }
 
-/* by_kind: with the sizes of the class in the state. */
+/* by_kind: the state contains the sizes of the class. Returns whether the estimate is new. */
 static bool update(goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion, bool by_kind,
                    goe_estimate_t *estimate) {
     goe_quantities_t quantities;
     goe_quantities_find(filter, settings, motion, &quantities);
     filter->known = (uint8_t)quantities.now;
-    const bool placed = (quantities.now & GOE_HAS_POSITION) != 0u; /* otherwise nothing else of them need be set */
+    const bool placed = (quantities.now & GOE_HAS_POSITION) != 0u; /* otherwise the other fields may be unset */
     if (placed && lies_behind(filter, &quantities, motion)) {
         if (by_kind) {
             goe_kind_reject(filter);
@@ -59,8 +59,8 @@ static bool update(goe_filter_t *filter, const goe_settings_t *settings, const g
     return fresh;
 }
 
-/* What the images know without the sizes is left as it is: with them, `known` is another. The covariance that they give does not outlive
- * this answer. */
+/* `kind.known` stores the quantities known with the sizes; `known`, that of the images alone, becomes 0. The covariance with the sizes is
+ * valid for this estimate only. */
 static bool update_with_sizes(goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
                               goe_estimate_t *estimate) {
     filter->known = filter->kind.known;

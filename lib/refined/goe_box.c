@@ -1,9 +1,9 @@
-/* Rows, changes and quantities of a box. SPDX-License-Identifier: MIT
+/* The box model: rows of an image, changes of the state, and quantities. SPDX-License-Identifier: MIT
  *
- * View from above, lengths in units of Z0; P: middle of the front edge relative to the camera now.
+ * View from above, lengths in units of Z0; P: middle of the front edge relative to the present camera.
  *
  *        BL ------ BR          side edge  (sx, sz), from the front backwards
- *        |          |          front edge (fx, fz), fz = -fx sx/sz: square to the side, signed
+ *        |          |          front edge (fx, fz), fz = -fx sx/sz: perpendicular to the side, signed
  *        |          |          corner     P + across (fx, fz) + along (sx, sz)
  *        FL -- P -- FR */
 #include "refined/goe_box.h"
@@ -17,21 +17,21 @@
 
 #if GOE_WITH_FILTER
 
-#define CORNER_AHEAD_MIN 0.01f  /* range below which a corner's direction is not compared */
-#define ORDER_AHEAD_MIN 1.0e-3f /* ... or ordered */
+#define CORNER_AHEAD_MIN 0.01f  /* least Z of a corner in its direction X/Z */
+#define ORDER_AHEAD_MIN 1.0e-3f /* the same for the order of corners */
 #define SUM_MIN 1.0e-12f
-#define CURVATURE 2.0f      /* generous: the error is not a Gaussian one */
-#define EXTENT_MIN 0.03f    /* of the sum of all extents */
-#define DEPTH_MIN 0.3f      /* sz over |sx| */
-#define EXCHANGE_SLOPE 1.3f /* tan b above which front and side change names, in the state and in the report */
-#define LENGTH_FREED 2.0f   /* one sigma of the length, relative, when its face comes into view */
+#define CURVATURE 2.0f      /* factor on the second order of (R7), generous: its error is not Gaussian */
+#define EXTENT_MIN 0.03f    /* smallest extent over the sum of all extents */
+#define DEPTH_MIN 0.3f      /* smallest sz over |sx| */
+#define EXCHANGE_SLOPE 1.3f /* tan b above which front and side exchange their names, in the state and in the report */
+#define LENGTH_FREED 2.0f   /* relative sigma of the length when its face comes into view */
 #define CORNER_GROWTH 12.0f /* (R22) */
 #define CORNER_GROWTH_MAX 4.0f
-#define POOR_SHARE 0.3f  /* one sigma of the depth difference, of both depths: two corners may be those of anything */
-#define FACE_RAD 0.14f   /* (R37), one sigma of what two ends are off by if they are those of two faces: orientation */
-#define FACE_WIDTH 0.06f /* ... width, of itself */
-#define FACE_PLACE 0.1f  /* ... place, of the width */
-#define FACE_ROOF 0.15f  /* ... where the roof's nearest corner is, of the width */
+#define POOR_SHARE 0.3f  /* largest sigma of the depth difference over both depths: beyond, two corners may be any */
+#define FACE_RAD 0.14f   /* (R37), one sigma of the error if two ends are those of two faces: orientation, rad */
+#define FACE_WIDTH 0.06f /* the same of the width, relative */
+#define FACE_PLACE 0.1f  /* the same of the position, over the width */
+#define FACE_ROOF 0.15f  /* the same of the roof's nearest corner, over the width */
 
 enum { FRONT_LEFT, BACK_LEFT, BACK_RIGHT, FRONT_RIGHT, CORNERS }; /* clockwise */
 enum { OUTER_LEFT, NEAR_CORNER, OUTER_RIGHT };
@@ -42,12 +42,13 @@ static const float along_of[CORNERS] = {0.0f, 1.0f, 1.0f, 0.0f};
 typedef struct {
     goe_box_edges_t edges;
     goe_xz_t middle;   /* P */
-    float curvature;   /* of the depths in GOE_DEPTH_DIFFERENCE, times its variance: twice the linearization error */
+    float curvature;   /* twice the second-order error of the depths by the variance of GOE_DEPTH_DIFFERENCE */
     float ground, top; /* Y of the base and of the roof */
-    bool front, right; /* which side of the box the camera is on */
-    bool far_half;     /* it is nearer to the back edge */
+    bool front, right; /* which side of the box the camera is on: front or back, right or left */
+    bool far_half;     /* the camera is nearer to the back edge */
     goe_xz_t corner[CORNERS];
-    float depth_margin, side_margin; /* how far it is outside of the box along and across its axes, units of Z0 */
+    float depth_margin,
+        side_margin; /* how far the camera is outside of the box, along its side and across, units of Z0 */
 } outline_t;
 
 static float sign_of(float x) { return x > 0.0f ? 1.0f : -1.0f; }
@@ -60,13 +61,13 @@ void goe_box_edges(const float state[GOE_STATES], goe_box_edges_t *edges) {
     const float sign = sign_of(x[GOE_SIDE_X]);
     const float product = across * x[GOE_FRONT_X];
     const float sum = goe_larger(sqrtf(d * d + 4.0f * product), SUM_MIN);
-    /* (R7): the larger one by adding, the smaller one by the product: no cancellation */
+    /* (R7): the larger root by addition, the smaller one from the product, so nothing cancels */
     const float larger = 0.5f * (sum + goe_absolute(d));
     const float smaller = product / larger;
     e->sum = sum;
     e->sign = sign;
     e->side.along.x = x[GOE_SIDE_X];
-    e->side.along.z = goe_larger(d > 0.0f ? larger : smaller, SUM_MIN); /* 0 of a state with a flipped bit */
+    e->side.along.z = goe_larger(d > 0.0f ? larger : smaller, SUM_MIN); /* a flipped bit may make it 0 */
     e->side.by[0] = sign * x[GOE_FRONT_X] / sum;
     e->side.by[1] = across / sum;
     e->side.by[2] = e->side.along.z / sum;
@@ -121,7 +122,7 @@ static void describe(const goe_observation_t *obs, outline_t *o) {
 
 /* ---------------------------------------------------------------------------------------------------- visible corners -- */
 
-/* Corners at the left end, between and at the right end of one face, or of two faces. */
+/* The corners at the left end, between and at the right end of one face, or of two faces. left: that at the left end. */
 /*@ requires \valid(corner + (0 .. 2)) && left < CORNERS; */
 static void corners_from(size_t left, bool two, size_t corner[3]) {
     corner[OUTER_LEFT] = left;
@@ -129,8 +130,8 @@ static void corners_from(size_t left, bool two, size_t corner[3]) {
     corner[OUTER_RIGHT] = (left + (two ? 2u : 3u)) % CORNERS;
 }
 
-/* By how much the outer corners differ from their distance in the image, which is more informative than their places: an error of range
- * or bearing moves both equally. */
+/* Error of the predicted distance between the outer corners in the image. This distance is more informative than their places: an error of
+ * range or bearing moves both equally. */
 /*@ requires goe_observation_is_open(obs) && \valid_read(o) && \valid_read(corner + (0 .. 2));
     requires corner[0] < CORNERS && corner[2] < CORNERS; */
 static float misfit(const goe_observation_t *obs, const outline_t *o, const size_t corner[3]) {
@@ -148,7 +149,7 @@ static void visible_corners(const goe_observation_t *obs, const outline_t *o, si
     const size_t across = o->right ? FRONT_RIGHT : BACK_LEFT;
     corners_from(near_visible ? of_two : o->depth_margin > o->side_margin ? along : across, near_visible, corner);
     if (!near_visible && obs->two_faces && o->depth_margin > 0.0f && o->side_margin > 0.0f) {
-        /* one face, or two and the detector missed the corner between them */
+        /* one face, or two faces whose common corner the detector missed */
         size_t both[3];
         corners_from(of_two, true, both);
         if (misfit(obs, o, both) < misfit(obs, o, corner)) {
@@ -177,7 +178,7 @@ static void widest_corners(const outline_t *o, size_t corner[3]) {
 
 /* --------------------------------------------------------------------------------------------------------------- rows -- */
 
-/* Derivatives by the place and the outline of a corner, from those by (X, Z); and their possible linearization error. */
+/* Sets the derivatives by place and extents in a corner's row from those by (X, Z), and adds the possible linearization error. */
 /*@ requires goe_rows_hold(rows) && \valid(by + (0 .. GOE_UNKNOWNS - 1)) && goe_observation_is_open(obs);
     requires \valid_read(o) && \valid_read(g) && corner < CORNERS && 1 <= rows->count <= GOE_ROWS_MAX; */
 static void set_corner(goe_rows_t *rows, float by[restrict GOE_UNKNOWNS], const goe_observation_t *obs,
@@ -185,7 +186,7 @@ static void set_corner(goe_rows_t *rows, float by[restrict GOE_UNKNOWNS], const 
     const goe_box_edges_t *e = &o->edges;
     const float across = across_of[corner];
     const float along = along_of[corner];
-    const float by_both = (along - across * e->sign) * g->z; /* by side and front depth as their sum moves them */
+    const float by_both = (along - across * e->sign) * g->z; /* by an equal change of both depths */
     const float missed = 0.5f * by_both * o->curvature;
     goe_rows_place(by, obs, g->x, g->z);
     by[GOE_SIDE_X] = along * g->x + by_both * e->side.by[0];
@@ -194,7 +195,7 @@ static void set_corner(goe_rows_t *rows, float by[restrict GOE_UNKNOWNS], const 
     rows->variance[rows->count - 1u] += missed * missed;
 }
 
-/* (R9): two rows, the second free of the first one's noise. */
+/* (R9): adds two rows; the noise of the first is removed from the second. */
 /*@ requires goe_observation_is_open(obs) && \valid_read(o) && goe_rows_hold(rows);
     requires feature < GOE_FEATURES && corner < CORNERS && rows->count + 2 <= GOE_ROWS_MAX; */
 GOE_NOINLINE static void add_base_corner(const goe_observation_t *obs, const outline_t *o, goe_feature_t feature,
@@ -218,14 +219,14 @@ GOE_NOINLINE static void add_base_corner(const goe_observation_t *obs, const out
     by[GOE_INVERSE_RANGE] += gx.y * obs->height_m;
     by[GOE_GROUND] = gx.y;
     by = goe_rows_add(rows, feature, GOE_ALONG_Y, measured->y, spread.yy - share * spread.xy, &gy);
-    rows->series[rows->count - 1u]++; /* besides that of x */
+    rows->series[rows->count - 1u]++; /* that of y follows that of x */
     by[GOE_BEHIND_STATES] -= share * along_x;
     set_corner(rows, by, obs, o, corner, &gy);
     by[GOE_INVERSE_RANGE] += gy.y * obs->height_m;
     by[GOE_GROUND] = gy.y;
 }
 
-/* (R10): the upright edge over an outer corner, at the height at which it was measured. */
+/* (R10): the row of the upright edge above an outer corner, at the height at which it was measured. */
 /*@ requires goe_observation_is_open(obs) && \valid_read(o) && goe_rows_hold(rows);
     requires feature < GOE_FEATURES && corner < CORNERS && rows->count < GOE_ROWS_MAX; */
 static void add_silhouette(const goe_observation_t *obs, const outline_t *o, goe_feature_t feature, size_t corner,
@@ -237,13 +238,13 @@ static void add_silhouette(const goe_observation_t *obs, const outline_t *o, goe
     }
 }
 
-/* How far down in the raw image a place on the roof is, focal lengths, but for the lens. */
+/* Coordinate down in the raw image of a place on the roof, focal lengths, without the lens. */
 static float down_of(const goe_observation_t *obs, const goe_xz_t *at, float top) {
     const float *r = obs->camera_to_axes;
     return (r[1] * at->x + r[4] * top + r[7] * at->z) / (r[2] * at->x + r[5] * top + r[8] * at->z);
 }
 
-/* The corner of the roof that is highest in the raw image: from above a far one, and under a roll a lateral one. */
+/* The corner of the roof that is highest in the raw image: viewed from above a far one, and with a roll a lateral one. */
 static size_t highest_corner(const goe_observation_t *obs, const outline_t *o) {
     size_t highest = 0;
     float least = down_of(obs, &o->corner[0], o->top);
@@ -257,7 +258,7 @@ static size_t highest_corner(const goe_observation_t *obs, const outline_t *o) {
     return highest;
 }
 
-/* (R11). */
+/* (R11): the corner of the roof at the top. */
 static size_t top_corner(const goe_observation_t *obs, const outline_t *o) {
     if (obs->settings->filter.top_is_highest) {
         return highest_corner(obs, o);
@@ -277,7 +278,7 @@ static void add_top(const goe_observation_t *obs, const outline_t *o, goe_rows_t
     }
 }
 
-/* (R27): the point that a side of an upright bounding box touches, not the point that replaces it. */
+/* (R27): adds the row of a side, at the point that the side of an upright bounding box touches, not at the point that it replaces. */
 /*@ requires goe_observation_is_open(obs) && \valid_read(o) && goe_solid_is_closed(solid) && goe_rows_hold(rows);
     requires side < GOE_BOX_SIDES && rows->count < GOE_ROWS_MAX; */
 static void add_side(const goe_observation_t *obs, const outline_t *o, const goe_solid_t *solid, size_t side,
@@ -313,7 +314,7 @@ void goe_box_rows(const goe_observation_t *obs, goe_rows_t *rows) {
     const bool near_visible = obs->point[GOE_POINT_BASE_NEAR].usable;
     if (obs->base && !near_visible && obs->two_faces &&
         obs->depth_variance > goe_square(POOR_SHARE * outline.edges.sum)) {
-        return; /* which corners these are would be a guess, and the box would learn it */
+        return; /* the choice of the corners would be a guess, which the state would adopt */
     }
     if (obs->base || near_visible) {
         visible_corners(obs, &outline, corner);
@@ -336,12 +337,12 @@ void goe_box_rows(const goe_observation_t *obs, goe_rows_t *rows) {
 
 /* ------------------------------------------------------------------------------------------------------------- upkeep -- */
 
-/* Whether the side's depth, the positive root of (R7), is less than that. */
+/* Whether the side's depth, the positive root of (R7), is less than `depth`. */
 static bool side_is_shorter(const float x[GOE_STATES], float depth) {
     return depth * (depth - x[GOE_DEPTH_DIFFERENCE]) > goe_absolute(x[GOE_SIDE_X]) * x[GOE_FRONT_X];
 }
 
-/* Extents of too different size make a box that the next image cannot be linearized at. */
+/* Limits the extents: if their sizes differ too much, the next image cannot be linearized at that box. */
 void goe_box_clip(goe_filter_t *filter) {
     float *x = filter->state;
     const float least = EXTENT_MIN * (goe_absolute(x[GOE_SIDE_X]) + goe_absolute(x[GOE_FRONT_X]) +
@@ -354,8 +355,8 @@ void goe_box_clip(goe_filter_t *filter) {
     }
 }
 
-/* While one face is visible the other edge's length is unobservable; if it were free, relinearisation would pull it to zero.
- * So it is held until its face comes into view. */
+/* While one face is visible, the length of the other edge is unobservable. If it were free, relinearization would pull it to zero, so it is
+ * fixed until its face comes into view. */
 static void free_length(goe_filter_t *filter, const goe_observation_t *obs) {
     goe_box_edges_t edges;
     goe_box_edges(filter->state, &edges);
@@ -367,7 +368,7 @@ static void free_length(goe_filter_t *filter, const goe_observation_t *obs) {
     goe_filter_set_phase(filter, GOE_PHASE_BOX);
 }
 
-/* Front and side with each other's names. Doing it again undoes it. */
+/* Exchanges the names of front and side in the state. A second exchange restores the state. */
 static void exchange_state(float x[GOE_STATES]) {
     const float sign = sign_of(x[GOE_SIDE_X]);
     const float scale = 1.0f / (1.0f + 0.5f * x[GOE_DEPTH_DIFFERENCE]);
@@ -381,7 +382,7 @@ static void exchange_state(float x[GOE_STATES]) {
     x[GOE_TOP] *= scale;
 }
 
-/* (R19): the derivative of the old states by the new ones is that of the exchange back. */
+/* (R19): the derivative of the old states by the new ones is that of the reverse exchange. */
 static void exchange_root(goe_filter_t *filter, const float was[GOE_STATES]) {
     goe_substitution_t old;
     const float *is = filter->state;
@@ -437,7 +438,7 @@ void goe_box_name(goe_filter_t *filter) {
     filter->naming.decided = true;
 }
 
-/* The reference point, and across fronts and along sides from there. */
+/* The place `across` fronts and `along` sides away from the reference point. */
 static void find_spot(const float x[GOE_STATES], const goe_box_edges_t *e, float across, float along,
                       goe_spot_t *spot) {
     spot->at.x = x[GOE_BEARING] + across * e->front.along.x + along * e->side.along.x;
@@ -450,7 +451,7 @@ static void find_spot(const float x[GOE_STATES], const goe_box_edges_t *e, float
     }
 }
 
-/* Length of an edge, m. extent: the state with its lateral extent. */
+/* Sets the length of an edge, m. extent: the state that is its lateral extent. */
 /*@ requires \valid(length) && \valid_read(edge) && extent < GOE_STATES; */
 static void set_edge(goe_linear_t *length, const goe_box_edge_t *edge, goe_state_index_t extent, float scale_m) {
     const float by_depth = edge->along.z / edge->length * scale_m;
@@ -462,7 +463,7 @@ static void set_edge(goe_linear_t *length, const goe_box_edge_t *edge, goe_state
     length->by[GOE_INVERSE_RANGE] = -scale_m * scale_m * edge->length;
 }
 
-/* Both edges turn together. */
+/* The derivatives are those of the side, because both edges turn together. */
 static void set_orientation(goe_linear_t *orientation, const goe_box_edge_t *side, goe_xz_t length_axis) {
     const float scale = 1.0f / (side->length * side->length);
     const float by_depth = -side->along.x * scale;
@@ -478,7 +479,7 @@ static float corner_growth(const goe_filter_t *filter, const goe_box_edges_t *e)
     return 1.0f + CORNER_GROWTH * (relative < CORNER_GROWTH_MAX ? relative : CORNER_GROWTH_MAX);
 }
 
-/* (R37): what a single face is uncertain by, as its ends may be the outer ends of two faces. */
+/* (R37): adds variances while a single face is visible, because its ends may be the outer ends of two faces. */
 static void doubt_face(goe_shape_t *shape) {
     const float size_m = goe_larger(shape->quantity[GOE_WIDTH].value, shape->quantity[GOE_LENGTH].value);
     shape->turned_rad2 = goe_square(FACE_RAD);
@@ -493,11 +494,11 @@ void goe_box_shape(const goe_filter_t *filter, goe_shape_t *shape) {
     goe_box_edges_t e;
     goe_spot_t reference;
     goe_box_edges(x, &e);
-    const goe_box_edge_t *edge = exchanged ? &e.front : &e.side; /* that is reported as side */
+    const goe_box_edge_t *edge = exchanged ? &e.front : &e.side; /* the edge that is reported as side */
     const goe_xz_t axis = goe_filter_into_trajectory(filter, edge->along);
-    const bool nearer = axis.z < 0.0f; /* it leads towards the camera */
+    const bool nearer = axis.z < 0.0f; /* the edge points toward the camera */
     const float length = nearer ? -edge->length : edge->length;
-    const float half = nearer ? 0.5f : -0.5f; /* from the end of the front from which it leads away */
+    const float half = nearer ? 0.5f : -0.5f; /* the end of the front from which the edge points away */
     find_spot(x, &e, exchanged ? half : 0.0f, exchanged ? 0.5f : 0.0f, &reference);
     goe_shape_start(filter, &reference, shape);
     find_spot(x, &e, 0.0f, 0.5f, &shape->middle);

@@ -1,4 +1,4 @@
-/* The first guess of a box, the images that must agree on it, and its start. SPDX-License-Identifier: MIT */
+/* The start of a box from base corners: its first shape, the images that must agree on it, and its state. SPDX-License-Identifier: MIT */
 #include "refined/goe_box_start.h"
 
 #include <math.h>
@@ -10,32 +10,32 @@
 #if GOE_WITH_FILTER
 
 #define BEARING_GROWTH 4.0f    /* factor on the variance of the bearing: the footprint's middle was another point */
-#define BEARING_FREEDOM 4.0f   /* ... and sigma added to it, in the larger side */
-#define BEARING_FLOOR2 1.0e-6f /* ... and variance */
+#define BEARING_FREEDOM 4.0f   /* sigma added to it, over the larger side */
+#define BEARING_FLOOR2 1.0e-6f /* constant variance added to it */
 #define RANGE_GROWTH 2.0f      /* factor on the variance of 1/Z0 */
 #define RANGE_MIN_M 1.0f
-#define HEIGHT_MIN_M 0.3f /* camera over ground: lower the corners' y say nothing */
-#define NEARER_MAX 1.7f   /* 1/range of a corner over the state's 1/range */
+#define HEIGHT_MIN_M 0.3f /* camera above ground: from lower, the corners' y give no range */
+#define NEARER_MAX 1.7f   /* largest 1/range of a corner over the state's 1/range */
 #define FARTHER_MAX 0.6f
-#define POINT_NOISE 1.5f  /* one sigma of a difference of two points, in those of a pixel */
-#define SURE_SIGMAS2 4.0f /* a difference in depth counts only as far as it exceeds 2 sigma, or luck would pass */
+#define POINT_NOISE 1.5f  /* one sigma of a difference of two points, in sigmas of a pixel */
+#define SURE_SIGMAS2 4.0f /* a difference in depth counts only by its part beyond 2 sigma, or chance would pass */
 #define EDGE_MIN_M2 1.0e-6f
 #define SIGMA_MAX_RAD 0.2f
-#define SIZE_SHARE_MAX 0.4f /* of the range */
+#define SIZE_SHARE_MAX 0.4f /* largest size of a box, over the range */
 #define SIZE_MIN_M 0.05f
 #define QUARTER_TURN_RAD 1.57079633f
-#define ONE_FACE_IMAGES 3   /* that must agree before a box starts from one face */
-#define TWO_FACES_IMAGES 2  /* ... from two */
+#define ONE_FACE_IMAGES 3   /* images that must agree before a box starts from one face */
+#define TWO_FACES_IMAGES 2  /* the same from two faces */
 #define AGREEING_PX 7.0f    /* sigmas of a pixel by which the extents of two images may differ */
-#define AGREEING_SHARE 0.1f /* ... and share of the whole */
-#define RANGE_SHARE 0.1f    /* one sigma of the range over the range */
+#define AGREEING_SHARE 0.1f /* plus this share of both extents */
+#define RANGE_SHARE 0.1f    /* largest relative sigma of the range for two faces */
 #define AGREEING_SIGMAS2 9.0f
-#define SIZE_FREEDOM 2.0f  /* one sigma of the extents at the start, in the larger side */
-#define DEPTH_FREEDOM 4.0f /* ... of the depth difference */
-#define DEPTH_HELD 0.01f   /* ... if one face alone is visible */
-#define FACE_MIN_PX 3.0f   /* lateral extent of a face, in sigmas of a pixel */
+#define SIZE_FREEDOM 2.0f  /* one sigma of the extents at the start, over the larger side */
+#define DEPTH_FREEDOM 4.0f /* the same of the depth difference */
+#define DEPTH_HELD 0.01f   /* the same if one face alone is visible */
+#define FACE_MIN_PX 3.0f   /* least lateral extent of a face, in sigmas of a pixel */
 
-/* Into the state's scale; reference: middle of the front edge from the camera, in the footprint's axes. False if it is out of
+/* Sets position and sizes. reference: middle of the front edge from the camera, in axes turned by box->turn_cos, turn_sin. False if out of
  * bounds. */
 static bool scale(const goe_observation_t *obs, goe_xz_t reference, float width_m, float length_m, float range_m,
                   goe_first_box_t *box) {
@@ -71,7 +71,7 @@ bool goe_box_of_two_faces(const goe_observation_t *obs, goe_first_box_t *box) {
     if (!(least_m > FACE_MIN_PX * goe_observation_pixel(obs) * range_m)) {
         return false;
     }
-    /* side (right_m, deep_m) and front (left_m, -deep_m) are square to each other; or the names exchanged */
+    /* side (right_m, deep_m) and front (left_m, -deep_m) are perpendicular; or they exchange their names */
     const float deep_m = sqrtf(left_m * right_m);
     const float on_left_m = sqrtf(left_m * left_m + deep_m * deep_m);
     const float on_right_m = sqrtf(right_m * right_m + deep_m * deep_m);
@@ -91,7 +91,7 @@ typedef struct {
     float range_m, height_m;
 } face_t;
 
-/* False if an end lies in no possible place. */
+/* (R18): places an end of the face by its y. False if its range is impossible. */
 static bool place_end(const goe_point_t *point, float mean_y, const face_t *face, goe_xz_t *end) {
     const float nearness = 1.0f / face->range_m;
     const float inverse = nearness + (point->y - mean_y) / face->height_m;
@@ -110,7 +110,7 @@ static bool place_face(const goe_observation_t *obs, face_t *face) {
     return place_end(&left, mean_y, face, &face->left) && place_end(&right, mean_y, face, &face->right);
 }
 
-/* One sigma of the orientation by an edge, rad. */
+/* One sigma of the orientation that the edge (x, z) gives, rad. */
 static float edge_sigma(const goe_observation_t *obs, const face_t *face, float x, float z) {
     const float pixel = goe_observation_pixel(obs) * POINT_NOISE;
     const float deep = face->range_m * face->range_m / face->height_m * pixel;
@@ -122,7 +122,7 @@ static float edge_sigma(const goe_observation_t *obs, const face_t *face, float 
     return noise / goe_larger(x * x + goe_larger(sure, 0.0f), EDGE_MIN_M2);
 }
 
-/* An edge that lies more across than along is the front, any other the side. */
+/* An edge more along X than along Z is the front, any other the side. Returns the middle of the front. */
 static goe_xz_t measure_face(const face_t *face, float x, float z, float size_m, goe_first_box_t *box) {
     const bool front = goe_absolute(x) > goe_absolute(z);
     const float across = front ? -z : x;
@@ -143,7 +143,7 @@ static goe_xz_t measure_face(const face_t *face, float x, float z, float size_m,
     return middle;
 }
 
-/* How far the foot of the perpendicular from the camera lies beyond the ends, rad. */
+/* Angle from the ends of the face to the foot of the camera's perpendicular, rad; negative between the ends. */
 static float beyond(const face_t *face, float x, float z, float size_m) {
     const float mx = 0.5f * (face->left.x + face->right.x);
     const float mz = 0.5f * (face->left.z + face->right.z);
@@ -174,7 +174,7 @@ bool goe_box_of_one_face(const goe_observation_t *obs, goe_first_box_t *box) {
 
 /* --------------------------------------------------------------------------------------------------------- agreement -- */
 
-/* Difference of two orientations, each within a quarter turn of Z, that may have front and side exchanged. */
+/* Difference of two orientations within a quarter turn of Z; one may have front and side exchanged. */
 static float difference_rad(float a, float b) {
     const float d = a - b;
     if (d > 0.5f * QUARTER_TURN_RAD) {
@@ -183,10 +183,10 @@ static float difference_rad(float a, float b) {
     return d < -0.5f * QUARTER_TURN_RAD ? d + QUARTER_TURN_RAD : d;
 }
 
-/* One image alone may be lucky. */
+/* Whether enough images in a row show the same orientation. One alone may do so by chance. */
 static bool one_face_agrees(goe_filter_t *filter, const goe_first_box_t *box) {
     const float d = difference_rad(box->orientation_rad, filter->candidate.extent[0]);
-    const bool alone = box->beyond_rad < box->sigma_rad; /* otherwise a second face would show */
+    const bool alone = box->beyond_rad < box->sigma_rad; /* otherwise a second face would be visible */
     const bool agrees =
         alone && filter->candidate.agreeing > 0 && goe_square(d) < AGREEING_SIGMAS2 * goe_square(box->sigma_rad);
     filter->candidate.agreeing = (uint8_t)(agrees ? filter->candidate.agreeing + 1 : (alone ? 1 : 0));
@@ -194,13 +194,14 @@ static bool one_face_agrees(goe_filter_t *filter, const goe_first_box_t *box) {
     return filter->candidate.agreeing >= ONE_FACE_IMAGES;
 }
 
-/* Of 1/Z0, without the part of the footprint's depth, which a box does not take over. */
+/* Variance of 1/Z0 without the part by the footprint's depth, which a box does not inherit. */
 static float range_variance(const goe_filter_t *filter) {
     float range[GOE_STATES];
     return goe_filter_error(filter, GOE_INVERSE_RANGE, range) - goe_srif_last_variance(range);
 }
 
-/* An outlier must not become the start, and range and depth multiply in the image: the range must be known. */
+/* Whether enough images in a row agree: an outlier must not start a box. Range and depth multiply in the image, so the range must be
+ * known. */
 static bool two_faces_agree(goe_filter_t *filter, const goe_observation_t *obs, const goe_first_box_t *box) {
     const float q = filter->state[GOE_INVERSE_RANGE];
     const float most = RANGE_SHARE * q * goe_observation_reference(obs).z;
@@ -220,9 +221,9 @@ static bool two_faces_agree(goe_filter_t *filter, const goe_observation_t *obs, 
 static bool find_box(goe_filter_t *filter, const goe_observation_t *obs, goe_first_box_t *box) {
     const bool both = obs->point[GOE_POINT_BASE_NEAR].usable;
     if (!both && filter->candidate.near_images > 0) {
-        return false; /* it was missed: the outer corners are the ends of two faces */
+        return false; /* the detector missed it: the outer corners are the ends of two faces */
     }
-    if (both != filter->candidate.both) { /* the candidate of the images before is of the other kind */
+    if (both != filter->candidate.both) { /* the previous images show another number of faces */
         filter->candidate.both = both;
         filter->candidate.agreeing = 0;
     }
@@ -235,8 +236,8 @@ static bool find_box(goe_filter_t *filter, const goe_observation_t *obs, goe_fir
 
 /* --------------------------------------------------------------------------------------------------------------- start -- */
 
-/* GOE_BEARING and GOE_INVERSE_RANGE of a covariance, about axes turned by the angle of c, s:
- * a' = (a c - s) m, q' = q m, m = 1/(a s + c). */
+/* Transforms GOE_BEARING and GOE_INVERSE_RANGE of a covariance into axes turned by the angle with cosine c and sine s: a' = (a c - s) m, q'
+ * = q m, m = 1/(a s + c). */
 static void turn_covariance(const float x[GOE_STATES], float c, float s, float covariance[GOE_KEPT][GOE_KEPT]) {
     const float m = 1.0f / (x[GOE_BEARING] * s + c);
     const float shear = x[GOE_INVERSE_RANGE] * s * m;
@@ -253,7 +254,7 @@ static void turn_covariance(const float x[GOE_STATES], float c, float s, float c
     covariance[GOE_INVERSE_RANGE][GOE_INVERSE_RANGE] = m * m * qq;
 }
 
-/* GOE_GROUND is counted in another Z0. */
+/* Rescales GOE_GROUND of a covariance to another Z0. */
 static void scale_ground(float scale, float covariance[GOE_KEPT][GOE_KEPT]) {
     for (size_t i = 0; i < GOE_GROUND; i++) {
         covariance[i][GOE_GROUND] *= scale;
@@ -264,8 +265,8 @@ static void scale_ground(float scale, float covariance[GOE_KEPT][GOE_KEPT]) {
     covariance[GOE_GROUND][GOE_GROUND] *= scale;
 }
 
-/* From a footprint to the box. The nuisances and the range keep their covariance; the reference moves by up to
- * the box's size, and the footprint was only a stand-in. both: two faces are visible. */
+/* Changes a footprint into a box. The states that both have keep their covariance, increased for bearing and range: the reference point
+ * moves by up to the box's size, and the footprint was only a substitute. both: two faces are visible. */
 static void start_box(goe_filter_t *filter, const goe_observation_t *obs, const goe_first_box_t *box, bool both) {
     float c[GOE_KEPT][GOE_KEPT];
     float *x = filter->state;

@@ -1,4 +1,4 @@
-/* Errors of quantities. SPDX-License-Identifier: MIT */
+/* Operations on the errors of reported quantities. SPDX-License-Identifier: MIT */
 #include "refined/goe_deviation.h"
 
 #include "maths/goe_scalar.h"
@@ -7,7 +7,7 @@
 
 GOE_STATIC_ASSERT(GOE_GROUND == GOE_UNWEIGHTED, no_quantity_depends_on_the_attitude_bias);
 
-/* The part of the augmented states, if there are any. */
+/* Sets the part of the augmented states, if they exist. */
 static void project_augmented(const goe_filter_t *filter, goe_counted_t counted, goe_deviation_t *error) {
 #if GOE_AUGMENTED
     const float direct[GOE_AUGMENTED] = {0.0f, counted.x * counted.at_s, counted.z * counted.at_s};

@@ -1,24 +1,25 @@
-/* The error of a quantity, as a sum of independent unit errors: of the states, and of the augmented states. The variance of a quantity is
- * the sum of its squares, the covariance of two quantities the product of theirs. SPDX-License-Identifier: MIT */
+/* The error of a reported quantity as a weighted sum of independent unit errors, of the states and of the augmented states. The variance of
+ * a quantity is the sum of its squared weights, the covariance of two quantities the scalar product of their weights.
+ * SPDX-License-Identifier: MIT */
 #ifndef GOE_DEVIATION_H
 #define GOE_DEVIATION_H
 
 #include "refined/goe_filter.h"
 
-/* What an answer is less certain by than the filter. */
+/* By how much an estimate is less certain than the filter's state. */
 typedef struct {
-    float scatter;                /* factor on the variance of what it found, (R32) */
-    float reciprocal[GOE_STATES]; /* of R, for the projections */
-    float bend;                   /* factor on a footprint's depth, goe_footprint_bend() */
+    float scatter;                /* factor on the variances by the filter, (R32) */
+    float reciprocal[GOE_STATES]; /* of R's diagonal, for the projections */
+    float bend;                   /* factor on the part of a footprint's depth, goe_footprint_bend() */
 } goe_widening_t;
 
 typedef struct {
-    float *by; /* of the states: the derivatives by them, until they are projected */
+    float *by; /* of the states: the derivatives by them before the projection, the weights after it */
     float augmented[GOE_AUGMENTED > 0 ? GOE_AUGMENTED : 1];
 } goe_deviation_t;
 
-/* A direction in T, and the time after the filter's start at which the place along it counts: the place of an obstacle that is followed
- * depends on the time. (0, 0) for a quantity that is no place. */
+/* A direction in T, and the time after the filter's start for which a position along it is valid: the position of a followed obstacle
+ * depends on the time. (0, 0) for a quantity that is no position. */
 typedef struct {
     float x, z, at_s;
 } goe_counted_t;
@@ -36,14 +37,14 @@ static inline float goe_deviation_dot(const float a[GOE_STATES], const float b[G
     return sum + a[9] * b[9];
 }
 
-/* The derivatives become the error. Returns its variance. */
+/* Projects an error: derivatives in, weights out. Returns its variance. */
 float goe_deviation_project(const goe_filter_t *filter, const goe_widening_t *wider, goe_counted_t counted,
                             goe_deviation_t *error);
 
-/* more + the covariance of two projected errors, without the scatter. */
+/* Returns `more` plus the covariance of two projected errors, without the scatter. */
 float goe_deviation_covariance(const goe_deviation_t *a, const goe_deviation_t *b, float more);
 
-/* The error of x a + z b. sum->by: where the part of the states goes. */
+/* Sets *sum to the error of x a + z b. sum->by must point to memory for the part of the states. */
 void goe_deviation_sum(const goe_deviation_t *a, float x, const goe_deviation_t *b, float z, goe_deviation_t *sum);
 
 void goe_deviation_scale(goe_deviation_t *error, float factor);

@@ -1,4 +1,4 @@
-/* Drift of the own position. SPDX-License-Identifier: MIT */
+/* The drift of the own position, (R21). SPDX-License-Identifier: MIT */
 #include "refined/goe_drift.h"
 
 #include <math.h>

@@ -1,25 +1,26 @@
-/* (R21): the drift of the own position, and how uncertain it makes an obstacle. SPDX-License-Identifier: MIT */
+/* The drift of the own position, and the variance that it adds to each quantity, (R21). SPDX-License-Identifier: MIT */
 #ifndef GOE_DRIFT_H
 #define GOE_DRIFT_H
 
 #include "image/goe_ego_motion.h"
 #include "refined/goe_shape.h"
 
-/* Constant velocity errors scale and turn the path flown since the filter's start, and the obstacle with it: no image shows that. */
+/* A constant velocity error scales and turns the path flown since the filter's start, together with the obstacle: no image shows this
+ * error. */
 typedef struct {
-    goe_xz_t camera_m; /* since the filter's start */
-    float share;       /* of lengths, and rad */
+    goe_xz_t camera_m; /* displacement since the filter's start */
+    float share;       /* relative error of lengths, error of directions in rad */
     float walk_m2;
-    float turned_m2; /* a path that leads back on itself is not scaled: what of the drift is left */
+    float turned_m2; /* the drift's variance that does not scale the path, if the path leads back on itself */
 } goe_drift_t;
 
 goe_drift_t goe_drift_of(const goe_filter_t *filter, const goe_navigation_t *navigation, const goe_motion_t *motion);
 
-/* Variance of X0, as of Z0, from the track's first image to the filter's start: these two alone count from there. */
+/* Variance of X0, and of Z0, by the drift from the track's first image to the filter's start. Only these two count from that image. */
 float goe_drift_before_start(const goe_filter_t *filter, const goe_navigation_t *navigation,
                              const goe_motion_t *motion);
 
-/* Variance of a quantity by the drift, and by what its shape leaves open. */
+/* Variance of a quantity by the drift, and by properties of its shape that no image shows. */
 /*@ requires \valid_read(motion) && \valid_read(drift) && \valid_read(shape) && 0 <= quantity < GOE_QUANTITIES; */
 float goe_drift_variance(const goe_motion_t *motion, const goe_drift_t *drift, const goe_shape_t *shape, bool box,
                          int quantity);

@@ -1,4 +1,4 @@
-/* Support function of the footprint. SPDX-License-Identifier: MIT */
+/* The horizontal ellipse of a footprint, and its derivatives. SPDX-License-Identifier: MIT */
 #include "refined/goe_ellipse.h"
 
 #include <math.h>
@@ -8,7 +8,7 @@
 
 #if GOE_WITH_FILTER
 
-#define REACH_MIN 1.0e-9f /* of the footprint, and of the distance to it, units of Z0 */
+#define REACH_MIN 1.0e-9f /* least reach of the footprint, and least distance to it, units of Z0 */
 
 goe_ellipse_t goe_ellipse_of(const float state[GOE_STATES]) {
     const goe_ellipse_t ellipse = {state[GOE_HALF], state[GOE_SHEAR], goe_exp(state[GOE_LOG_DEPTH])};
@@ -36,7 +36,7 @@ goe_by_footprint_t goe_ellipse_slope(const goe_ellipse_t *ellipse, const goe_con
     return by;
 }
 
-/* v turns towards t, square to it, by t'(dA' u + A' du) over the reach. */
+/* If A changes by dA and u by du, v turns toward t, perpendicular to v, by t'(dA' u + A' du) over the reach. */
 goe_slide_t goe_ellipse_slide(const goe_ellipse_t *ellipse, const goe_contact_t *contact, goe_xz_t outward,
                               goe_xz_t gradient) {
     const float t[2] = {-contact->v[1], contact->v[0]};

@@ -1,4 +1,4 @@
-/* Phase, root, process noise, axes. SPDX-License-Identifier: MIT */
+/* The filter's phases, process noise, axes and variances. SPDX-License-Identifier: MIT */
 #include "refined/goe_filter.h"
 
 #include <math.h>
@@ -87,7 +87,7 @@ float goe_filter_due_walk2(const goe_filter_t *filter, const goe_navigation_t *n
     return goe_square(navigation->position_walk_sd_m * filter->state[GOE_INVERSE_RANGE]) * filter->due_s;
 }
 
-/* A step of the own position along Z rescales every length in units of Z0. Of an ellipse, the depth is a ratio of two. */
+/* A step of the own position along Z rescales every length in units of Z0. The depth of an ellipse is a ratio of two lengths. */
 static GOE_NOINLINE void walk_along_z(goe_filter_t *filter, float sigma) {
     float direction[GOE_STATES];
     memcpy(direction, filter->state, sizeof direction);
@@ -97,7 +97,7 @@ static GOE_NOINLINE void walk_along_z(goe_filter_t *filter, float sigma) {
     goe_srif_spread(&filter->root, direction, GOE_GROUND, GOE_STATES - 1u, sigma);
 }
 
-/* Along X, or along Z: for as long as it has not been. walk: per root second, units of Z0. */
+/* Adds the walk along X or Z, for the time since it was last added. walk: one sigma per root second, units of Z0. */
 /*@ requires \valid(filter) && axis < 2; */
 static void walk_along(goe_filter_t *filter, size_t axis, float walk) {
     const float sigma = walk * sqrtf(filter->walk_s[axis]);
@@ -112,7 +112,7 @@ static void walk_along(goe_filter_t *filter, size_t axis, float walk) {
     }
 }
 
-/* The walk along X and Z in turn, image by image; after images without rows along both, as much is due. */
+/* The walk along X and Z alternates from image to image. After images without rows both are added, because much is due. */
 void goe_filter_age(goe_filter_t *filter, const goe_navigation_t *navigation, float since_s) {
     if (!(filter->due_s > 0.0f)) {
         return;

@@ -1,4 +1,4 @@
-/* Rows, errors and quantities of a footprint. SPDX-License-Identifier: MIT */
+/* The footprint model: rows of an image, memories of errors, and quantities. SPDX-License-Identifier: MIT */
 #include "refined/goe_footprint.h"
 
 #include <math.h>
@@ -11,23 +11,23 @@
 
 #if GOE_WITH_FILTER
 
-#define DEPTH_MAX 2.0f       /* |d|, and its sigma in (R31): 7 times as deep as wide, or as flat */
-#define DEPTH_TURNED 0.3f    /* sine of the turn of the line of sight from which on images give the depth */
-#define BENT_MIN 0.01f       /* sigma of the log of the depth below which its exponential is a line */
-#define FORCED_SIGMAS2 18.0f /* squared sigmas of the shear from which on it is no disc */
+#define DEPTH_MAX 2.0f       /* limit of |d|, and of its sigma in (R31): 7 times as deep as wide, or as flat */
+#define DEPTH_TURNED 0.3f    /* sine of the turn of the line of sight above which images give the depth */
+#define BENT_MIN 0.01f       /* sigma of the log of the depth below which its exponential is nearly linear */
+#define FORCED_SIGMAS2 18.0f /* squared sigmas of the shear above which the obstacle is no disc */
 #define SIDE_SHAPE                                                                                                     \
-    0.05f /* one sigma of what corners move the points left and right by, of the width, if it may be no disc */
-#define SHAPE_TURN 0.3f   /* sine of the turn of the line of sight in which this fades to 1/e */
-#define RIM_SHAPE 0.1f    /* ... of how far the top lies off the rim's nearest point, along Z; of the width */
-#define CORNER_SHAPE 0.1f /* shape_error_rel that is added where base corners show that it is no ellipse */
-#define BASE_NOISE 2.0f   /* variance of a base corner's y as range of the middle, over its own */
+    0.05f /* one sigma by which corners displace the points left and right, over the width, if it may be no disc */
+#define SHAPE_TURN 0.3f /* sine of the turn of the line of sight over which this error fades to 1/e */
+#define RIM_SHAPE 0.1f  /* one sigma of the distance along Z from the rim's nearest point to the top, over the width */
+#define CORNER_SHAPE 0.1f /* addition to shape_error_rel where base corners show that the obstacle is no ellipse */
+#define BASE_NOISE 2.0f   /* factor on the variance of a base corner's y, where it gives the range of the middle */
 
-/* Memories: of a box's sides, by goe_box_side_t, and of left and right as points. */
+/* Indices of the memories: sides of a box by goe_box_side_t, then left and right as points. */
 enum { SHAPE_LEFT = GOE_BOX_SIDES, SHAPE_RIGHT, MEMORIES };
 
 GOE_STATIC_ASSERT(sizeof(((goe_filter_t *)0)->side) == MEMORIES * sizeof(goe_side_memory_t), every_side_has_a_memory);
 
-/* Sine of the turn of the line of sight between two places of the camera, since the filter's start. */
+/* Sine of the turn of the line of sight between two positions of the camera, each relative to the filter's start. */
 static float turn_between(const goe_filter_t *filter, goe_xz_t from_m, goe_xz_t to_m) {
     const float q = filter->state[GOE_INVERSE_RANGE];
     const float a = filter->state[GOE_BEARING];
@@ -54,7 +54,7 @@ static float size_of(const goe_observation_t *obs, size_t side) {
     return goe_touch_size(obs, side, goe_touch_is_level(side) ? x[GOE_TOP] + x[GOE_GROUND] : 2.0f * x[GOE_HALF]);
 }
 
-/* Derivatives of a row by the place that it touches, by the reference point as by the footprint. */
+/* Sets a row's derivatives by the reference point and by the footprint, from those by the touched point. */
 /*@ requires \valid(by + (0 .. GOE_UNKNOWNS - 1)) && goe_observation_is_open(obs) && \valid_read(o) && \valid_read(g); */
 static void set_place(const goe_observation_t *obs, const goe_solid_t *o, const goe_contact_t *contact,
                       const goe_gradient_t *g, float by[GOE_UNKNOWNS]) {
@@ -66,14 +66,14 @@ static void set_place(const goe_observation_t *obs, const goe_solid_t *o, const 
     by[GOE_LOG_DEPTH] = slope.depth;
 }
 
-/* The last row is one of those whose error is remembered, with that of a side. */
+/* Notes that the error of the last row is remembered, in the memory `side`. */
 /*@ requires goe_rows_hold(rows) && rows->count > 0 && side < MEMORIES; */
 static void remember(goe_rows_t *rows, size_t side) {
     rows->side[rows->count - 1u] = (uint8_t)side;
     rows->remembered = rows->count;
 }
 
-/* (R27). */
+/* (R27): the row of a box's side. */
 /*@ requires goe_observation_is_open(obs) && goe_solid_is_closed(o) && goe_rows_hold(rows);
     requires side < GOE_BOX_SIDES && rows->count < GOE_ROWS_MAX; */
 static void add_side(const goe_observation_t *obs, const goe_solid_t *o, size_t side, goe_rows_t *rows) {
@@ -86,12 +86,12 @@ static void add_side(const goe_observation_t *obs, const goe_solid_t *o, size_t 
     }
     set_place(obs, o, &t.contact, &g, by);
     by[GOE_INVERSE_RANGE] += g.y * obs->height_m;
-    *goe_rows_last_variance(rows) += 2.0f * goe_square(obs->shift * g.z); /* opposite sides share it */
+    *goe_rows_last_variance(rows) += 2.0f * goe_square(obs->shift * g.z); /* opposite sides share this error */
     remember(rows, side);
 }
 
-/* (R5): an upright edge, as a point: the upright plane through it and the camera touches the footprint. outward: 1 on the
- * right, -1 on the left. */
+/* (R5): the row of left or right as a point: the upright plane through it and the camera touches the footprint. outward: 1 on the right, -1
+ * on the left. */
 /*@ requires goe_observation_is_open(obs) && \valid_read(o) && goe_rows_hold(rows);
     requires feature < GOE_FEATURES && rows->count < GOE_ROWS_MAX; */
 static void add_edge(const goe_observation_t *obs, const goe_solid_t *o, goe_feature_t feature, float outward,
@@ -112,12 +112,12 @@ static void add_edge(const goe_observation_t *obs, const goe_solid_t *o, goe_fea
     }
 }
 
-/* (R6): the nearest point of the upper rim; from above the highest in the image is the farthest. It slides along the rim as the line of
- * sight turns. */
+/* (R6): the row of the top, at the nearest point of the upper rim; from above, the highest one in the image is the farthest. This point
+ * slides along the rim as the line of sight turns. */
 /*@ requires goe_observation_is_open(obs) && \valid_read(o) && goe_rows_hold(rows) && rows->count < GOE_ROWS_MAX; */
 static void add_rim(const goe_observation_t *obs, const goe_solid_t *o, float more, goe_rows_t *rows) {
     goe_gradient_t g;
-    const float distance = sqrtf(goe_xz_dot(o->center, o->center)); /* at least that ahead */
+    const float distance = sqrtf(goe_xz_dot(o->center, o->center)); /* at least GOE_AHEAD_MIN */
     const float away = (obs->settings->filter.top_is_highest && o->roof > 0.0f ? 1.0f : -1.0f) / distance;
     const goe_xz_t outward = {away * o->center.x, away * o->center.z};
     const goe_contact_t contact = goe_ellipse_touch(&o->ellipse, outward);
@@ -140,8 +140,8 @@ static void add_rim(const goe_observation_t *obs, const goe_solid_t *o, float mo
     by[GOE_TOP] = -g.y;
 }
 
-/* (R2), range over flat ground: how far a base corner is in front of or behind the middle is not known, and a whole width is
- * allowed for it. */
+/* (R2): the row of a base corner, range over flat ground. How far the corner is in front of or behind the middle is not known, and one
+ * sigma of a whole width is allowed. */
 /*@ requires goe_observation_is_open(obs) && \valid_read(o) && goe_rows_hold(rows);
     requires feature < GOE_FEATURES && rows->count < GOE_ROWS_MAX; */
 static void add_base(const goe_observation_t *obs, const goe_solid_t *o, goe_feature_t feature, float width,
@@ -158,7 +158,7 @@ static void add_base(const goe_observation_t *obs, const goe_solid_t *o, goe_fea
     by[GOE_INVERSE_RANGE] += g.y * obs->height_m;
 }
 
-/* Points, where no sides replace them; base corners besides. */
+/* Adds the rows of the points that no sides replace, and of the base corners. */
 /*@ requires goe_observation_is_open(obs) && \valid_read(o) && goe_rows_hold(rows) && rows->count <= GOE_BOX_SIDES; */
 static void add_points(const goe_observation_t *obs, const goe_solid_t *o, bool sides, goe_rows_t *rows) {
     goe_feature_t left;
@@ -202,7 +202,7 @@ static void fade(goe_filter_t *filter, const goe_observation_t *obs, const goe_r
         const float share = obs->settings->detector.box_noise_rel;
         goe_side_memory_fade(&filter->side[side], obs->fade, goe_square(share * size_of(obs, side)));
     }
-    if (rows->count > 0) { /* otherwise this turn counts again in the next image */
+    if (rows->count > 0) { /* otherwise the next image includes this turn */
         goe_side_memory_fade(&filter->side[SHAPE_LEFT], kept, shape2);
         goe_side_memory_fade(&filter->side[SHAPE_RIGHT], kept, shape2);
     }
@@ -258,7 +258,7 @@ bool goe_footprint_knows_depth(const goe_filter_t *filter) {
     return goe_absolute(turn_between(filter, start_m, goe_filter_measured(filter))) > DEPTH_TURNED;
 }
 
-/* The last state's sigma is that of its own row. */
+/* The last state's sigma depends on its own row of R alone. */
 float goe_footprint_bend(const goe_filter_t *filter) {
     const float last = filter->root.element[goe_srif_row(GOE_LOG_DEPTH) + GOE_LOG_DEPTH];
     const float sd = 1.0f / goe_larger(goe_absolute(last), 1.0f / DEPTH_MAX);

@@ -1,4 +1,4 @@
-/* The axes that face the obstacle, and the first guess of its footprint. SPDX-License-Identifier: MIT */
+/* The start of a footprint from the first image: axes, range, state and sigmas. SPDX-License-Identifier: MIT */
 #include "refined/goe_footprint_start.h"
 
 #include <math.h>
@@ -13,22 +13,22 @@
 
 #if GOE_WITH_FILTER
 
-#define RAY_AHEAD_MIN 0.02f  /* third component of a ray that is faced */
-#define GROUND_SIGMAS 3.0f   /* by which the foot must lie below the horizon to give the range */
-#define FOOT_SHARE 0.6f      /* of box_noise_rel of the width, in that sigma */
-#define NEAR_SIDE 0.5f       /* a box's foot is nearer than the middle by half the width */
-#define CUT_MAX 0.3f         /* width of a box that starts although one side is missing: larger, no border has cut it */
-#define RANGE_MIN_M 1.0f     /* of a first guess */
-#define FARTHER_MAX 5.0f     /* times that a class may place the obstacle farther than the settings */
-#define RANGE_MAX_M 1.0e6f   /* the same */
-#define NO_ALTIMETER_M 50.0f /* sigma of the height from which on the first box sets it */
-#define HALF_FREEDOM 2.5f    /* one sigma of the first guess of the half width, in widths */
-#define SHEAR_FREEDOM 0.6f   /* ... of the shear, in half widths */
-#define DEPTH_FREEDOM 1.0f   /* ... of the log of the depth: a population of masts, cars and houses, in any direction */
-#define ROUND_FREEDOM 1.0e-3f /* of the depth, where a disc is configured */
-#define ROUND_SHEAR 0.02f     /* ... of the shear, in half widths: enough to show that it is none */
-#define GROUND_MIN 1.0e-6f    /* one sigma of the ground's offset, units of Z0 */
-#define BOX_SIZE_MIN 1.0e-12f /* of a box, angular: a smaller one gives no range */
+#define RAY_AHEAD_MIN 0.02f /* least third component of a ray to the obstacle */
+#define GROUND_SIGMAS 3.0f  /* sigmas by which the foot must be below the horizon to give the range */
+#define FOOT_SHARE 0.6f     /* share of box_noise_rel times the width in that sigma */
+#define NEAR_SIDE 0.5f      /* a box's foot is nearer than the middle by half the width */
+#define CUT_MAX 0.3f     /* largest width of a starting box with one side missing: the border has not cut a wider one */
+#define RANGE_MIN_M 1.0f /* least range at the start */
+#define FARTHER_MAX 5.0f /* factor by which a class may place the obstacle farther than the settings */
+#define RANGE_MAX_M 1.0e6f    /* largest range at the start */
+#define NO_ALTIMETER_M 50.0f  /* sigma of the height above which the first image sets the ground by the foot */
+#define HALF_FREEDOM 2.5f     /* prior sigma of the half width, in widths */
+#define SHEAR_FREEDOM 0.6f    /* prior sigma of the shear, in half widths */
+#define DEPTH_FREEDOM 1.0f    /* prior sigma of the log of the depth: masts, cars and houses, in any direction */
+#define ROUND_FREEDOM 1.0e-3f /* the same for a round obstacle */
+#define ROUND_SHEAR 0.02f     /* prior sigma of its shear, in half widths: enough to show that it is no disc */
+#define GROUND_MIN 1.0e-6f    /* least sigma of the ground's offset, units of Z0 */
+#define BOX_SIZE_MIN 1.0e-12f /* least angular size of a box: a smaller one gives no range */
 
 /* Aligned ray, in the state's axes, of the raw point (x, y) focal lengths. False if it does not point ahead. */
 static bool ray_of(const goe_camera_t *camera, const float camera_to_axes[9], float x, float y, goe_point_t *ray) {
@@ -45,7 +45,7 @@ static bool ray_of(const goe_camera_t *camera, const float camera_to_axes[9], fl
     return ray->usable;
 }
 
-/* Whether a box shows where the obstacle is: one side does, as its visible part ends at the image's border. */
+/* Whether a box shows the obstacle's direction: left or right is enough, as the visible part ends at the image's border. */
 static bool shows_box(const goe_sides_t *sides) { return (sides->usable & (GOE_SIDE_LEFT | GOE_SIDE_RIGHT)) != 0u; }
 
 /* Middle of the visible part of the box. Returns its width, focal lengths. */
@@ -98,8 +98,8 @@ bool goe_footprint_face(goe_filter_t *filter, const goe_view_t *view) {
 typedef struct {
     float size;
     goe_point_t head, foot;
-    bool box; /* by an upright box */
-    bool cut; /* ... of which the image's border hides the left or the right end */
+    bool box; /* measured by an upright box */
+    bool cut; /* the image's border hides the left or the right end of the box */
 } sight_t;
 
 static void see_box(const goe_observation_t *obs, sight_t *sight) {
@@ -146,7 +146,7 @@ static float up_of(const sight_t *sight) {
     return sight->head.usable && sight->foot.usable ? sight->foot.y - sight->head.y : 0.0f;
 }
 
-/* (R2): from flat ground, if the foot lies clearly below the horizon; otherwise 0. */
+/* (R2): range over flat ground, if the foot is clearly below the horizon; otherwise 0. */
 static float range_by_ground_m(const goe_observation_t *obs, const sight_t *sight) {
     const goe_settings_t *s = obs->settings;
     const float attitude =
@@ -160,8 +160,8 @@ static float range_by_ground_m(const goe_observation_t *obs, const sight_t *sigh
     return grounded ? obs->height_m / sight->foot.y * (1.0f + nearer) : 0.0f;
 }
 
-/* (R16): without ground from the size, by its class or as the settings assume it. A class may be wrong, and must not put the obstacle
- * where the sigma of the guess does not reach back. */
+/* (R16): range by the ground; otherwise by the size, from the class or from the settings. A class may be wrong, and must not place the
+ * obstacle so far away that the prior's sigma does not reach back. */
 static float first_range_m(const goe_observation_t *obs, const sight_t *sight, bool *by_kind) {
     const float ground_m = range_by_ground_m(obs, sight);
     const float prior_m = goe_kind_prior_width_m(obs->settings, obs->passed) / goe_larger(sight->size, BOX_SIZE_MIN);
@@ -173,7 +173,7 @@ static float first_range_m(const goe_observation_t *obs, const sight_t *sight, b
     return goe_larger(ground_m > 0.0f ? ground_m : prior_m, RANGE_MIN_M);
 }
 
-/* One sigma of the half width: the part behind the border may double it, or exceed it by an assumed width. */
+/* One sigma of the half width: the part behind the border may double it, or exceed it by the prior width. */
 static float half_freedom(const goe_observation_t *obs, const sight_t *sight, float q) {
     if (!sight->cut) {
         return HALF_FREEDOM * sight->size;

@@ -1,7 +1,7 @@
-/* Outlier gate and Huber weights. SPDX-License-Identifier: MIT
+/* The outlier gate and the Huber weights. SPDX-License-Identifier: MIT
  *
- * The noise of the attitude moves all points of an image together. Therefore the middle one of the residuals along x, and of
- * those along y, is judged by itself, and the others by their difference from it, in which that noise nearly cancels. */
+ * The noise of the attitude moves all points of an image together. Along x, and along y, the gate therefore tests the row with the median
+ * residual by itself, and the other rows by their difference from it, in which that noise nearly cancels. */
 #include "refined/goe_gate.h"
 
 #include <math.h>
@@ -12,9 +12,9 @@
 #if GOE_WITH_FILTER
 
 typedef struct {
-    uint8_t row[GOE_ROWS_MAX]; /* by residual */
+    uint8_t row[GOE_ROWS_MAX]; /* in the order of their residuals */
     size_t count;
-    size_t middle; /* row */
+    size_t middle; /* row of the median residual */
 } group_t;
 
 /*@ requires goe_rows_hold(rows) && row < rows->count; */
@@ -42,7 +42,7 @@ static void gather(const goe_rows_t *rows, goe_axis_t axis, group_t *group) {
 }
 
 #if GOE_AUGMENTED
-/* Of the augmented states. They move the points of an image nearly equally, and are left out of their differences. */
+/* Variance by the augmented states. They move the points of an image nearly equally, so differences of points omit it. */
 static float augmented_variance(const goe_filter_t *filter, const float *row, const float projected[GOE_STATES]) {
     float part[GOE_AUGMENTED];
     goe_srif_augmented(&filter->root, projected, 0, &row[GOE_AUGMENTED_COLUMN], part);
@@ -50,7 +50,7 @@ static float augmented_variance(const goe_filter_t *filter, const float *row, co
 }
 #endif
 
-/* What the gate reads of the filter: the state's errors as of the latest rows, and the variance of the process noise since then. */
+/* The filter's data for the gate: the state's errors as of the latest rows, and the variance of the process noise since then. */
 typedef struct {
     const goe_filter_t *filter;
     float reciprocal[GOE_STATES]; /* of R */
@@ -60,7 +60,7 @@ typedef struct {
 
 GOE_STATIC_ASSERT(GOE_STATES % 5 == 0, a_difference_of_rows_is_taken_by_five_states_at_a_time);
 
-/* (R14): normalized square of a row's residual, or of the difference of two rows'. */
+/* (R14): normalized square of a row's residual or, if `middle` is another row, of the difference of both residuals. */
 /*@ requires \valid_read(known) && goe_rows_hold(rows) && row < rows->count && middle < rows->count; */
 static float innovation(const known_t *known, const goe_rows_t *rows, size_t row, size_t middle) {
     const goe_filter_t *filter = known->filter;
@@ -107,12 +107,12 @@ static void judge(const goe_settings_t *settings, const known_t *known, const go
     const float huber = settings->filter.huber_sigma;
     gather(rows, axis, &group);
     const float alone = group.count > 0 ? innovation(known, rows, group.middle, group.middle) : 0.0f;
-    const bool common = alone <= gate * gate; /* a wrong middle is no evidence about the others */
+    const bool common = alone <= gate * gate; /* a wrong median row is no evidence about the others */
     for (size_t i = 0; i < group.count; i++) {
         const size_t row = group.row[i];
         const size_t feature = rows->feature[row];
         const float squared = row == group.middle ? alone : innovation(known, rows, row, common ? group.middle : row);
-        if (squared > gate * gate && known->filter->health.adrift == 0u) { /* of a track adrift, nothing is refused */
+        if (squared > gate * gate && known->filter->health.adrift == 0u) { /* an adrift track refuses nothing */
             belief->verdict.refused |= 1u << feature;
         } else if (squared > huber * huber) {
             const float factor = huber / sqrtf(squared);
@@ -123,7 +123,7 @@ static void judge(const goe_settings_t *settings, const known_t *known, const go
 
 GOE_STATIC_ASSERT((GOE_COLUMNS - GOE_AUGMENTED) % 7 == 0, a_row_is_scaled_by_seven_columns_at_a_time);
 
-/* Partly written out: done for every row of every image, counting costs as much as multiplying. */
+/* Partly written out: for every row of every image, counting would cost as much as multiplying. */
 static void scale_row(float row[GOE_COLUMNS], float weight) {
     for (float *c = row; c < row + (GOE_COLUMNS - GOE_AUGMENTED); c += 7) {
         c[0] *= weight;

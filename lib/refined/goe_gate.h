@@ -1,19 +1,20 @@
-/* Which points of an image are believed, and how much. SPDX-License-Identifier: MIT */
+/* The outlier gate: which points of an image count, and with which weight. SPDX-License-Identifier: MIT */
 #ifndef GOE_GATE_H
 #define GOE_GATE_H
 
 #include "refined/goe_observation.h"
 
-/* Bit i: feature i. */
+/* Result of the gate. Bit i: feature i. */
 typedef struct {
     unsigned measured, refused;
-    int rows; /* that count */
+    int rows; /* rows that are not refused */
 } goe_verdict_t;
 
-/* Factor on the variances for errors that are correlated from image to image: of points; those of a box's sides are modeled instead. */
+/* Factor on the variances of points for errors that are correlated from image to image; 1 for a footprint by upright boxes, because the
+ * errors of their sides are modeled. */
 float goe_gate_repeated(const goe_filter_t *filter, float point_correlation);
 
-/* Whitens the rows: each divided by its sigma, less if it is suspicious, 0 if its point is refused: rows->weight. */
+/* Whitens the rows: multiplies each by rows->weight, which is 1/sigma, less for a suspicious point, and 0 for a refused one. */
 goe_verdict_t goe_gate_apply(const goe_settings_t *settings, const goe_filter_t *filter, goe_rows_t *rows);
 
 #endif

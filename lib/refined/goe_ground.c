@@ -1,4 +1,4 @@
-/* The camera's height above the obstacle's ground. SPDX-License-Identifier: MIT */
+/* The camera's height above the obstacle's ground: mean of its readings, and rows. SPDX-License-Identifier: MIT */
 #include "refined/goe_ground.h"
 
 #include <math.h>
@@ -7,20 +7,20 @@
 
 #if GOE_WITH_FILTER
 
-#define UNKNOWN_SD_M 1.0e3f  /* of a height that was not set */
-#define GROWN 1.0e-3f        /* of the information of the heights: less waits for more */
-#define NARROW 0.95f         /* of ground_scale: information too strong */
-#define WIDE 1.05f           /* ... not well enough */
+#define UNKNOWN_SD_M 1.0e3f  /* sigma of a height that was not set */
+#define GROWN 1.0e-3f        /* least growth of the heights' information, as a share: less waits for more */
+#define NARROW 0.95f         /* ground_scale below which the ground's information is too strong */
+#define WIDE 1.05f           /* ground_scale above which it is too weak */
 #define SCALE_MIN 0.05f      /* a smaller one counts as this */
-#define SCATTER_SEEDS 8      /* readings as configured, that their scatter is begun with */
-#define SCATTER_MEMORY 64.0f /* readings that it remembers */
+#define SCATTER_SEEDS 8      /* readings as configured with which the scatter begins */
+#define SCATTER_MEMORY 64.0f /* readings that the scatter remembers */
 #define VARIANCE_MIN_M2 1.0e-12f
-#define LEVEL_SHARE 1.0e-3f   /* of the offset's variance, that a level ground leaves at least */
-#define VARIANCE_MIN 1.0e-12f /* of the offset, units of Z0 */
+#define LEVEL_SHARE 1.0e-3f   /* least share of the offset's variance that remains on level ground */
+#define VARIANCE_MIN 1.0e-12f /* least variance of the offset, units of Z0 */
 
 /* ----------------------------------------------------------------------------------------------------------- readings -- */
 
-/* Down in the camera's axes is a row of camera -> T, as T is level. */
+/* Down of the camera. Its direction in the camera's axes is a row of camera -> T, because T is level. */
 static float camera_down_m(const goe_view_t *view) {
     const float *down = &view->camera_to_trajectory[3];
     float arm_m = 0.0f;
@@ -32,8 +32,8 @@ static float camera_down_m(const goe_view_t *view) {
     return view->image->pose.position_ned_m[2] + arm_m;
 }
 
-/* A first-order Kalman filter of the altimeter's zero: down drifts, and readings scatter as configured or more. Before the filter starts
- * the ground is where the mean puts it. */
+/* A Kalman filter of one state, the altimeter's zero: down drifts, and readings scatter as configured or more. Until the obstacle's filter
+ * starts, the mean moves the ground. */
 static void average(goe_datum_t *datum, const goe_navigation_t *navigation, bool started, float off_m, float since_s) {
     const float innovation2 = datum->readings > 0 ? goe_square(off_m - datum->mean_m) : 0.0f;
     const float counted = (float)(datum->readings + SCATTER_SEEDS);
@@ -69,7 +69,7 @@ void goe_ground_read(goe_filter_t *filter, const goe_navigation_t *navigation, c
 
 /* --------------------------------------------------------------------------------------------------------------- known -- */
 
-/* Of GOE_GROUND: the error of a height counts by 1/Z0, a slope as it is, over whatever range. */
+/* Variance of GOE_GROUND: the error of a height is multiplied by 1/Z0; a slope counts as it is, at any range. */
 static GOE_NOINLINE float variance_of(const goe_navigation_t *navigation, float height_m2, float q) {
     return goe_larger(height_m2 * q * q + goe_square(navigation->terrain_slope_sd), VARIANCE_MIN);
 }
@@ -95,14 +95,14 @@ void goe_ground_start(goe_filter_t *filter, const goe_observation_t *obs) {
     filter->flown_m = 0.0f;
 }
 
-/* The height moves by the changes of down, which drift, and readings that scatter more than before say less of it. The top counts from the
- * altimeter's zero, which moves along. */
+/* The changes of down, which drift, move the height. Readings that scatter more than before are less informative about it. The top counts
+ * from the altimeter's zero, which moves along. */
 void goe_ground_drift(goe_filter_t *filter, const goe_observation_t *obs) {
     float direction[GOE_STATES] = {0.0f};
     goe_datum_t *datum = &filter->datum;
     const float walked_m2 = goe_square(obs->settings->navigation.position_walk_sd_m) * filter->due_s;
-    const float more_m2 =
-        goe_larger(goe_square(obs->height_sd_m) - datum->taken_m2, walked_m2); /* before a sum would lose it */
+    const float more_m2 = goe_larger(goe_square(obs->height_sd_m) - datum->taken_m2,
+                                     walked_m2); /* the difference would lose a small walk */
     if (!(filter->due_s > 0.0f) || !(more_m2 > 0.0f)) {
         return;
     }
@@ -114,7 +114,7 @@ void goe_ground_drift(goe_filter_t *filter, const goe_observation_t *obs) {
     datum->first_m2 = goe_larger(datum->first_m2, datum->taken_m2);
 }
 
-/* What the first height gives the state with the present 1/Z0, over what it gave with that for which it was set; 1/variance. */
+/* Information (1/variance) that the first height gives the state at the present 1/Z0, minus that at the 1/Z0 for which it was set. */
 static float first_gained(const goe_filter_t *filter, const goe_navigation_t *navigation, float scale) {
     const float q = filter->state[GOE_INVERSE_RANGE];
     return 1.0f / variance_of(navigation, filter->datum.first_m2, q) -
@@ -130,12 +130,12 @@ void goe_ground_widen(goe_filter_t *filter, const goe_navigation_t *navigation) 
     const float variance = goe_filter_variance(filter, GOE_GROUND);
     const float least = variance < begun ? variance : begun;
     const float taken =
-        -first_gained(filter, navigation, scale) * least; /* share of its own information, which was not there */
+        -first_gained(filter, navigation, scale) * least; /* the excess, as a share of the present information */
     goe_filter_inflate(filter, GOE_GROUND, sqrtf(variance * taken / (1.0f - taken)));
     filter->ground_scale = 1.0f;
 }
 
-/* Of the first height. */
+/* Adds the information that the first height gains when 1/Z0 becomes smaller. */
 static int add_first(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
     if (!(filter->ground_scale >= WIDE) || rows->count >= GOE_ROWS_MAX) {
         return 0;
@@ -148,8 +148,8 @@ static int add_first(goe_filter_t *filter, const goe_observation_t *obs, goe_row
     return 1;
 }
 
-/* The heights so far give the offset of the first with the information 1/(constant error^2 + that of their mean). A row adds only its
- * growth; the constant error is in all of them, and is not counted twice. */
+/* The heights so far measure the offset of the first one with the information 1/(constant error^2 + variance of their mean). The row adds
+ * only the growth of this information: all heights contain the constant error, which must not count twice. */
 static int add_grown(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
     goe_datum_t *datum = &filter->datum;
     const float q = filter->state[GOE_INVERSE_RANGE];
@@ -158,14 +158,14 @@ static int add_grown(goe_filter_t *filter, const goe_observation_t *obs, goe_row
     const float before = 1.0f / variance_of(&obs->settings->navigation, datum->taken_m2, q);
     const float grown = information - before;
     if (rows->count >= GOE_ROWS_MAX || !(grown > GROWN * information)) {
-        return 0; /* later */
+        return 0; /* waits for more */
     }
     const float weight = sqrtf(grown);
     const float read_m = (information * datum->mean_m - before * datum->taken_mean_m) / grown;
     float *row = rows->matrix->row[rows->count++];
     row[GOE_STATE_COLUMN + GOE_GROUND] = weight;
     row[GOE_STATE_COLUMN + GOE_INVERSE_RANGE] =
-        -weight * filter->state[GOE_GROUND] / q; /* not read_m, which is noisy */
+        -weight * filter->state[GOE_GROUND] / q; /* instead of read_m, which is noisy */
     row[GOE_RESIDUAL] = weight * (read_m * q - filter->state[GOE_GROUND]);
     datum->taken_m2 = height_m2;
     datum->taken_mean_m = datum->mean_m;

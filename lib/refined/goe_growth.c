@@ -1,4 +1,4 @@
-/* Growth. SPDX-License-Identifier: MIT */
+/* The test of an obstacle's growth in the image, (R34). SPDX-License-Identifier: MIT */
 #include "refined/goe_growth.h"
 
 #include "maths/goe_scalar.h"
@@ -6,9 +6,9 @@
 
 #if GOE_WITH_FILTER
 
-#define AHEAD_MIN 0.7f /* of Z0: nearer, the line of sight may have turned, and another face be in view */
+#define AHEAD_MIN 0.7f /* least Z over Z0: nearer, the line of sight may have turned, and another face may be visible */
 
-/* The height if a box shows it, as it does not change with the direction of view; otherwise the width. */
+/* Uses the height if a box shows it, because it does not change with the direction of view; otherwise the width. */
 float goe_growth_find(const goe_observation_t *obs, const goe_rows_t *rows) {
     const bool tall = goe_sides_see(obs->sides, GOE_SIDE_TOP | GOE_SIDE_BOTTOM);
     const goe_feature_t low = tall ? GOE_POINT_TOP : GOE_POINT_LEFT;
@@ -20,7 +20,7 @@ float goe_growth_find(const goe_observation_t *obs, const goe_rows_t *rows) {
     float variance = share2 * goe_square(size);
     float excess = 0.0f;
     unsigned ends = 0;
-    for (size_t i = 0; i < rows->remembered; i++) { /* the sides of a box, or left and right */
+    for (size_t i = 0; i < rows->remembered; i++) { /* sides of a box, or left and right */
         if (rows->feature[i] == low || rows->feature[i] == high) {
             excess = rows->matrix->row[i][GOE_RESIDUAL] - excess; /* the low end comes first */
             variance += rows->variance[i];

@@ -1,4 +1,4 @@
-/* Fit of the images, and recovery. SPDX-License-Identifier: MIT */
+/* How well the images fit: means of the NIS, refused points, restarts. SPDX-License-Identifier: MIT */
 #include "refined/goe_health.h"
 
 #include <string.h>
@@ -7,18 +7,18 @@
 
 #if GOE_WITH_FILTER
 
-#define RECENT_MEMORY 0.125f /* of one image in recent_nis */
-#define MEAN_IMAGES 64       /* that mean_nis remembers */
-#define MEAN_SEEDS 8         /* images of NIS 0 that it is begun with: the first ones alone say little */
-#define RATIO_MAX 20.0f      /* of NIS over rows of one image: one outlier must not decide */
+#define RECENT_MEMORY 0.125f /* weight of one image in recent_nis */
+#define MEAN_IMAGES 64       /* images that mean_nis remembers */
+#define MEAN_SEEDS 8         /* images of NIS 0 with which it begins: the first images alone are not informative */
+#define RATIO_MAX 20.0f      /* limit of NIS over rows of one image: one outlier must not decide */
 #define RECENT_MAX 6.0f      /* recent_nis that only a captured state reaches */
 #define POOR_IMAGES 3
 #define REFUSED_IMAGES 4 /* images in a row in which a point is refused before the state is doubted */
 #define REFUSED_TOPS 3
-#define EARLY_IMAGES 32 /* of the track: what does not fit in them began with an outlier */
+#define EARLY_IMAGES 32 /* first images of the track: a failure in them began with an outlier */
 #define FAILURES_MAX 2  /* times that a box of base corners may prove wrong */
 #define TOP_FREED 2.0f
-#define RESTART_IMAGES 24 /* two restarts within so many are one too many: 3 s at 8 Hz */
+#define RESTART_IMAGES 24 /* images within which a second restart is one too many: 3 s at 8 Hz */
 #define STATE_MAX 1.0e6f
 #define NIS_MAX 1.0e6f
 
@@ -36,7 +36,7 @@ static unsigned bits_of(unsigned set) {
     return count;
 }
 
-/* Half of the points or more do not fit. */
+/* Whether half of the points or more do not fit. */
 static bool is_poor(goe_verdict_t verdict) {
     return verdict.measured != 0 && 2u * bits_of(verdict.refused) >= bits_of(verdict.measured);
 }
@@ -59,7 +59,8 @@ void goe_health_take(goe_health_t *health, goe_verdict_t verdict, float nis) {
     health->nis = goe_within(nis, NIS_MAX) ? nis : NIS_MAX;
     health->nis_rows = (int16_t)verdict.rows;
     const float ratio = health->nis / (float)verdict.rows;
-    average_track(health, is_poor(verdict) ? RATIO_MAX : ratio); /* the rest fits, and is not informative */
+    average_track(health,
+                  is_poor(verdict) ? RATIO_MAX : ratio); /* if poor, the fit of the other points is not informative */
     if (health->recent_nis < 0.0f) {
         health->recent_nis = 1.0f;
     } else {
@@ -75,7 +76,7 @@ void goe_health_take_refused(goe_health_t *health, goe_verdict_t verdict) {
 
 /* ----------------------------------------------------------------------------------------------------------- recovery -- */
 
-/* A point that is refused image after image: the state was captured by an outlier, not the other way round. */
+/* Whether a point is refused image after image: then an outlier has captured the state, and the point is right. */
 static bool is_captured(goe_filter_t *filter, goe_verdict_t verdict) {
     goe_health_t *health = &filter->health;
     bool captured = false;
@@ -95,7 +96,7 @@ static bool is_captured(goe_filter_t *filter, goe_verdict_t verdict) {
     return captured;
 }
 
-/* A box's detector may find now this corner of the roof, now that. The top alone hangs on nothing else. */
+/* The detector may find one corner of a box's roof now, and another one later. No other state depends on the top. */
 static void free_top(goe_filter_t *filter) {
     const float *x = filter->state;
     const float extent = goe_larger(x[GOE_FRONT_X], goe_absolute(x[GOE_DEPTH_DIFFERENCE]));
@@ -112,8 +113,8 @@ static bool is_sane(const goe_filter_t *filter) {
     return sane;
 }
 
-/* A box of base corners that proved wrong more than once: they are those of something else. Residuals alone do not decide:
- * noise that is given too small must not cost a true box its corners. */
+/* Counts the failures of a box of base corners. If it proves wrong more than once, the corners belong to something else. Residuals alone do
+ * not decide: configured noise that is too small must not cost a true box its corners. */
 static void count_failure(goe_filter_t *filter, goe_model_t asked) {
     if (goe_filter_is_box(filter) && asked == GOE_MODEL_AUTO && filter->health.images >= EARLY_IMAGES) {
         filter->health.base_refused = goe_count_image(&filter->health.failed) >= FAILURES_MAX;

@@ -1,17 +1,17 @@
-/* How well the images fit: the running means of the NIS, points that are refused again and again, and when the filter has to
- * start again. SPDX-License-Identifier: MIT */
+/* How well the images fit: the running means of the NIS, points that the gate refuses in many images, and restarts of the filter.
+ * SPDX-License-Identifier: MIT */
 #ifndef GOE_HEALTH_H
 #define GOE_HEALTH_H
 
 #include "refined/goe_gate.h"
 
-/* Before an image: it has given nothing yet. */
+/* Before an image: it has no NIS and no rows yet. */
 void goe_health_expect(goe_health_t *health);
 
-/* After the update by an image: its normalized innovation squared, of verdict->rows rows. */
+/* After the update by an image. nis: its normalized innovation squared, of verdict.rows rows. */
 void goe_health_take(goe_health_t *health, goe_verdict_t verdict, float nis);
 
-/* ... or, if every point of it was refused: nothing could fit worse. */
+/* The same if every point of the image was refused: it counts as the worst fit. */
 void goe_health_take_refused(goe_health_t *health, goe_verdict_t verdict);
 
 /* Judges the filter after an image: counts refused points, and frees the top if that alone was refused for some images. Returns whether

@@ -1,4 +1,4 @@
-/* Rows of a size by its class, and their test. SPDX-License-Identifier: MIT */
+/* The sizes of the detector's class: their rows and their test. SPDX-License-Identifier: MIT */
 #include "refined/goe_kind.h"
 
 #include <math.h>
@@ -9,13 +9,13 @@
 #if GOE_WITH_FILTER
 
 #define WRONG_SIGMAS2 16.0f /* 4 sigma: a size that far off is of another class */
-#define DOUBT_SIGMAS2 4.0f  /* 2 sigma: a size that far off gives no answer */
-#define WRONG_IMAGES 3      /* in a row that find it so */
-#define KNOWN_SHARE 0.7f    /* of range_share: images that know the range better need no size */
-#define WIDER 1.2f          /* of a size's sigma: a silhouette is no box's width and height */
-#define ANGLE_MIN 1.0e-6f   /* of a size that gives a range */
-#define FARTHER 10.0f       /* times the first guess before: which lies 2.25 sigma from the new one */
-#define PASSED_MAX 3u       /* such guesses */
+#define DOUBT_SIGMAS2 4.0f  /* 2 sigma: a size that far off gives no estimate */
+#define WRONG_IMAGES 3      /* images in a row that find a size wrong */
+#define KNOWN_SHARE 0.7f    /* share of range_sd_rel_max: images that know the range better need no size */
+#define WIDER 1.2f          /* factor on a size's sigma: the silhouette is not exactly a box's width and height */
+#define ANGLE_MIN 1.0e-6f   /* least angular size that gives a range */
+#define FARTHER 10.0f       /* factor from the previous prior range, which is 2.25 sigma from the new one */
+#define PASSED_MAX 3u       /* largest number of such steps */
 
 enum { KIND_WIDTH, KIND_HEIGHT, KIND_SIZES };
 
@@ -38,7 +38,7 @@ void goe_kind_start(goe_filter_t *filter, const goe_observation_t *obs, bool by_
     filter->kind.first = by_kind;
 }
 
-/* Of the silhouette, units of Z0. */
+/* Width of the silhouette, units of Z0, with its derivatives. */
 static float width_of(const goe_filter_t *filter, float by[GOE_STATES]) {
     const float *x = filter->state;
     const bool is_ellipse = goe_filter_traits(filter)->is_ellipse;
@@ -50,7 +50,7 @@ static float width_of(const goe_filter_t *filter, float by[GOE_STATES]) {
     return x[GOE_FRONT_X] + goe_absolute(x[GOE_SIDE_X]);
 }
 
-/* By how much a size of the state exceeds the class's, units of Z0, with the derivatives: linear in the state. */
+/* Size in the state minus that of the class, units of Z0, with its derivatives: it is linear in the state. */
 static float excess_of(const goe_filter_t *filter, size_t size, float size_m, float by[GOE_STATES]) {
     const float *x = filter->state;
     memset(by, 0, GOE_STATES * sizeof by[0]);
@@ -83,7 +83,7 @@ static void take(goe_filter_t *filter, const goe_kind_t *kind) {
     }
 }
 
-/* (excess over its sigma)^2, of class and images together. */
+/* (excess over its sigma)^2; the sigma contains the errors of class and images. */
 static float difference2(const goe_filter_t *filter, const float reciprocal[GOE_STATES], size_t size) {
     float by[GOE_STATES];
     const float excess = excess_of(filter, size, filter->kind.size_m[size], by);

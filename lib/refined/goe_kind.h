@@ -1,30 +1,30 @@
-/* The size and the shape that the detector's class says. SPDX-License-Identifier: MIT
+/* The size and the shape of the detector's class. SPDX-License-Identifier: MIT
  *
- * The filter never takes a size in: a wrong one would turn growth into motion, and the state would no longer show which. The size
- * gives the first guess of the range, and an answer until the images know the range themselves. Each image tests it. */
+ * The state never keeps a size: a wrong one would turn growth of the image into motion, and the state could no longer show the error. The
+ * size gives the prior range, and an estimate until the images know the range themselves. Each image tests the size. */
 #ifndef GOE_KIND_H
 #define GOE_KIND_H
 
 #include "refined/goe_filter.h"
 #include "refined/goe_observation.h"
 
-/* By the better known size, of the angular sizes across and up, 0: not visible. 0: no size is known. */
+/* Range by the better known size, m; 0 if no size is known. across, up: angular sizes, 0 if not visible. */
 float goe_kind_range_m(const goe_kind_t *kind, float across, float up);
 
-/* The filter starts; by_kind: at the range of the class. */
+/* Call when the filter starts. by_kind: at the range of the class. */
 void goe_kind_start(goe_filter_t *filter, const goe_observation_t *obs, bool by_kind);
 
-/* An image shows the obstacle where the state cannot have it, and no image corrects that: the first guess of the range was too near. The
- * filter starts again, without the class if the guess was that of the class, otherwise from a farther guess. */
+/* Call when an image shows the obstacle at a place that the state excludes, and no image can correct this: the prior range was too near.
+ * The filter restarts, without the class if the prior was that of the class, otherwise from a farther prior. */
 void goe_kind_start_farther(goe_filter_t *filter);
 
 /* The class is wrong: the filter ignores it to the end of the track. */
 void goe_kind_reject(goe_filter_t *filter);
 
-/* Width that a first guess without a class assumes, m, when so many were too near. */
+/* Prior width without a class, m, after `passed` priors that were too near. */
 float goe_kind_prior_width_m(const goe_settings_t *settings, unsigned passed);
 
-/* After the rows of an image: takes its sizes, and compares them with what the images know without them. */
+/* After the rows of an image: takes its sizes, and compares them with the state, which does not contain them. */
 void goe_kind_test(goe_filter_t *filter, const goe_observation_t *obs);
 
 /* State and root without the sizes. */
@@ -33,7 +33,8 @@ typedef struct {
     goe_triangle_t root;
 } goe_kind_saved_t;
 
-/* For one answer the sizes enter the state, if the images do not contradict them, and do not know the range. False: nothing was done. */
+/* Adds the sizes to the state for one estimate, if the images do not contradict them, and do not know the range. False if it did
+ * nothing. */
 bool goe_kind_apply(goe_filter_t *filter, goe_kind_saved_t *saved);
 void goe_kind_restore(goe_filter_t *filter, const goe_kind_saved_t *saved);
 

@@ -1,4 +1,4 @@
-/* Dispatch to the models. SPDX-License-Identifier: MIT */
+/* The calls of the model that the filter's phase selects. SPDX-License-Identifier: MIT */
 #include "refined/goe_model.h"
 
 #include <string.h>
@@ -12,7 +12,7 @@
 
 #if GOE_WITH_FILTER
 
-#define NEAR_IMAGES 8u /* in which an invisible near corner is a missed one, not a nonexistent one */
+#define NEAR_IMAGES 8u /* images in which an invisible near corner counts as missed, not as nonexistent */
 
 bool goe_model_place(goe_filter_t *filter, const goe_view_t *view) {
     goe_filter_place_axes(filter, view->motion);
@@ -33,7 +33,7 @@ bool goe_model_start(goe_filter_t *filter, const goe_observation_t *obs) {
     return true;
 }
 
-/* A near corner between two faces is missed now and then. */
+/* A detector sometimes misses the near corner between two faces. */
 static void note_near(goe_filter_t *filter, const goe_observation_t *obs) {
     if (obs->point[GOE_POINT_BASE_NEAR].usable) {
         filter->candidate.near_images = NEAR_IMAGES;

@@ -1,4 +1,4 @@
-/* The models, by the filter's phase. SPDX-License-Identifier: MIT */
+/* The calls that all models implement, by the filter's phase. SPDX-License-Identifier: MIT */
 #ifndef GOE_MODEL_H
 #define GOE_MODEL_H
 
@@ -6,14 +6,14 @@
 #include "refined/goe_observation.h"
 #include "refined/goe_shape.h"
 
-/* Places the filter's axes for a start by this image. False if it shows no obstacle to start by. */
+/* Places the filter's axes for a start with this image. False if it shows no obstacle to start with. */
 bool goe_model_place(goe_filter_t *filter, const goe_view_t *view);
 
-/* Starts the filter by a footprint. False if the image does not show enough. */
+/* Starts the filter with a footprint. False if the image does not show enough. */
 bool goe_model_start(goe_filter_t *filter, const goe_observation_t *obs);
 
-/* Changes the model if the image shows that another fits. Returns whether it did; the image that brings a change is not used
- * for more, because it costs as much as a measurement. */
+/* Changes the model if the image shows that another one fits. Returns whether it did; the image that causes the change is used for nothing
+ * else, because a change costs as much as a measurement. */
 bool goe_model_change(goe_filter_t *filter, const goe_observation_t *obs);
 
 /* Appends the rows of an image. */
@@ -21,17 +21,17 @@ bool goe_model_change(goe_filter_t *filter, const goe_observation_t *obs);
     requires rows->count == 0; */
 void goe_model_rows(const goe_filter_t *filter, goe_observation_t *obs, goe_rows_t *rows);
 
-/* Before the gate. */
+/* Before the gate: removes the remembered errors from the rows. */
 void goe_model_recall(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows);
 
-/* After the gate. */
+/* After the gate: updates the remembered errors. */
 void goe_model_learn(goe_filter_t *filter, goe_rows_t *rows);
 
-/* The update by whitened rows, and the consequences of the change of the state. change: of it and of the augmented states. Returns the
+/* Updates state and root by whitened rows, and all that depends on the state. change: of the state and of the augmented states. Returns the
  * normalized innovation squared. */
 float goe_model_update(goe_filter_t *filter, float nuisance_root, goe_rows_t *rows, float change[GOE_UNKNOWNS]);
 
-/* Quantities with their derivatives. */
+/* Sets the quantities with their derivatives. */
 void goe_model_shape(const goe_filter_t *filter, goe_shape_t *shape);
 
 #endif

@@ -1,4 +1,4 @@
-/* Latency of the poses, velocity of the obstacle. SPDX-License-Identifier: MIT */
+/* The augmented states: latency of the poses, velocity of the obstacle. SPDX-License-Identifier: MIT */
 #include "refined/goe_mover.h"
 
 #include <math.h>
@@ -10,29 +10,29 @@
 
 #if GOE_AUGMENTED
 
-#define LATENCY_PRIOR_S 0.05f /* one sigma of what poses are late by before anything is known */
-#define LATENCY_SHARE 0.25f   /* relative sigma of a latency: a mean turn rate replaces that at the exposure */
-#define SPREAD_GROWN 25.0f    /* of a velocity's variance, when the obstacle begins to be followed */
-#define SPEED_MAX_M_S 20.0f   /* of what the images showed; a faster one is the linearization's */
-#define LATE_MIN_S 0.02f      /* poses are reported as late from here on ... */
-#define LATE_SIGMAS 2.7f      /* ... and if it is that much more than nothing */
-#define RATE_PREDICTED 0.8f   /* of a rate of turn, by the one before it: the mean over usual swaying */
-#define MOVES_CHI2 25.0f /* chi-squared, two degrees of freedom of a velocity: by chance 4e-6 if there is only noise */
-#define BOXES_CHI2 45.0f /* the same of upright boxes, which drift also because they are no ellipse's */
-#define REST_CHI2 9.0f   /* something moves if a latency leaves at least this unexplained ... */
-#define REST_SHARE 0.15f /* ... and a velocity at most this share of that */
-#define LATE_SHARE 0.3f  /* poses are late only if a velocity leaves more than this share of that */
-#define MOVING_SIGMAS2 9.0f     /* a late track moves as well if its velocity is that significant */
-#define MOVES_MIN_M_S 1.0f      /* a slower motion counts as none */
-#define MOVES_S 0.4f            /* for which it says so, image after image ... */
-#define MOVES_IMAGES 3          /* ... of which there are at least so many */
-#define SETTLED_S 1.4f          /* of informative images: less gives no velocity */
-#define SINCE_MAX_S 0.5f        /* a gap between images counts as that */
-#define COLUMN_MAX 1.0e3f       /* focal lengths per second, or per m/s: beyond that no flight is */
-#define AUGMENTED_MAX 1.0e9f    /* of the augmented states and their rows of the triangle: no flight has more */
-#define SPEED_SD_M_S 8.0f       /* one sigma of the velocity along north and east of what moves on the ground */
-#define TIME_MIN_S 0.1f         /* keeps a walk over time finite */
-#define DETERMINANT_MIN 1.0e-5f /* of a covariance of two, over the product of the variances */
+#define LATENCY_PRIOR_S 0.05f /* one sigma of the latency of the poses before any image */
+#define LATENCY_SHARE 0.25f   /* relative sigma of a latency: a mean rate of turn replaces the rate at the exposure */
+#define SPREAD_GROWN 25.0f    /* factor on a velocity's variance when the filter begins to follow the obstacle */
+#define SPEED_MAX_M_S 20.0f   /* largest velocity by the images; a faster one is an error of the linearization */
+#define LATE_MIN_S 0.02f      /* least latency that is reported as late */
+#define LATE_SIGMAS 2.7f      /* least ratio of such a latency to its sigma */
+#define RATE_PREDICTED 0.8f   /* share of the previous rate of turn in the present one: mean over usual swaying */
+#define MOVES_CHI2 25.0f /* chi-squared of a velocity, two degrees of freedom: 4e-6 by chance if there is only noise */
+#define BOXES_CHI2 45.0f /* the same for upright boxes, which drift also because the obstacle is no ellipse */
+#define REST_CHI2 9.0f   /* the obstacle moves if a latency leaves at least this sum of squares unexplained */
+#define REST_SHARE 0.15f /* and if a velocity leaves at most this share of that sum */
+#define LATE_SHARE 0.3f  /* poses are late only if a velocity leaves more than this share of that sum */
+#define MOVING_SIGMAS2 9.0f  /* squared sigmas of the velocity above which a late track moves as well */
+#define MOVES_MIN_M_S 1.0f   /* a slower motion counts as none */
+#define MOVES_S 0.4f         /* least time for which all images contradict a static obstacle */
+#define MOVES_IMAGES 3       /* least number of these images */
+#define SETTLED_S 1.4f       /* least time of informative images: less gives no velocity */
+#define SINCE_MAX_S 0.5f     /* a longer gap between images counts as this */
+#define COLUMN_MAX 1.0e3f    /* limit of a column, focal lengths per second, or per m/s: no flight exceeds it */
+#define AUGMENTED_MAX 1.0e9f /* limit of the augmented states and of their rows of the triangle: no flight exceeds it */
+#define SPEED_SD_M_S 8.0f /* one sigma of the velocity along north and east of an obstacle that moves on the ground */
+#define TIME_MIN_S 0.1f   /* keeps a walk over time finite */
+#define DETERMINANT_MIN 1.0e-5f /* least determinant of a 2 x 2 covariance, over the product of the variances */
 
 /*@ requires \valid(root) && i <= j < GOE_AUGMENTED; */
 static float *augmented_at(goe_triangle_t *root, size_t i, size_t j) {
@@ -56,7 +56,8 @@ void goe_mover_clear(goe_filter_t *filter) {
 
 static float sane(float column) { return goe_within(column, COLUMN_MAX) ? column : 0.0f; }
 
-/* (R33): the obstacle at velocity v has moved by v t; poses that are tau late have the attitude and the velocity of then. */
+/* (R33): an obstacle with the velocity v has moved by v t. Poses that are late by tau have the attitude and velocity of another time, tau
+ * away. */
 void goe_mover_columns(const goe_observation_t *obs, goe_rows_t *rows) {
     const float q = obs->state[GOE_INVERSE_RANGE];
     const float passed = q * obs->elapsed_s;
@@ -91,7 +92,7 @@ float goe_mover_own_variance(const goe_navigation_t *navigation, float elapsed_s
            goe_square(navigation->position_walk_sd_m) / goe_larger(elapsed_s, TIME_MIN_S);
 }
 
-/* A latency that is not taken off, because it is not significant, is an error, too. */
+/* A latency that is not corrected, because it is not significant, is an error as well. */
 float goe_mover_latency_sd(const goe_filter_t *filter) {
     const float wider = goe_larger(filter->health.mean_nis, 1.0f);
     const float root = filter->root.element[goe_srif_augmented_row()];
@@ -105,15 +106,15 @@ float goe_mover_latency_sd(const goe_filter_t *filter) {
 
 /* ----------------------------------------------------------------------------------------------------------- judgement -- */
 
-/* (R34). What the images say of a velocity if the poses are in time, and how much of it each of the two explains: T'T and T'z of
- * least squares, with what the latency has taken off put back. */
+/* (R34): least squares, with T'T and T'z, for a velocity with poses that are on time, and how much of the squares latency and velocity
+ * explain. z includes the latency that is already corrected. */
 typedef struct {
     goe_xz_t velocity_m_s;
-    float spread[3];                   /* its covariance: X, both, Z */
+    float spread[3];                   /* its covariance: XX, XZ, ZZ */
     float latency_s;                   /* if nothing moves */
-    float by_latency;                  /* what that explains of the sum of squares ... */
-    float rest_latency, rest_velocity; /* ... and what the one or the other leaves */
-    float wider;                       /* excess of the variance of the residuals over the configured one */
+    float by_latency;                  /* sum of squares that the latency explains */
+    float rest_latency, rest_velocity; /* sum of squares that the latency, or the velocity, leaves */
+    float wider;                       /* variance of the residuals over the configured one, at least 1 */
 } fit_t;
 
 static bool fit_augmented(const goe_filter_t *filter, const goe_observation_t *obs, fit_t *fit) {
@@ -149,15 +150,15 @@ static bool fit_augmented(const goe_filter_t *filter, const goe_observation_t *o
     return true;
 }
 
-/* The image gives a scale that does not require a static obstacle: its foot, by the height. */
+/* Whether the image gives a scale that does not require a static obstacle: the foot, through the height. */
 static bool has_scale(const goe_observation_t *obs) { return goe_sides_see(obs->sides, GOE_SIDE_BOTTOM) || obs->base; }
 
-/* Of the covariance (x, both; both, z). One too close to singular for float is taken as wide as it may be. */
+/* Determinant of the covariance (x, both; both, z). One too close to singular for float counts as wide as it may be. */
 static float determinant_of(float x, float both, float z) {
     return goe_larger(x * z - both * both, DETERMINANT_MIN * (x * z));
 }
 
-/* Whether that velocity is one that no static obstacle shows, and no latency. */
+/* Whether no static obstacle and no latency shows that velocity. */
 static bool is_unlike_static(const fit_t *fit, float least) {
     const goe_xz_t v = fit->velocity_m_s;
     const float determinant = determinant_of(fit->spread[0], fit->spread[1], fit->spread[2]);
@@ -179,12 +180,12 @@ static bool is_moving(goe_filter_t *filter, const fit_t *fit, bool outgrown, flo
     return goe_count_image(&m->images) >= MOVES_IMAGES && m->unlike_s >= MOVES_S;
 }
 
-/* (R35): one over the sigma of a component of the velocity: the smaller of five sigmas by the images and of SPEED_SD_M_S, which covers
- * what moves on the ground. */
+/* (R35): one over the sigma of a component of the velocity, the smaller of five sigmas by the images and of SPEED_SD_M_S, which covers
+ * obstacles that move on the ground. */
 static float root_of(float variance) { return goe_larger(1.0f / sqrtf(SPREAD_GROWN * variance), 1.0f / SPEED_SD_M_S); }
 
-/* From the velocity that the images showed; as it was linearized at a wrong place, with more than its uncertainty; the latency is open
- * again. */
+/* Follows the obstacle with the velocity by the images. As this was linearized at a wrong place, its sigma is increased. The latency starts
+ * from its prior again. */
 static void follow(goe_filter_t *filter, const fit_t *fit) {
     goe_mover_t *m = &filter->mover;
     goe_triangle_t *root = &filter->root;
@@ -201,7 +202,7 @@ static void follow(goe_filter_t *filter, const fit_t *fit) {
     root->estimated = GOE_AUGMENTED;
 }
 
-/* From here on it is estimated with the state. */
+/* Decides whether the poses are late. If they are, the latency is estimated with the state from then on. */
 static void judge_latency(goe_filter_t *filter, const fit_t *fit) {
     const float least = LATE_SIGMAS * LATE_SIGMAS * fit->wider;
     const bool late = goe_absolute(fit->latency_s) > LATE_MIN_S && fit->by_latency > least;
@@ -216,7 +217,7 @@ static void judge_followed(goe_filter_t *filter) {
     goe_mover_t *m = &filter->mover;
     const goe_xz_t v = {m->augmented[GOE_AUGMENTED_VELOCITY_X], m->augmented[GOE_AUGMENTED_VELOCITY_Z]};
     const float late = goe_absolute(m->augmented[GOE_AUGMENTED_LATENCY]);
-    const float squared = goe_xz_dot(v, v); /* of v, and its variance along itself times that */
+    const float squared = goe_xz_dot(v, v); /* |v|^2; spread is |v|^2 times the variance of v along itself */
     const float wider = goe_larger(filter->health.mean_nis, 1.0f);
     const float spread = wider * goe_mover_variance(filter, v);
     m->late = late > LATE_MIN_S && late > LATE_SIGMAS * goe_mover_latency_sd(filter);
@@ -244,7 +245,7 @@ bool goe_mover_judge(goe_filter_t *filter, const goe_observation_t *obs, const f
         m->augmented[i] += change[GOE_STATES + i];
     }
     if (!is_sound(filter)) {
-        const bool followed = m->followed; /* the axes stand still again */
+        const bool followed = m->followed; /* the axes become static again */
         const bool moves = m->moves;
         goe_mover_clear(filter);
         m->moves = moves;
@@ -264,7 +265,7 @@ bool goe_mover_judge(goe_filter_t *filter, const goe_observation_t *obs, const f
     judge_latency(filter, &fit);
     const bool outgrown = obs->grown2 > GOE_GROWN_SIGMAS2;
     const bool seen = is_moving(filter, &fit, outgrown, since_s);
-    if (!seen || !has_scale(obs)) { /* an outline of another shape drifts, too, but fits */
+    if (!seen || !has_scale(obs)) { /* an outline of another shape also seems to move, but fits */
         const bool misfit = outgrown || filter->health.mean_nis > obs->settings->filter.nis_ratio_max;
         m->moves = m->moves || (seen && misfit);
         return false;

@@ -1,4 +1,4 @@
-/* The near side. SPDX-License-Identifier: MIT */
+/* The near side of an obstacle: the circle that a hazard meets. SPDX-License-Identifier: MIT */
 #include "refined/goe_near_side.h"
 
 #include <string.h>
@@ -23,7 +23,7 @@ float goe_near_side_reach(const goe_filter_t *filter, goe_xz_t *nearer_m) {
     return 0.5f * (x[GOE_FRONT_X] + goe_absolute(x[GOE_SIDE_X])) / x[GOE_INVERSE_RANGE];
 }
 
-/* by += factor times the derivatives of one reach, less those of another, of a length in units of Z0. */
+/* Adds to by[]: factor times the derivatives of `reach` minus `less` (or null), lengths in units of Z0. */
 /*@ requires \valid_read(reach) && (less == \null || \valid_read(less)) && \valid(by + (0 .. GOE_STATES - 1)); */
 static void add_to_footprint(float factor, float scale_m, const goe_support_t *reach, const goe_support_t *less,
                              float by[GOE_STATES]) {

@@ -1,5 +1,4 @@
-/* The image in the state's axes, projection under a small attitude bias, noise of the points, rows.
- * SPDX-License-Identifier: MIT */
+/* One image in the state's axes: projection under a small attitude bias, noise of the points, and rows. SPDX-License-Identifier: MIT */
 #include "refined/goe_observation.h"
 
 #include <math.h>
@@ -10,25 +9,25 @@
 
 #if GOE_WITH_FILTER
 
-#define ABEAM 0.02f           /* third component of an aligned point's ray after the turn */
-#define WHITE_MIN_DEG 1.0e-4f /* errors of an image: as of the settings */
+#define ABEAM 0.02f           /* least third component of an aligned point's ray after the turn */
+#define WHITE_MIN_DEG 1.0e-4f /* least errors of an image, as for the settings */
 #define PIXEL_MIN_PX 0.05f
 #define HEIGHT_SD_MIN_M 1.0e-3f
 #define EXCESS_WEIGHT                                                                                                  \
-    4.0f /* of the altimeter's scatter beyond the configured one: terrain, which is no noise, and one-sided */
+    4.0f /* weight of the altimeter's scatter beyond the configured one: terrain, which is no noise, and one-sided */
 #define SCATTER_CHANCE                                                                                                 \
-    1.4f /* of the configured one, that it reaches by chance: two sigma of a mean square of 64 readings */
-#define WIDTH_AHEAD_MIN 0.01f /* of the reference point, in units of Z0 */
-#define HEADING_ARM 0.08f     /* s/m: a yaw bias this large per m/s looks like a velocity bias */
-#define BEARING_FREEDOM 1.0f  /* one sigma of the first guess of X0/Z0 */
-#define RANGE_FREEDOM 4.0f    /* ... of 1/Z0, relative */
-#define TOP_FREEDOM 10.0f     /* ... of the top, in the larger of top and width */
-#define WIDTH_MIN 1.0e-5f     /* between two ends, focal lengths */
-#define FORWARD_MIN 1.0e-4f   /* a predicted point is taken to lie at least this far ahead, in units of Z0 */
+    1.4f /* factor on the configured scatter that it reaches by chance: two sigma of a mean square of 64 readings */
+#define WIDTH_AHEAD_MIN 0.01f /* least Z of the reference point for a width, in units of Z0 */
+#define HEADING_ARM 0.08f     /* s/m: a yaw bias of this size per m/s looks like a velocity bias */
+#define BEARING_FREEDOM 1.0f  /* prior sigma of X0/Z0 */
+#define RANGE_FREEDOM 4.0f    /* relative prior sigma of 1/Z0 */
+#define TOP_FREEDOM 10.0f     /* prior sigma of the top, over the larger of top and width */
+#define WIDTH_MIN 1.0e-5f     /* least width between two ends, focal lengths */
+#define FORWARD_MIN 1.0e-4f   /* least distance ahead of a predicted point, in units of Z0 */
 
-static const goe_kind_t UNKNOWN; /* of a class that proved wrong */
+static const goe_kind_t UNKNOWN; /* replaces a class that proved wrong */
 
-/* Left must lie left of right, or neither counts. Where base_near lies between them is not asked: the gate judges it. */
+/* Left must be left of right, or neither is usable. The place of base_near between them is not checked here: the gate judges it. */
 static bool in_order(goe_point_t *left, goe_point_t *right) {
     if (left->usable && right->usable && !(left->x < right->x)) {
         left->usable = false;
@@ -50,7 +49,7 @@ static unsigned put_in_order(goe_observation_t *obs) {
     return (silhouette ? 0u : 1u) + (base ? 0u : 1u);
 }
 
-/* The view's points about the vertical. Base corners that proved to be none are left out. */
+/* Turns the view's points about the vertical. Base corners that proved to belong to something else are left out. */
 /*@ requires \valid(obs) && \valid_read(filter) && goe_view_is_open(view); */
 static void turn_points(goe_observation_t *obs, const goe_filter_t *filter, const goe_view_t *view) {
     const float c = filter->axes.turn_cos;
@@ -186,7 +185,7 @@ bool goe_observation_ends(const goe_point_t point[GOE_FEATURES], goe_feature_t *
     return p[*left].usable && p[*right].usable && p[*right].x - p[*left].x >= WIDTH_MIN;
 }
 
-/* 1/Z of the point as the given attitude shows it. */
+/* 1/Z of the point in the axes by the supplied attitude. */
 static float nearness(const goe_observation_t *obs, float x, float y, float z) {
     const float turned_z = z + obs->ex * y - obs->ey * x;
     return 1.0f / (turned_z < FORWARD_MIN ? FORWARD_MIN : turned_z);
@@ -224,8 +223,8 @@ goe_point_t goe_observation_unbiased(const goe_observation_t *obs, goe_feature_t
     return q;
 }
 
-/* Derivative of the aligned point n1/n3, n2/n3, n = H (u, v, 1), by the pixel; 1/n3 is the third component of H'(x, y, 1). The
- * lens is left out: its scale is good to a few percent. */
+/* Derivative of the aligned point n1/n3, n2/n3, n = H (u, v, 1), by the pixel; 1/n3 is the third component of H'(x, y, 1). The lens is
+ * neglected: the scale is good to a few percent. */
 goe_spread_t goe_observation_spread(const goe_observation_t *obs, goe_feature_t feature) {
     const float *h = obs->camera_to_axes;
     const goe_point_t *p = &obs->point[feature];
@@ -287,7 +286,7 @@ float *goe_rows_add(goe_rows_t *rows, goe_feature_t feature, goe_axis_t axis, fl
     return by;
 }
 
-/* What the derivatives by the bias of the Y/Z at which the edge was measured add to those of x. */
+/* Adds the derivatives of x by the bias through the Y/Z at which the edge was measured. */
 static void add_height_of_edge(const goe_point_t *p, float z, goe_gradient_t *of_x) {
     const float by_height = of_x->y * z;
     of_x->ex += by_height * (1.0f + p->y * p->y);

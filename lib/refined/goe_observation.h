@@ -1,4 +1,4 @@
-/* One image as the filter sees it, and the rows that it gives. SPDX-License-Identifier: MIT */
+/* One image in the form that the filter uses, and its rows. SPDX-License-Identifier: MIT */
 #ifndef GOE_OBSERVATION_H
 #define GOE_OBSERVATION_H
 
@@ -17,30 +17,30 @@ typedef struct {
     float height_m;    /* camera above ground: by the changes of down, see goe_datum_t */
     const goe_sides_t *sides;
     const goe_kind_t *kind;
-    float height_sd_m; /* one sigma of its error above the obstacle's ground, without its slope */
-    float since_s;     /* the image before */
-    float fade;        /* what the error of a box's side keeps since the image used before */
-    float white_rad;   /* one sigma of the image's own attitude error, and of its position's, which looks like it */
-    float point_px, side_px; /* ... of a point, and of a box's side */
-    float outline_share;     /* one sigma of left, right and top beyond the pixel noise, of their width */
-    float shift;          /* ... of the image's own position error, units of Z0, with what the uncertain range adds */
-    float range_variance; /* of GOE_INVERSE_RANGE */
-    float depth_variance; /* box: of GOE_DEPTH_DIFFERENCE */
+    float height_sd_m; /* one sigma of the height above the obstacle's ground, without the ground's slope */
+    float since_s;     /* time since the previous image */
+    float fade;        /* share of a box side's error that remains from the image used before */
+    float white_rad; /* one sigma of the image's own attitude error, and of its position error, which looks the same */
+    float point_px, side_px; /* one sigma of a point, and of a box's side, pixels */
+    float outline_share;     /* one sigma of left, right and top beyond the pixel noise, over the width */
+    float shift; /* one sigma of the image's own position error, units of Z0, with the uncertainty of the range */
+    float range_variance; /* variance of GOE_INVERSE_RANGE */
+    float depth_variance; /* box: variance of GOE_DEPTH_DIFFERENCE */
     float grown2;         /* (excess of width or height over the predicted one, in sigmas)^2 */
     bool two_faces;       /* box: both were visible, its length is estimated */
     bool is_placed;       /* the latest image knew the position */
-    bool is_round;        /* by its class, or by the settings */
+    bool is_round;        /* round by its class, or by the settings */
     bool base;            /* both outer base corners are visible */
     bool edge;            /* an edge of the base is visible */
-    uint8_t number;       /* of the camera */
-    uint8_t passed;       /* first guesses that were too near */
+    uint8_t number;       /* number of the camera */
+    uint8_t passed;       /* priors of the range that were too near */
 #if GOE_AUGMENTED
     float turn_cos, turn_sin;   /* of the state's axes from T */
     float elapsed_s;            /* since the filter's start */
-    float rate_rad_s[3];        /* of the vehicle, the state's axes ... */
-    float rate_before_rad_s[3]; /* ... and a little before, which this image's own error has no part in */
-    goe_xz_t gained_m_s;        /* velocity since the filter's start, the state's axes */
-    float latency_s;            /* of the poses, as far as it is known */
+    float rate_rad_s[3];        /* of the vehicle, the state's axes */
+    float rate_before_rad_s[3]; /* the same shortly before, free of this image's own attitude error */
+    goe_xz_t gained_m_s;        /* change of the velocity since the filter's start, the state's axes */
+    float latency_s;            /* of the poses, as far as estimated */
 #endif
 } goe_observation_t;
 
@@ -51,38 +51,37 @@ typedef struct {
 /* What a row measures: a coordinate of a point in the state's axes, or of a side in the raw image. */
 typedef enum { GOE_ALONG_X, GOE_ALONG_Y } goe_axis_t;
 
-/* The rows of an image. Until they are weighted each holds the derivatives of a predicted image coordinate by the image's own
- * attitude error and by the states, the residual, and the variance of its own noise. */
+/* The rows of an image. Until the gate weights it, each row contains the derivatives of a predicted image coordinate by the image's own
+ * attitude error and by the states, and the residual; `variance` is that of its own noise. */
 typedef struct {
     goe_matrix_t *matrix;
     float variance[GOE_ROWS_MAX];
-    float weight[GOE_ROWS_MAX]; /* after the gate: what it was multiplied by; 0: refused */
+    float weight[GOE_ROWS_MAX]; /* after the gate: the factor on the row; 0: refused */
     uint8_t feature[GOE_ROWS_MAX];
     uint8_t axis[GOE_ROWS_MAX];   /* goe_axis_t */
-    uint8_t series[GOE_ROWS_MAX]; /* of residuals, see goe_scatter_t */
-    uint8_t side[GOE_ROWS_MAX];   /* of an upright box: goe_box_side_t */
+    uint8_t series[GOE_ROWS_MAX]; /* series of residuals, see goe_scatter_t */
+    uint8_t side[GOE_ROWS_MAX];   /* memory of its error: goe_box_side_t, then left and right as points */
     size_t count;
-    size_t remembered; /* the first of them are those of a box's sides, whose errors are remembered */
+    size_t remembered; /* the first rows, those whose errors are remembered */
     float white_rad;   /* one sigma of the nuisances */
 } goe_rows_t;
 
 /*@ predicate goe_rows_hold(goe_rows_t *rows) =
         \valid_read(rows) && \valid(rows->matrix) && rows->count <= GOE_ROWS_MAX; */
 
-/* An image coordinate that is predicted, and its derivatives by the point (X, Y, Z) and by the attitude's error about the
- * axes. */
+/* A predicted image coordinate, and its derivatives by the point (X, Y, Z) and by the attitude's error about the axes. */
 typedef struct {
     float at;
     float x, y, z, ex, ey, ez;
 } goe_gradient_t;
 
-/* (R4): covariance of an aligned point, of the pixel noise alone. */
+/* (R4): covariance of an aligned point by the pixel noise alone. */
 typedef struct {
     float xx, xy, yy;
 } goe_spread_t;
 
-/* Turns the view into the state's axes. goe_observation_linearise() then, after time has passed, sets the attitude bias from
- * the state. Pairs that are out of their order, left to right, do not count; returns how many. */
+/* Turns the view into the state's axes. Pairs that are out of their order, left to right, are not usable; returns their number. After the
+ * time update, goe_observation_linearise() sets the attitude bias from the state. */
 /*@ requires \valid(obs) && \valid_read(settings) && \valid_read(filter) && goe_view_is_open(view); */
 unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *settings, const goe_filter_t *filter,
                               const goe_view_t *view);
@@ -92,12 +91,11 @@ void goe_observation_linearise(goe_observation_t *obs);
 void goe_observation_project_x(const goe_observation_t *obs, float x, float y, float z, goe_gradient_t *of_x);
 void goe_observation_project_y(const goe_observation_t *obs, float x, float y, float z, goe_gradient_t *of_y);
 
-/* One sigma of the states that a first image leaves open, whatever the model: attitude bias, bearing, range, and the top of an
- * obstacle of that size. */
+/* Prior sigmas of the states that do not depend on the model: attitude bias, bearing, range, and the top of an obstacle of that size. */
 void goe_observation_prior(const goe_observation_t *obs, const float state[GOE_STATES], float size,
                            float sd[GOE_STATES]);
 
-/* The process noise that is due goes into the filter: before rows do, and before the model changes. */
+/* Adds the due process noise to the filter. Call before rows are used, and before the model changes. */
 static inline void goe_observation_age(goe_filter_t *filter, const goe_observation_t *obs) {
     goe_filter_age(filter, &obs->settings->navigation, obs->since_s);
 }
@@ -112,7 +110,7 @@ static inline goe_xz_t goe_observation_reference(const goe_observation_t *obs) {
     return reference;
 }
 
-/* Its Z and that of a touching point count at least as this, units of Z0. */
+/* Least Z of the reference point and of a touching point, units of Z0. */
 #define GOE_AHEAD_MIN 0.02f
 
 static inline float goe_observation_ahead(const goe_observation_t *obs) {
@@ -124,17 +122,17 @@ static inline float goe_observation_roof(const goe_observation_t *obs) {
     return obs->height_m * obs->state[GOE_INVERSE_RANGE] - obs->state[GOE_TOP];
 }
 
-/* The ends of the silhouette, or else the outer base corners: features. False if neither pair is visible in its order. */
+/* The ends of the silhouette, or else the outer base corners, as features. False if neither pair is visible in its order. */
 bool goe_observation_ends(const goe_point_t point[GOE_FEATURES], goe_feature_t *left, goe_feature_t *right);
 
-/* A measured point with the attitude bias taken off, to first order. */
+/* A measured point, corrected for the attitude bias to first order. */
 /*@ requires goe_observation_is_open(obs) && feature < GOE_FEATURES; */
 goe_point_t goe_observation_unbiased(const goe_observation_t *obs, goe_feature_t feature);
 
 /*@ requires goe_observation_is_open(obs) && feature < GOE_FEATURES; */
 goe_spread_t goe_observation_spread(const goe_observation_t *obs, goe_feature_t feature);
 
-/* Variance of left, right or top beyond the pixel noise: outline_share. */
+/* Variance of left, right or top beyond the pixel noise, by outline_share. */
 float goe_observation_size_variance(const goe_observation_t *obs);
 
 /* ------------------------------------------------------------------------------------------------------------ rows -- */
@@ -143,24 +141,23 @@ float goe_observation_size_variance(const goe_observation_t *obs);
 /*@ requires \valid(rows) && \valid(matrix); */
 void goe_rows_clear(goe_rows_t *rows, goe_matrix_t *matrix);
 
-/* Each adds a row and returns its derivatives by the states, all 0 so far, with the residual behind them
- * (GOE_BEHIND_STATES); those by the attitude bias are filled by goe_rows_end(). The row's variance is rows->variance of the
- * last row.
+/* Each function adds a row, and returns its derivatives by the states, all 0 so far, followed by the residual (GOE_BEHIND_STATES).
+ * goe_rows_end() sets those by the attitude bias. The row's variance is the last one of rows->variance.
  *
- * Any row: measured coordinate minus gradient->at. */
+ * Any row: the residual is the measured coordinate minus gradient->at. */
 /*@ requires goe_rows_hold(rows) && \valid_read(gradient);
     requires rows->count < GOE_ROWS_MAX && feature < GOE_FEATURES; */
 float *goe_rows_add(goe_rows_t *rows, goe_feature_t feature, goe_axis_t axis, float measured, float variance,
                     const goe_gradient_t *gradient);
 
-/* An upright edge at the place (X, Z), measured along x at the height of the measurement, freed of the attitude bias.
+/* Adds the row of an upright edge at the place (X, Z), measured along x at the height of the measurement, corrected for the attitude bias.
  * Null if the feature is not usable. more: variance beyond the pixel noise. */
 /*@ requires goe_rows_hold(rows) && goe_observation_is_open(obs) && \valid(of_x);
     requires rows->count < GOE_ROWS_MAX && feature < GOE_FEATURES; */
 float *goe_rows_add_edge(goe_rows_t *rows, const goe_observation_t *obs, goe_xz_t place, goe_feature_t feature,
                          float more, goe_gradient_t *of_x);
 
-/* A point at the place (X, Z) and the height y, measured along y. */
+/* Adds the row of a point at the place (X, Z) and the height y, measured along y. */
 /*@ requires goe_rows_hold(rows) && goe_observation_is_open(obs) && \valid(of_y);
     requires rows->count < GOE_ROWS_MAX && feature < GOE_FEATURES; */
 float *goe_rows_add_level(goe_rows_t *rows, const goe_observation_t *obs, goe_xz_t place, float y,
@@ -171,7 +168,7 @@ float *goe_rows_add_level(goe_rows_t *rows, const goe_observation_t *obs, goe_xz
 /*@ requires goe_rows_hold(rows) && 1 <= rows->count <= GOE_ROWS_MAX; */
 static inline float *goe_rows_last_variance(goe_rows_t *rows) { return &rows->variance[rows->count - 1u]; }
 
-/* The derivatives of a coordinate whose point moves with the reference point, by whose X and Z it changes by by_x and by_z: by
+/* Sets the derivatives of a coordinate whose point moves with the reference point, by whose X and Z it changes by by_x and by_z: by
  * GOE_BEARING, and by GOE_INVERSE_RANGE as far as the camera's path determines it. */
 /*@ requires \valid(by + (0 .. GOE_UNKNOWNS - 1)) && goe_observation_is_open(obs); */
 static inline void goe_rows_place(float *by, const goe_observation_t *obs, float by_x, float by_z) {
@@ -183,8 +180,8 @@ static inline void goe_rows_place(float *by, const goe_observation_t *obs, float
 #endif
 }
 
-/* After the last row: the columns of the attitude bias follow from those of the image's own attitude error; unused rows become
- * 0. */
+/* Call after the last row: computes the columns of the attitude bias from those of the image's own attitude error, and clears unused
+ * rows. */
 void goe_rows_end(goe_rows_t *rows, const goe_observation_t *obs);
 
 #endif

@@ -1,4 +1,4 @@
-/* Sigmas, covariance, validity. SPDX-License-Identifier: MIT */
+/* The quantities of an estimate: their sigmas, covariance and validity. SPDX-License-Identifier: MIT */
 #include "refined/goe_quantities.h"
 
 #include <math.h>
@@ -18,8 +18,8 @@
 
 #if GOE_WITH_FILTER
 
-#define EXTENT_SHARE 0.3f /* ... width, length and height */
-#define HEIGHT_MIN_M 2.0f /* a lower obstacle's height may be off by the share of this */
+#define EXTENT_SHARE 0.3f /* largest relative sigma of a valid width, length or height */
+#define HEIGHT_MIN_M 2.0f /* a lower obstacle's height may be off by that share of this */
 #define ORIENTATION_MAX_RAD 0.174532925f
 #define METERS_MAX 1.0e6f
 
@@ -27,7 +27,7 @@ static bool depends_on_corner(int quantity) { return quantity >= GOE_ORIENTATION
 
 /* ---------------------------------------------------------------------------------------------------------- validity -- */
 
-/* Within a share of the value, and finite, by the bits. */
+/* Whether the sigma is within a share of the value, and both are finite, by their bits. */
 static bool is_known(float value, float sigma, float least, float share) {
     const float size = goe_larger(goe_absolute(value), least);
     return goe_within(value, METERS_MAX) && goe_within(sigma, share * size);
@@ -39,7 +39,7 @@ static bool is_extent(const goe_quantities_t *q, int quantity, float least) {
            is_known(q->value[quantity], q->worked_out[quantity], least, EXTENT_SHARE);
 }
 
-/* from: where the values count from, in T. */
+/* from: origin of the values, in T. */
 static bool is_position(const goe_quantities_t *q, goe_xz_t from, float share) {
     return goe_within(q->value[GOE_X0] + from.x, METERS_MAX) && goe_within(q->value[GOE_Z0] + from.z, METERS_MAX) &&
            goe_within(q->sigma[GOE_X0], METERS_MAX) && goe_within(q->sigma[GOE_Z0], METERS_MAX) &&
@@ -61,7 +61,7 @@ static unsigned known_extents(const goe_filter_t *filter, const goe_quantities_t
     return known;
 }
 
-/* Which of the quantities this image knows well enough; values count from the filter's start, which lies at `from`. */
+/* Which quantities this image knows well enough. from: origin of the values in T, at the filter's start. */
 static unsigned known_now(const goe_filter_t *filter, const goe_quantities_t *q, goe_xz_t from, float range_share) {
     if (!is_position(q, from, range_share)) {
         return 0;
@@ -78,8 +78,8 @@ static bool has(const goe_quantities_t *q, int quantity) {
 
 GOE_STATIC_ASSERT(GOE_X0 == 0 && GOE_Z0 == 1, the_place_comes_first);
 
-/* The error of the ground, and by how much a variance shrinks per square of its covariance with it, if the ground is level, and if it
- * is known. */
+/* The error of the ground; and the factors on the square of a quantity's covariance with it by which its variance shrinks if the ground is
+ * level, or if it is known. */
 typedef struct {
     float by[GOE_STATES];
     float if_level, if_known;
@@ -91,10 +91,11 @@ static void ground_of(const goe_filter_t *filter, const goe_navigation_t *naviga
         ground->by[k] = k == GOE_GROUND ? 1.0f : 0.0f;
     }
     (void)goe_srif_project(&filter->root, wider->reciprocal, GOE_UNWEIGHTED, ground->by);
-    if (goe_filter_traits(filter)->is_ellipse) { /* the depth silences nothing either: as if it were known */
+    if (goe_filter_traits(filter)->is_ellipse) { /* validity does not depend on the depth either: as if it were known */
         ground->by[GOE_LOG_DEPTH] = 0.0f;
     }
-    const float variance = goe_deviation_dot(ground->by, ground->by, 0.0f); /* no difference, which might cancel to 0 */
+    const float variance =
+        goe_deviation_dot(ground->by, ground->by, 0.0f); /* a sum of squares, which cannot cancel to 0 */
     ground->if_level = goe_ground_if_level(filter, navigation, variance);
     ground->if_known = 1.0f / variance;
 }
@@ -106,13 +107,13 @@ static float hidden_variance(const goe_filter_t *filter, float scale_m) {
     return above_m > 0.0f ? goe_square(above_m) : 0.0f;
 }
 
-/* Of which place, at which time, a quantity is made. */
+/* The direction in T of a quantity that is a position, and the time for which it is valid. */
 static goe_counted_t counted_of(int quantity, float at_s) {
     const goe_counted_t counted = {quantity == GOE_X0 ? 1.0f : 0.0f, quantity == GOE_Z0 ? 1.0f : 0.0f, at_s};
     return counted;
 }
 
-/* What all quantities share. */
+/* The data that all quantities share. */
 typedef struct {
     const goe_filter_t *filter;
     const goe_motion_t *motion;
@@ -122,8 +123,8 @@ typedef struct {
     goe_drift_t drift;
 } finding_t;
 
-/* The scatter widens the sigmas but does not affect validity, as doubt must not silence an estimate. Nor must the ground: validity assumes
- * that it is level, and for the height that it is known. *error: derivatives in, error out. */
+/* The scatter widens the sigmas but does not affect validity, because doubt must not suppress an estimate. Nor must the ground: validity
+ * assumes that it is level and, for the height, that it is known. *error: derivatives in, error out. */
 GOE_NOINLINE static void find_quantity(const finding_t *f, int i, goe_quantities_t *q, goe_deviation_t *error) {
     const goe_counted_t counted = counted_of(i, goe_filter_elapsed_s(f->filter, f->motion));
     const float found = has(q, i) ? goe_deviation_project(f->filter, f->wider, counted, error) : 0.0f;
@@ -138,7 +139,7 @@ GOE_NOINLINE static void find_quantity(const finding_t *f, int i, goe_quantities
     q->worked_out[i] = sqrtf(goe_larger(growth * (found - doubted) + given - excluded, 0.0f));
 }
 
-/* place: errors of X0 and Z0. */
+/* place: receives the errors of X0 and Z0. */
 static void set_quantities(const finding_t *finding, goe_shape_t *shape, goe_quantities_t *q,
                            goe_deviation_t place[2]) {
     goe_deviation_t other;
@@ -150,8 +151,8 @@ static void set_quantities(const finding_t *finding, goe_shape_t *shape, goe_qua
     }
 }
 
-/* Error of the middle of the base along a direction, T axes; error->by receives its derivatives by the states. A box has its reference
- * point instead, whose errors along X and Z are given: place. */
+/* Error of the middle of the base along a direction, T axes; error->by receives its derivatives by the states. The middle of a footprint is
+ * the reference point, whose errors along X and Z are given: place. */
 /*@ requires \valid_read(f) && \valid_read(f->filter) && \valid_read(f->shape) && \valid_read(f->wider);
     requires \valid_read(place + (0 .. 1)) && \valid(error) && \valid(error->by + (0 .. GOE_STATES - 1)); */
 static void find_middle(const finding_t *f, const goe_deviation_t place[2], goe_counted_t along,
@@ -167,7 +168,7 @@ static void find_middle(const finding_t *f, const goe_deviation_t place[2], goe_
     goe_deviation_sum(&place[GOE_X0], along.x, &place[GOE_Z0], along.z, error);
 }
 
-/* The middle of the base, in north and east. place: errors of X0 and Z0. */
+/* Sets the middle of the base, in north and east. place: errors of X0 and Z0. */
 static void set_center(const finding_t *f, const goe_deviation_t place[2], goe_quantities_t *q) {
     const goe_motion_t *motion = f->motion;
     const goe_axes_t *axes = &f->filter->axes;
@@ -221,13 +222,13 @@ static void set_velocity(const goe_filter_t *filter, const goe_settings_t *setti
 #endif
 }
 
-/* (R31). The near side, which a hazard meets, hardly depends on the depth: there the derivative suffices. */
+/* (R31). A hazard meets the near side, which hardly depends on the depth, so the derivative suffices. */
 static float bend_of(const goe_filter_t *filter, bool for_hazard) {
     const bool bends = goe_filter_traits(filter)->is_ellipse && !for_hazard;
     return bends ? goe_footprint_bend(filter) : 1.0f;
 }
 
-/* What the answer is less certain by. */
+/* Sets by how much the estimate is less certain than the filter's state. */
 static void widening_of(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
                         const goe_drift_t *drift, goe_shape_t *shape, goe_widening_t *wider) {
     wider->scatter = goe_scatter_factor(filter, goe_gate_repeated(filter, settings->detector.point_correlation));
@@ -302,7 +303,7 @@ void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t 
             covariance[j][i] = sum;
         }
     }
-    if (!for_hazard) { /* the camera now has no part in it */
+    if (!for_hazard) { /* without effect relative to the present camera */
         const float before = goe_drift_before_start(filter, &settings->navigation, motion);
         covariance[GOE_X0][GOE_X0] += before;
         covariance[GOE_Z0][GOE_Z0] += before;

@@ -1,4 +1,4 @@
-/* One image through the filter method. SPDX-License-Identifier: MIT
+/* The filter method: the order of the steps in one image. SPDX-License-Identifier: MIT
  *
  *   time -> start, change of model -> rows of the model -> gate -> square-root update -> health
  *
@@ -25,15 +25,15 @@
 #if GOE_WITH_FILTER
 
 #define GAP_MAX_US 1000000000u /* a longer gap between images counts as this one */
-#define TOO_SOON_SHARE 0.08f   /* of the time constant: sooner, differences of boxes are their linearization's */
-#define LOST_S 0.5f            /* without rows, after which a known range is not taken as known */
-#define VAGUE2 4.0f            /* (sigma of 1/Z0 times the way along Z)^2: below 1 is possible for an obstacle ahead */
-#define DOUBTED_SIGMAS2 4.0f   /* of what an extent exceeds the predicted one by, from which on nothing is clear */
-#define FADE_MAX 0.95f         /* of what a box's error keeps from image to image, where it is not remembered */
+#define TOO_SOON_SHARE 0.08f   /* share of the time constant: sooner, box differences are linearization errors */
+#define LOST_S 0.5f            /* time without rows after which a known range does not count as known */
+#define VAGUE2 4.0f /* limit of (sigma of 1/Z0 times the way along Z)^2, which is below 1 for an obstacle ahead */
+#define DOUBTED_SIGMAS2 4.0f /* squared sigmas of a growth above which nothing is clear */
+#define FADE_MAX 0.95f /* largest share of a box's error that remains from image to image, where it is not remembered */
 
 /* --------------------------------------------------------------------------------------------------------------- time -- */
 
-/* Along the path, which in a turn is longer than the way to where it began. */
+/* Adds to the length of the path, which in a turn is longer than the distance from its start. */
 static void fly_on(goe_filter_t *filter, const goe_motion_t *motion) {
     const float dx_m = motion->dx_m - filter->last.dx_m;
     const float dz_m = motion->dz_m - filter->last.dz_m;
@@ -45,14 +45,14 @@ static void fly_on(goe_filter_t *filter, const goe_motion_t *motion) {
 #endif
 }
 
-/* Whether an image comes so soon after the one before that the errors of its box are the same: it is not used. */
+/* Whether an image comes so soon after the previous one that the errors of its box are the same. It is then not used. */
 static bool comes_too_soon(const goe_filter_t *filter, const goe_detector_t *detector, float since_s) {
     return goe_filter_by_boxes(filter) && since_s < TOO_SOON_SHARE * detector->box_correlation_time_s;
 }
 
 /* ------------------------------------------------------------------------------------------------------------- update -- */
 
-/* (R13): possible linearization error at an uncertain range, the second order of 1/Z. */
+/* (R13): adds the possible linearization error at an uncertain range, the second order of 1/Z. */
 static void allow_for_curvature(const goe_observation_t *obs, goe_rows_t *rows) {
     const float ahead = goe_observation_ahead(obs);
     const float missed = obs->camera_m.z * obs->range_variance / ahead;
@@ -99,8 +99,8 @@ static bool measure(goe_filter_t *filter, const goe_observation_t *obs, goe_rows
     doubt(filter, obs);
     verdict->rows += goe_ground_row(filter, obs, rows);
     const float nis = goe_model_update(filter, 1.0f / rows->white_rad, rows, change);
-    /* Variances were inflated by (1+r)/(1-r) for the correlation in time, the scatter within one image is not: undone for the
-     * NIS. */
+    /* The variances were multiplied by (1+r)/(1-r) for the correlation in time. The scatter within one image does not contain it, so the
+     * NIS is corrected for this factor. */
     goe_health_take(&filter->health, *verdict,
                     nis * goe_gate_repeated(filter, obs->settings->detector.point_correlation));
     return true;
@@ -108,15 +108,15 @@ static bool measure(goe_filter_t *filter, const goe_observation_t *obs, goe_rows
 
 /* -------------------------------------------------------------------------------------------------------------- image -- */
 
-/* Points that replace the sides of a box have its errors; as they are not modeled, the variance counts
- * (1 + fade)/(1 - fade) times, which for a first-order process is that of a long mean. */
+/* Points that replace the sides of a box have its errors. These are not modeled, so the variance is multiplied by (1 + fade)/(1 - fade),
+ * the factor for a long mean of a first-order process. */
 static float outline_share(const goe_detector_t *detector, float fade) {
     const float kept = fade < FADE_MAX ? fade : FADE_MAX;
     return detector->box_noise_rel * sqrtf((1.0f + kept) / (1.0f - kept));
 }
 
-/* Sets how much of a box's error remains from the previous image, and the effect of this image's position noise, with the second order
- * that the uncertain range adds. */
+/* Sets how much of a box's error remains from the previous image, and the effect of this image's position noise, including the second order
+ * by the uncertain range. */
 static void note_time(goe_filter_t *filter, goe_observation_t *obs) {
     const goe_detector_t *detector = &obs->settings->detector;
     obs->range_variance = goe_filter_variance(filter, GOE_INVERSE_RANGE);
@@ -133,14 +133,14 @@ static void note_time(goe_filter_t *filter, goe_observation_t *obs) {
     obs->white_rad = sqrtf(goe_square(obs->white_rad) + goe_square(obs->shift / goe_observation_ahead(obs)));
 }
 
-/* False if the image does not start the filter. */
+/* Starts the filter if necessary. False if the image does not start it. */
 /*@ requires \valid(filter) && \valid_read(settings) && goe_view_is_open(view) && \valid(obs);
     requires \valid(swapped); */
 static bool open_image(goe_filter_t *filter, const goe_settings_t *settings, const goe_view_t *view,
                        goe_observation_t *obs, unsigned *swapped) {
     const bool running = goe_filter_has_started(filter);
     const bool placed = running || goe_model_place(filter, view);
-    *swapped = goe_observation_open(obs, settings, filter, view); /* also of an image that does not start the filter */
+    *swapped = goe_observation_open(obs, settings, filter, view); /* even if the image does not start the filter */
     if (!placed || (!running && !goe_model_start(filter, obs))) {
         return false;
     }
@@ -164,8 +164,8 @@ static bool starts_to_move(goe_filter_t *filter, const goe_observation_t *obs, c
 #endif
 }
 
-/* Whether no image can correct the state: it lies behind the camera and gives no rows, or its range is so uncertain that rows change
- * nothing. A known range that was passed may be right, and the image wrong, for LOST_S at most. */
+/* Whether no image can correct the state: the obstacle is behind the camera and gives no rows, or its range is so uncertain that rows
+ * change nothing. With a known range, a place behind the camera may be right, and the image wrong, for LOST_S at most. */
 static bool is_lost(const goe_filter_t *filter, const goe_observation_t *obs) {
     const float known2 = goe_square(obs->settings->filter.range_sd_rel_max * filter->state[GOE_INVERSE_RANGE]);
     const float z = goe_observation_reference(obs).z;
@@ -174,7 +174,7 @@ static bool is_lost(const goe_filter_t *filter, const goe_observation_t *obs) {
     return goe_filter_has_started(filter) && (passed || vague);
 }
 
-/* What the rows bring; its locals are not on the stack while they are made. */
+/* Uses the rows. Its locals must not be on the stack while the rows are computed. */
 GOE_NOINLINE static bool use_rows(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows) {
     goe_verdict_t verdict;
     float change[GOE_UNKNOWNS];
@@ -214,7 +214,7 @@ bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, co
     goe_health_expect(&filter->health);
     *swapped = 0;
     if (filter->phase >= GOE_PHASES) {
-        goe_filter_enter(filter, GOE_PHASE_NONE); /* an unknown one: it starts again */
+        goe_filter_enter(filter, GOE_PHASE_NONE); /* an invalid phase: the filter restarts */
     }
     const float since_s = goe_time_between_s(filter->time_us, view->motion->time_us, GAP_MAX_US);
     const bool too_soon = comes_too_soon(filter, &settings->detector, since_s);

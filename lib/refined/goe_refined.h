@@ -5,8 +5,8 @@
 #include "image/goe_view.h"
 #include "refined/goe_filter.h"
 
-/* Takes one image. swapped: how many pairs of points are out of their order, left to right. Returns whether the image gave
- * the filter anything. */
+/* Processes one image. *swapped: number of pairs of points that are out of their order, left to right. Returns whether the image gave
+ * information to the filter. */
 bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, const goe_view_t *view,
                         unsigned *swapped);
 

@@ -1,4 +1,4 @@
-/* Report. SPDX-License-Identifier: MIT */
+/* Writes the quantities and the fit of the images into the estimate. SPDX-License-Identifier: MIT */
 #include "refined/goe_report.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@
 
 #if GOE_WITH_FILTER
 
-#define SUSPECT_IMAGES 8 /* fewer say nothing */
+#define SUSPECT_IMAGES 8 /* fewer images do not show a misfit */
 
 static void report_position(const goe_quantities_t *q, const goe_motion_t *motion, goe_estimate_t *estimate) {
     estimate->x0_m = q->value[GOE_X0];
@@ -65,7 +65,7 @@ static void report_known(const goe_quantities_t *q, const goe_motion_t *motion, 
     }
 }
 
-/* Of an obstacle that is followed. As the place, it is no better known than the own motion. */
+/* Reports the velocity of a followed obstacle. Like the position, it is known no better than the own motion. */
 static void report_velocity(const goe_quantities_t *q, goe_estimate_t *estimate) {
     if (!q->moves) {
         return;
@@ -94,7 +94,7 @@ static bool is_misfit(const goe_health_t *health, float most) {
     return health->images >= SUSPECT_IMAGES && health->mean_nis > most;
 }
 
-/* Images contradict the size or the shape that the class or the settings state. */
+/* Whether images contradict the size or the shape that the class or the settings state. */
 static bool is_forced(const goe_filter_t *filter) {
     return filter->kind.wrong ||
            (filter->kind.is_round && goe_filter_traits(filter)->is_ellipse && goe_footprint_is_forced(filter));

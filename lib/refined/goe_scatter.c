@@ -1,15 +1,15 @@
-/* Scatter beyond the configured noise. SPDX-License-Identifier: MIT */
+/* The scatter of the residuals beyond the configured noise. SPDX-License-Identifier: MIT */
 #include "refined/goe_scatter.h"
 
 #include "maths/goe_scalar.h"
 
 #if GOE_WITH_FILTER
 
-#define KEPT 0.985f          /* of the sums from image to image: some 67 images count */
-#define RESIDUAL_MAX 10.0f   /* sigmas: one outlier must not decide */
-#define SEED 10.0f           /* squares that are always there: few images alone say little */
-#define CHANCE 0.07f         /* one sigma that the mean of NIS and the correlation have over their memory */
-#define CORRELATION_MAX 0.9f /* beyond it the sums are not informative */
+#define KEPT 0.985f          /* share of the sums kept from image to image: some 67 images count */
+#define RESIDUAL_MAX 10.0f   /* limit of a residual in sigmas: one outlier must not decide */
+#define SEED 10.0f           /* added to the sum of squares: few images alone are not informative */
+#define CHANCE 0.07f         /* one sigma by chance of the mean of NIS, and of the correlation, over their memory */
+#define CORRELATION_MAX 0.9f /* largest correlation: beyond it the sums are not informative */
 
 /* A normalized residual for the sums of the scatter: limited, and 0 if it is not finite. */
 static float clipped(float normalized) {
@@ -22,7 +22,7 @@ static float clipped(float normalized) {
     return normalized > 0.0f ? RESIDUAL_MAX : -RESIDUAL_MAX;
 }
 
-/* A refused row joins nothing. */
+/* A refused row adds nothing to the sums. */
 void goe_scatter_take(goe_scatter_t *scatter, const goe_rows_t *rows) {
     const unsigned previous = scatter->seen;
     unsigned seen = 0;
@@ -44,7 +44,7 @@ void goe_scatter_take(goe_scatter_t *scatter, const goe_rows_t *rows) {
     scatter->seen = (uint16_t)seen;
 }
 
-/* What of an excess is not chance: nothing of a small one, nearly all of a large one. */
+/* The part of an excess that is not chance: nothing of a small excess, nearly all of a large one. */
 static float beyond_chance(float excess) { return excess > CHANCE ? excess - CHANCE * CHANCE / excess : 0.0f; }
 
 float goe_scatter_factor(const goe_filter_t *filter, float repeated) {

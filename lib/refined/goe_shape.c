@@ -1,4 +1,4 @@
-/* Common quantities of all models. SPDX-License-Identifier: MIT */
+/* The common quantities of all models, and variances that no image reduces. SPDX-License-Identifier: MIT */
 #include "refined/goe_shape.h"
 
 #include <math.h>
@@ -8,8 +8,8 @@
 
 #if GOE_WITH_FILTER
 
-#define ELLIPSE_SHARE 0.05f /* of the width, by which the place is off if points show another shape: one sigma */
-#define FAR_ROOF 2.0f       /* of the width: one sigma of the position of the farthest corner of the roof */
+#define ELLIPSE_SHARE 0.05f /* one sigma of the position's error, over the width, if points show another shape */
+#define FAR_ROOF 2.0f       /* one sigma of the position of the farthest corner of the roof, over the extent */
 #define RANGE_MIN_M 1.0f
 
 void goe_shape_place(const goe_spot_t *spot, float scale_m, float by_x, float by_z, float by[GOE_STATES]) {
@@ -50,7 +50,7 @@ static void doubt_ellipse(const goe_filter_t *filter, goe_shape_t *shape) {
     }
 }
 
-/* (R37): the highest point of a roof from above is a far corner, and no image shows how far while one face is visible. */
+/* (R37): viewed from above, the highest point of a roof is a far corner. While one face is visible, no image shows how far it is. */
 static void doubt_far_roof(const goe_filter_t *filter, bool highest, goe_shape_t *shape) {
     if (goe_filter_traits(filter)->one_face && (filter->datum.boxes || highest)) {
         const float size_m = goe_larger(shape->quantity[GOE_WIDTH].value, shape->quantity[GOE_LENGTH].value);
@@ -58,8 +58,8 @@ static void doubt_far_roof(const goe_filter_t *filter, bool highest, goe_shape_t
     }
 }
 
-/* The roof's corner below the top is off the middle; from above or from below it appears lower or higher, by the
- * tangent of that angle, which from nearby is taken as its sine. */
+/* The roof's corner below the top is off the middle. Viewed from above or from below, it appears lower or higher by the tangent of that
+ * angle. The code uses the sine, which differs only nearby. */
 static float top_variance(goe_xz_t camera_m, float height_m, const goe_shape_t *shape) {
     const float x_m = shape->middle.at.x * shape->scale_m - camera_m.x;
     const float z_m = shape->middle.at.z * shape->scale_m - camera_m.z;

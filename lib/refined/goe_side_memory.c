@@ -1,4 +1,4 @@
-/* Memory of a side's error. SPDX-License-Identifier: MIT */
+/* The memory of the slowly varying error of a box's side. SPDX-License-Identifier: MIT */
 #include "refined/goe_side_memory.h"
 
 #include "maths/goe_scalar.h"

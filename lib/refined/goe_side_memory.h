@@ -1,23 +1,23 @@
-/* The slowly varying (correlated) error of a box's side. SPDX-License-Identifier: MIT
+/* The memory of the slowly varying (correlated) error of a box's side. SPDX-License-Identifier: MIT
  *
- * A first-order process of the sigma s and the time constant tau. As the obstacle stands still, the residuals so far determine
- * the error, given the state: it is linear in the state, so the process needs no state of its own. (R28) to (R30). */
+ * The error is a first-order process with the sigma s and the time constant tau. As the obstacle does not move, the residuals so far
+ * determine the error for a given state. Its mean is linear in the state, so it needs no state of its own. (R28) to (R30). */
 #ifndef GOE_SIDE_MEMORY_H
 #define GOE_SIDE_MEMORY_H
 
 #include "refined/goe_observation.h"
 
-/* Over the time that an image's share of the error fades to `fade`. variance: s^2 now. */
+/* Fades the error to the present image. fade: the share of it that remains; variance: s^2 now. */
 void goe_side_memory_fade(goe_side_memory_t *side, float fade, float variance);
 
-/* Removes the known part of the error from a row: its residual, its derivatives, its variance. */
+/* Removes the known part of the error from a row's residual and derivatives, and adds the variance of the rest. */
 void goe_side_memory_recall(const goe_side_memory_t *side, float row[GOE_COLUMNS], float *variance);
 
-/* The row's information on the error. row: after the gate, times its weight; common: variance, in units of the row's, of the part that all
- * rows of the image share (attitude, position). */
+/* Updates the error by a row. row: after the gate, times its weight; common: variance, in units of the row's, of the part that all rows of
+ * the image share (attitude, position). */
 void goe_side_memory_learn(goe_side_memory_t *side, const float row[GOE_COLUMNS], float weight, float common);
 
-/* After the state has changed. */
+/* After the state has changed: relates the error to the new state. */
 void goe_side_memory_follow(goe_side_memory_t *side, const float change[GOE_UNKNOWNS]);
 
 #endif

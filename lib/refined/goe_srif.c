@@ -1,6 +1,6 @@
-/* Square-root information filter: reflections, process noise, variances. SPDX-License-Identifier: MIT
+/* The square-root information filter: reflections, process noise, variances. SPDX-License-Identifier: MIT
  *
- * The sign of the diagonal of R is free; nothing depends on it. */
+ * The sign of R's diagonal elements is free; nothing depends on it. */
 #include "refined/goe_srif.h"
 
 #include <math.h>
@@ -8,7 +8,7 @@
 
 #if GOE_WITH_FILTER
 
-#define PIVOT_MIN 1.0e-12f /* of the diagonal: a covariance this near to singular is taken as if it were this far */
+#define PIVOT_MIN 1.0e-12f /* least pivot, over the diagonal: no covariance counts as nearer to singular */
 
 /* The rows of the state come first. */
 void goe_srif_clear(goe_triangle_t *root) {
@@ -17,8 +17,8 @@ void goe_srif_clear(goe_triangle_t *root) {
 
 /* -------------------------------------------------------------------------------------------------------- reflections -- */
 
-/* Element k of a column lies in row k. The kernels hold one column of all rows in registers, of few rows or of as many as there can
- * be: `few` is a constant in each. Rows of zeros, which the longer kernel reads as well, change no bit. */
+/* Element k of a column is in row k. Each kernel holds one column in registers, of few rows or of the largest number of rows: `few` is a
+ * constant in each. Rows of zeros, which the longer kernel reads as well, change no bit. */
 #define STEP GOE_COLUMNS
 GOE_STATIC_ASSERT(GOE_ROWS_MAX == 9 && GOE_ROWS_FEW == 5, the_kernels_hold_five_rows_or_nine);
 
@@ -38,7 +38,7 @@ static GOE_INLINE column_t load(const float *v, bool few) {
     return c;
 }
 
-/* first: the sum up to the first row. */
+/* first: the sum including the first row. */
 static GOE_INLINE float dot(column_t p, column_t c, float first, bool few) {
     float sum = first;
     sum += p.v1 * c.v1;
@@ -76,7 +76,7 @@ typedef struct {
     float diagonal, u, beta;
 } reflection_t;
 
-/* False if the column is 0 already. r: the element of the triangle above it. */
+/* Finds the reflection of a column; false if it is 0 already. r: the element of the triangle above it. */
 /*@ requires \valid_read(column + (0 .. (GOE_ROWS_MAX - 1) * STEP)) && \valid(to); */
 static GOE_INLINE bool aim(const float *column, float r, reflection_t *to, bool few) {
     to->column = load(column, few);
@@ -91,8 +91,8 @@ static GOE_INLINE bool aim(const float *column, float r, reflection_t *to, bool 
     return true;
 }
 
-/* Of the columns behind one of the nuisances. Nothing is known of these beforehand but their sigma: their rows of the triangle are 0 until
- * they are reached, and are not needed afterwards. */
+/* Reflects the columns after that of a nuisance. Only the sigma of a nuisance is known beforehand: its row of the triangle is 0 until its
+ * column is reached, and is not needed afterwards. */
 /*@ requires \valid_read(to) && \valid(column) && \valid(last); */
 static GOE_INLINE void pass_nuisance(const reflection_t *to, float *column, const float *last, bool few) {
     for (; column <= last; column++) {
@@ -102,8 +102,8 @@ static GOE_INLINE void pass_nuisance(const reflection_t *to, float *column, cons
     }
 }
 
-/* Of the columns behind an unknown: first those of other unknowns, which are below the elements of the triangle from `above` to before
- * `end`, then the residual, which is below *right. */
+/* Reflects the columns after that of an unknown: first those of other unknowns, below the elements of the triangle from `above` to before
+ * `end`, then the residual, below *right. */
 /*@ requires \valid_read(to) && \valid(column) && \valid(above) && \valid(right); */
 static GOE_INLINE void pass_unknown(const reflection_t *to, float *column, float *above, const float *end, float *right,
                                     bool few) {
@@ -120,9 +120,9 @@ static GOE_INLINE void pass_unknown(const reflection_t *to, float *column, float
     }
 }
 
-/* Eliminates the columns from first to last - 1 by reflections, and applies each to the columns after it, which end with the residual.
- * r: element of the triangle above the first of them, on its diagonal; right: the triangle's right-hand side, row by row. Nuisances have
- * none, and *r is 1/sigma of each. */
+/* Eliminates the columns from first to last - 1 by reflections, and applies each to the columns after it, which end with the residual. r:
+ * the diagonal element of the triangle above the first column; right: the triangle's right-hand side, row by row, or null for nuisances,
+ * where *r is 1/sigma of each. */
 /*@ requires \valid(matrix) && \valid(r) && first <= last <= GOE_RESIDUAL;
     requires right == \null || \valid(right); */
 static GOE_INLINE void reflect(goe_matrix_t *matrix, size_t first, size_t last, float *r, float *right, bool few) {
@@ -146,7 +146,7 @@ static GOE_INLINE void reflect(goe_matrix_t *matrix, size_t first, size_t last, 
     }
 }
 
-/* Each kernel once: a copy at every call would cost more than the calls. */
+/* Each kernel exists once: a copy at every call would cost more than the calls. */
 /*@ requires \valid(matrix) && \valid(r) && first <= last <= GOE_RESIDUAL;
     requires right == \null || \valid(right); */
 GOE_NOINLINE static void reflect_few(goe_matrix_t *matrix, size_t first, size_t last, float *r, float *right) {
@@ -169,10 +169,10 @@ static void reflect_columns(goe_matrix_t *matrix, size_t first, size_t last, flo
     }
 }
 
-/* R x = right, in place; 0 for states that are not estimated. */
+/* Solves R x = right in place; right is 0 for states that are not estimated. */
 static void solve_back(const goe_triangle_t *root, float right[GOE_UNKNOWNS]) {
     const size_t count = goe_srif_count(root);
-    const float *r = &root->element[goe_srif_row(count) + count]; /* behind the last row */
+    const float *r = &root->element[goe_srif_row(count) + count]; /* after the last row */
     for (size_t i = count; i-- > 0;) {
         r -= GOE_UNKNOWNS - i; /* on the diagonal */
         float g = right[i];
@@ -220,7 +220,7 @@ float goe_srif_update_considering(goe_triangle_t *root, float nuisance_root, goe
     return update(root, nuisance_root, matrix, count <= GOE_ROWS_FEW, GOE_STATES - 1, change);
 }
 
-/* Of the augmented states that the row involves, none is estimated by it. */
+/* The rest of the row, by augmented states alone, is dropped: it does not estimate them. */
 void goe_srif_add(goe_triangle_t *root, float row[GOE_UNKNOWNS], float residual, float right[GOE_UNKNOWNS]) {
     for (size_t i = GOE_UNWEIGHTED; i < GOE_STATES; i++) {
         float *r = &root->element[goe_srif_row(i)];
@@ -243,8 +243,8 @@ void goe_srif_solve(const goe_triangle_t *root, float right[GOE_UNKNOWNS]) { sol
 
 /* ------------------------------------------------------------------------------------------------------ process noise -- */
 
-/* A disturbance d of the state, x = x' + direction d, enters as a row (1/sigma) d = 0; Givens rotations then take it out of
- * the triangle again. In terms of sigma, not 1/sigma: a tiny one must not overflow. */
+/* A disturbance d of the state, x = x' + direction d, enters as a row (1/sigma) d = 0; Givens rotations then eliminate d from the triangle.
+ * The code uses sigma, not 1/sigma, which must not overflow for a tiny sigma. */
 void goe_srif_spread(goe_triangle_t *root, const float direction[GOE_STATES], size_t first, size_t last, float sigma) {
     float row[GOE_UNKNOWNS];
     goe_srif_zero(row, 0);
@@ -269,7 +269,7 @@ void goe_srif_spread(goe_triangle_t *root, const float direction[GOE_STATES], si
 
 /* ---------------------------------------------------------------------------------------------------------- variances -- */
 
-/* A row of R takes its element of the solution out of those behind it. */
+/* Each row of R subtracts its element of the solution from the later ones. */
 float goe_srif_part(const goe_triangle_t *root, size_t unknown, float part[GOE_UNKNOWNS]) {
     const size_t count = goe_srif_count(root);
     const float *first = &root->element[goe_srif_row(unknown)];
@@ -311,13 +311,13 @@ void goe_srif_reciprocals(const goe_triangle_t *root, float reciprocal[GOE_STATE
     reciprocal[9] = 1.0f / r_at(root, 9, 9);
 }
 
-/* What the first GOE_UNWEIGHTED elements, already solved, take out of element j. */
+/* The sum that the first GOE_UNWEIGHTED elements, already solved, subtract from element j. */
 /*@ requires \valid_read(root) && \valid_read(y + (0 .. GOE_UNWEIGHTED - 1)) && GOE_UNWEIGHTED <= j < GOE_STATES; */
 static GOE_INLINE float taken(const goe_triangle_t *root, const float y[GOE_STATES], size_t j) {
     return r_at(root, 0, j) * y[0] + r_at(root, 1, j) * y[1] + r_at(root, 2, j) * y[2];
 }
 
-/* The elements up to there. */
+/* Solves these elements, and subtracts them from the others. Returns their squared norm. */
 static GOE_INLINE float project_first(const goe_triangle_t *root, const float k[GOE_STATES], float y[GOE_STATES]) {
     y[0] *= k[0];
     y[1] = (y[1] - r_at(root, 0, 1) * y[0]) * k[1];
@@ -369,7 +369,7 @@ float goe_srif_project(const goe_triangle_t *root, const float reciprocal[GOE_ST
 #if GOE_AUGMENTED
 GOE_STATIC_ASSERT(GOE_AUGMENTED == 3, augmented_states_are_written_out);
 
-/* What element i takes out of those of the augmented states. */
+/* Subtracts the part of element i from those of the augmented states. */
 /*@ requires \valid_read(root) && i < GOE_STATES && \valid(p + (0 .. GOE_AUGMENTED - 1)); */
 static GOE_INLINE void take_out(const goe_triangle_t *root, size_t i, float y, float p[GOE_AUGMENTED]) {
     p[0] -= r_at(root, i, GOE_STATES) * y;
@@ -485,7 +485,7 @@ void goe_srif_from_sigmas(const float sigma[GOE_STATES], goe_triangle_t *root) {
 
 GOE_STATIC_ASSERT(GOE_CHANGED <= GOE_ROWS_MAX && GOE_CHANGED < GOE_STATES, the_changed_states_fit_into_the_rows);
 
-/* Replaces states. R times the derivative is no longer triangular in the changed rows: they enter again, as measurements. */
+/* Replaces states. R times the derivative is no longer triangular in the changed rows, so they enter again, as measurements. */
 void goe_srif_substitute(goe_triangle_t *root, const goe_substitution_t *old) {
     const size_t kept = GOE_STATES - GOE_CHANGED;
     goe_matrix_t rows;

@@ -31,13 +31,13 @@ static inline size_t goe_srif_augmented_count(const goe_triangle_t *r) {
 #endif
 }
 
-/* ... and with the state. */
+/* Number of states and estimated augmented states. */
 static inline size_t goe_srif_count(const goe_triangle_t *r) { return GOE_STATES + goe_srif_augmented_count(r); }
 
-/* First row of the augmented states. */
+/* Index of the first element of the augmented states. */
 static inline size_t goe_srif_augmented_row(void) { return goe_srif_row(GOE_STATES) + GOE_STATES; }
 
-/* Clears the elements by the state from `first` on, and by the augmented states: in two steps, each too short to be worth a call of
+/* Clears the derivatives by the states from `first` on, and by the augmented states: in two steps, each too short to be worth a call of
  * memset(). */
 /*@ requires \valid(by + (0 .. GOE_UNKNOWNS - 1)) && first <= GOE_STATES; */
 static inline void goe_srif_zero(float by[GOE_UNKNOWNS], size_t first) {
@@ -51,61 +51,60 @@ static inline void goe_srif_zero(float by[GOE_UNKNOWNS], size_t first) {
 #endif
 }
 
-/* Forgets the state; the augmented states stay known. */
+/* Clears the rows of the states; those of the augmented states remain. */
 void goe_srif_clear(goe_triangle_t *root);
 
-/* The first elements of rows that may be 0: the attitude bias. */
+/* Number of leading elements, the attitude bias, that are 0 in some rows. */
 #define GOE_UNWEIGHTED 3
 
-/* An update by at most so many rows takes the shorter kernel. */
+/* An update by at most this many rows uses the shorter kernel. */
 #define GOE_ROWS_FEW 5
 
 /* (R15): rotates `count` whitened rows into R by Householder reflections and solves for the change of the state and of the estimated
- * augmented states. The rows behind them must be 0. nuisance_root:
- * 1/sigma of the nuisances. *matrix is used up. Returns the remaining squared norm of the residuals: the normalized
- * innovation squared. */
+ * augmented states. The rows after these must be 0. nuisance_root: 1/sigma of the nuisances. *matrix is overwritten. Returns the remaining
+ * squared norm of the residuals: the normalized innovation squared. */
 float goe_srif_update(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, size_t count,
                       float change[GOE_UNKNOWNS]);
 
-/* The same, with the last state considered, not estimated (Schmidt 1966; Bierman 1977, chapter VIII): the gain is as if it were
- * known to be 0, and its own information stays as it was; R then holds its part in the variances of the others. */
+/* The same, with the last state considered, not estimated (Schmidt 1966; Bierman 1977, chapter VIII): the gain is as if its present value
+ * were exact, and its own information does not change. R then describes its part in the variances of the others. */
 float goe_srif_update_considering(goe_triangle_t *root, float nuisance_root, goe_matrix_t *matrix, size_t count,
                                   float change[GOE_UNKNOWNS]);
 
-/* For few rows and no nuisance: rotates a whitened row into R by Givens rotations, which cost less than reflections, and its residual into
- * `right`, 0 before the first row. Its first GOE_UNWEIGHTED elements are 0; it is used up. */
+/* For few rows without nuisances: rotates a whitened row into R by Givens rotations, which cost less than reflections, and its residual
+ * into `right`, which must be 0 before the first row. The row's first GOE_UNWEIGHTED elements must be 0; the row is overwritten. */
 void goe_srif_add(goe_triangle_t *root, float row[GOE_UNKNOWNS], float residual, float right[GOE_UNKNOWNS]);
 
-/* The change of the state from `right`, in place. */
+/* Replaces `right` by the change of the state. */
 void goe_srif_solve(const goe_triangle_t *root, float right[GOE_UNKNOWNS]);
 
 /* Adds variance sigma^2 along a direction, of which the states from first to last are read and the others are 0; sigma > 0. */
 /*@ requires \valid(root) && \valid_read(direction + (0 .. GOE_STATES - 1)) && first <= last < GOE_STATES; */
 void goe_srif_spread(goe_triangle_t *root, const float direction[GOE_STATES], size_t first, size_t last, float sigma);
 
-/* R^-1' times the unit vector of an unknown, state or estimated augmented state: its error in terms of independent unit errors. Only
- * the elements from the unknown on are written; those before it count as 0. The covariance of two unknowns is the product of their parts.
- * Returns the variance. */
+/* Sets part to R^-1' times the unit vector of an unknown, a state or an estimated augmented state: its error in terms of independent unit
+ * errors. Only the elements from the unknown on are written; those before it count as 0. The covariance of two unknowns is the product of
+ * their parts. Returns the variance. */
 /*@ requires \valid_read(root) && unknown < GOE_UNKNOWNS && \valid(part + (0 .. GOE_UNKNOWNS - 1)); */
 float goe_srif_part(const goe_triangle_t *root, size_t unknown, float part[GOE_UNKNOWNS]);
 
 /* One over the diagonal of R: several projections share the divisions. */
 void goe_srif_reciprocals(const goe_triangle_t *root, float reciprocal[GOE_STATES]);
 
-/* w becomes R^-1' w: the derivative in terms of independent unit errors. Returns its squared norm, the variance of w' x, as if the
- * augmented states were known. If the first GOE_UNWEIGHTED weights are 0, `first` may be GOE_UNWEIGHTED, for half of the cost;
+/* Replaces w, the weights, by R^-1' w: the derivative in terms of independent unit errors. Returns its squared norm, the variance of w' x,
+ * as if the augmented states were known. If the first GOE_UNWEIGHTED weights are 0, `first` may be GOE_UNWEIGHTED, for half of the cost;
  * otherwise it is 0. */
 float goe_srif_project(const goe_triangle_t *root, const float reciprocal[GOE_STATES], size_t first,
                        float weight[GOE_STATES]);
 
-/* Of a projected w: the part of that variance that is the last state's own. */
+/* The part of a projected w's variance that belongs to the last state alone. */
 static inline float goe_srif_last_variance(const float projected[GOE_STATES]) {
     return projected[GOE_STATES - 1] * projected[GOE_STATES - 1];
 }
 
 #if GOE_AUGMENTED
-/* The contribution of the augmented states to the variance of w' x + direct' augmented, as its squares' sum; of the projected w, whose
- * elements before `first`, 0 or GOE_UNWEIGHTED, are 0. direct may be null. */
+/* Sets part[], whose sum of squares is the contribution of the augmented states to the variance of w' x + direct' augmented. projected: the
+ * projected w, whose elements before `first`, 0 or GOE_UNWEIGHTED, are 0. direct may be null. */
 /*@ requires \valid_read(root) && \valid_read(projected + (0 .. GOE_STATES - 1));
     requires direct == \null || \valid_read(direct + (0 .. GOE_AUGMENTED - 1));
     requires \valid(part + (0 .. GOE_AUGMENTED - 1)); */
@@ -113,7 +112,7 @@ void goe_srif_augmented(const goe_triangle_t *root, const float projected[GOE_ST
                         const float direct[GOE_AUGMENTED], float part[GOE_AUGMENTED]);
 #endif
 
-/* Covariance of two such sums, or the variance of one; 0 if there are no augmented states. */
+/* Covariance of two such contributions, or the variance of one; 0 if there are no augmented states. */
 /*@ requires \valid_read(a + (0 .. GOE_AUGMENTED - 1)) && \valid_read(b + (0 .. GOE_AUGMENTED - 1)); */
 static inline float goe_srif_augmented_dot(const float *a, const float *b) {
     float sum = 0.0f;
@@ -127,20 +126,20 @@ static inline float goe_srif_augmented_dot(const float *a, const float *b) {
 #define GOE_KEPT 6
 void goe_srif_marginal(const goe_triangle_t *root, float covariance[GOE_KEPT][GOE_KEPT]);
 
-/* R from the covariance of the first states, which is used up, and the sigmas of the others, which are independent of them. */
+/* Sets R from the covariance of the first states, which is overwritten, and the sigmas of the others, which are independent of them. */
 void goe_srif_from_covariance(float covariance[GOE_KEPT][GOE_KEPT], const float sigma[GOE_STATES - GOE_KEPT],
                               goe_triangle_t *root);
 
-/* R of independent errors. */
+/* Sets R from the sigmas of independent errors. */
 void goe_srif_from_sigmas(const float sigma[GOE_STATES], goe_triangle_t *root);
 
-/* Derivatives of the last GOE_CHANGED states, by as many others that take their place. */
+/* Derivatives of the last GOE_CHANGED states by the new states that replace them. */
 #define GOE_CHANGED 7
 typedef struct {
     float by[GOE_CHANGED][GOE_CHANGED]; /* [old][new] */
 } goe_substitution_t;
 
-/* (R19): R in the new states. */
+/* (R19): transforms R to the new states. */
 void goe_srif_substitute(goe_triangle_t *root, const goe_substitution_t *old);
 
 #endif

@@ -1,4 +1,4 @@
-/* Planes through the sides of a box. SPDX-License-Identifier: MIT */
+/* Where the sides of an upright bounding box touch a solid, and their rows. SPDX-License-Identifier: MIT */
 #include "refined/goe_touch.h"
 
 #include <math.h>
@@ -8,9 +8,9 @@
 
 #if GOE_WITH_FILTER
 
-#define LEVEL_MIN 1.0e-6f          /* horizontal part of a side's normal: without one the nearest point touches */
-#define HIDDEN_VARIANCE 5.3333333f /* of half the edge squared: uniform, 1/3, times 16 images that share it */
-#define SCATTER_SHARE 0.01f        /* white part of a side's error, of the box's size */
+#define LEVEL_MIN 1.0e-6f          /* least horizontal part of a side's normal: without it the nearest point touches */
+#define HIDDEN_VARIANCE 5.3333333f /* factor on half the edge squared: uniform, 1/3, times 16 images that share it */
+#define SCATTER_SHARE 0.01f        /* white part of a side's error, over the box's size */
 
 GOE_STATIC_ASSERT(GOE_BOX_RIGHT == GOE_BOX_LEFT + 2 && GOE_BOX_BOTTOM == GOE_BOX_TOP + 2 && GOE_BOX_TOP == 1,
                   level_sides_are_odd_and_opposite_ones_two_apart);
@@ -50,7 +50,7 @@ float goe_touch_variance(const goe_observation_t *obs, size_t side, float size) 
 
 /* ------------------------------------------------------------------------------------------------------------- touch -- */
 
-/* A vector of the camera's axes in those of a rotation. */
+/* Rotates a vector by r, from the camera's axes. */
 static inline void turn(const float r[9], const float v[3], float to[3]) {
     to[0] = r[0] * v[0] + r[1] * v[1] + r[2] * v[2];
     to[1] = r[3] * v[0] + r[4] * v[1] + r[5] * v[2];
@@ -74,7 +74,7 @@ static void reach_corner(const goe_solid_t *solid, const float n[3], goe_touch_t
     t->point[2] = corner[t->corner].z;
 }
 
-/* ... and the point of an ellipse that does. */
+/* (R25): the point of an ellipse that lies farthest along the plane's normal. */
 static void reach_rim(const goe_solid_t *solid, const float n[3], goe_touch_t *t) {
     const float level = sqrtf(n[0] * n[0] + n[2] * n[2]);
     const bool tilts = level > LEVEL_MIN;
@@ -87,8 +87,8 @@ static void reach_rim(const goe_solid_t *solid, const float n[3], goe_touch_t *t
 
 typedef enum { FOOT, HEAD, EITHER } end_t;
 
-/* The touching point on the side of the outward normal, which is given in the camera's axes. (R24), (R25). An end that is not ahead is
- * not visible: the other one is taken. False if neither is ahead. */
+/* (R24), (R25): finds the touching point on the side of the outward normal, which is given in the camera's axes. An end (foot or head) that
+ * is not ahead is not visible, so the other end replaces it. False if neither is ahead. */
 static bool touch(const goe_solid_t *solid, const float normal[3], end_t end, goe_touch_t *t) {
     const float *r = solid->unbiased_from_camera;
     float n[3];
@@ -137,7 +137,7 @@ static line_t line_at(const goe_camera_t *camera, size_t side, float x, float y)
 
 static float sign_of(size_t side) { return side == GOE_BOX_LEFT || side == GOE_BOX_TOP ? -1.0f : 1.0f; }
 
-/* By the line at its touching point, which the first call gives, (R26). */
+/* (R26): uses the line of the side linearized at its touching point, which the first call finds. */
 /*@ requires goe_observation_is_open(obs) && goe_solid_is_closed(solid) && \valid_read(straight + (0 .. 2));
     requires \valid(t) && side < GOE_BOX_SIDES; */
 static bool touch_bent(const goe_observation_t *obs, const goe_solid_t *solid, size_t side, const float straight[3],
@@ -151,8 +151,7 @@ static bool touch_bent(const goe_observation_t *obs, const goe_solid_t *solid, s
     return touch(solid, bent, end, t);
 }
 
-/* Touches by the plane through the side. With a lens foot and head are tried, as the line is not straight between
- * them. */
+/* Finds the touching point of a side. With a lens it tries foot and head, because the line is not straight between them. */
 /*@ requires goe_observation_is_open(obs) && goe_solid_is_closed(solid) && \valid(t) && side < GOE_BOX_SIDES; */
 static bool touch_side(const goe_observation_t *obs, const goe_solid_t *solid, size_t side, goe_touch_t *t) {
     const goe_camera_t *camera = obs->camera;
@@ -185,8 +184,8 @@ static bool is_beyond(const goe_observation_t *obs, const goe_touch_t *t, size_t
     return side == GOE_BOX_TOP ? px < 0.0f : px > camera->height_px;
 }
 
-/* Bit of a doubtful top or bottom that the border cuts: until the position is known, or where the solid reaches beyond the border. Taken as
- * the foot, it would place the obstacle too far away by many sigma. */
+/* Bit of a doubtful top or bottom that the border cuts: while the position is not known, or if the solid reaches beyond the border. A cut
+ * bottom, taken as the foot, would place the obstacle too far away by many sigma. */
 /*@ requires goe_observation_is_open(obs) && goe_solid_is_closed(solid) && side < GOE_BOX_SIDES; */
 static unsigned cut_bit(const goe_observation_t *obs, const goe_solid_t *solid, size_t side) {
     goe_touch_t t;
@@ -196,7 +195,7 @@ static unsigned cut_bit(const goe_observation_t *obs, const goe_solid_t *solid, 
     return shown ? 0u : doubtful;
 }
 
-/* n - e x n of the camera's axes, by the given attitude. */
+/* Turns each axis n of the camera, by the supplied attitude, into n - e x n. */
 void goe_touch_open(const goe_observation_t *obs, float height_m, goe_solid_t *solid) {
     const float *x = obs->state;
     const float *r = obs->camera_to_axes;
@@ -213,7 +212,7 @@ void goe_touch_open(const goe_observation_t *obs, float height_m, goe_solid_t *s
 
 /* --------------------------------------------------------------------------------------------------------------- row -- */
 
-/* Derivatives by the touching point and by the attitude's error, from the line's. */
+/* Derivatives by the touching point and by the attitude's error, from those of the line. */
 /*@ requires goe_observation_is_open(obs) && \valid_read(solid) && \valid_read(t) && \valid_read(line) && \valid(to); */
 static void find_gradient(const goe_observation_t *obs, const goe_solid_t *solid, const goe_touch_t *t,
                           const line_t *line, goe_gradient_t *to) {
@@ -238,8 +237,8 @@ static bool is_hidden(const goe_observation_t *obs, const goe_solid_t *solid, co
     return t->other || (!shows(solid, t->foot ? GOE_BOX_BOTTOM : GOE_BOX_TOP) && !(t->foot && obs->edge));
 }
 
-/* (R27a): then the side touches the visible part's end, anywhere between foot and head. The row takes the middle and says
- * nothing about either height. Returns the variance to add. */
+/* (R27a): the side then touches the end of the visible part, anywhere between foot and head. The row assumes the middle, and does not
+ * depend on either height. Returns the variance to add. */
 /*@ requires \valid_read(solid) && \valid_read(t) && \valid(gradient); */
 static float forget_height(const goe_solid_t *solid, const goe_touch_t *t, goe_gradient_t *gradient) {
     const float moved = gradient->y * (0.5f * (solid->ground + solid->roof) - t->point[1]);
@@ -248,8 +247,8 @@ static float forget_height(const goe_solid_t *solid, const goe_touch_t *t, goe_g
     return moved * moved * HIDDEN_VARIANCE;
 }
 
-/* Whether the end of the upright edge that left or right touches lies outside the image, beyond the opposite level side, which is not
- * measured: then all of the edge does, and the side ends where the border crosses the roof or the base, which no row describes. */
+/* Whether the end of the upright edge that left or right touches is outside the image, beyond the opposite level side, which is not
+ * measured. Then the whole edge is outside, and the side ends where the border crosses the roof or the base, which no row describes. */
 /*@ requires goe_observation_is_open(obs) && \valid_read(solid) && \valid_read(t); */
 static bool is_outside(const goe_observation_t *obs, const goe_solid_t *solid, const goe_touch_t *t) {
     const size_t beyond = t->foot ? GOE_BOX_TOP : GOE_BOX_BOTTOM;

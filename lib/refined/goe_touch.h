@@ -16,7 +16,7 @@ typedef struct {
     goe_ellipse_t ellipse;
     const goe_xz_t *corner;
     size_t corners;
-    float ground, roof;            /* Y; as the next two: goe_touch_open() */
+    float ground, roof;            /* Y; goe_touch_open() sets these and the next two */
     unsigned seen;                 /* GOE_SIDE_...: sides that are measured, and that no border seems to cut */
     float unbiased_from_camera[9]; /* rotation, row by row */
 } goe_solid_t;
@@ -26,16 +26,16 @@ typedef struct {
     float point[3];        /* from the camera, the state's axes */
     float x, y, nearness;  /* the point in the image, focal lengths, no lens; 1/(range along the optical axis) */
     goe_xz_t outward;      /* unit normal of the plane, horizontal part */
-    goe_contact_t contact; /* of an ellipse, along that */
-    size_t corner;         /* of a hull: the one that is touched */
-    bool foot;             /* at the foot, not at the head */
-    bool other;            /* ... although the plane touches the other end, which is not ahead */
+    goe_contact_t contact; /* of an ellipse, along `outward` */
+    size_t corner;         /* of a hull: the touched corner */
+    bool foot;             /* the touching point is at the foot, not at the head */
+    bool other;            /* the plane touches the other end, which is not ahead */
 } goe_touch_t;
 
 /*@ predicate goe_solid_is_closed(goe_solid_t *solid) =
         \valid_read(solid) && (solid->corners == 0 || \valid_read(solid->corner + (0 .. solid->corners - 1))); */
 
-/* Top and bottom; they are measured along y. */
+/* Whether a side is top or bottom, which are measured along y. */
 static inline bool goe_touch_is_level(size_t side) { return (side & 1u) != 0u; }
 
 /* Raw coordinate of a side, focal lengths. */
@@ -51,17 +51,17 @@ float goe_touch_size(const goe_observation_t *obs, size_t side, float extent);
 /*@ requires goe_observation_is_open(obs) && side < GOE_BOX_SIDES; */
 float goe_touch_white_variance(const goe_observation_t *obs, size_t side, float size);
 
-/* ... and of the correlated error, for models that do not model it. */
+/* The same plus the correlated error, for models that do not model it. */
 /*@ requires goe_observation_is_open(obs) && side < GOE_BOX_SIDES; */
 float goe_touch_variance(const goe_observation_t *obs, size_t side, float size);
 
-/* Sets the common part of all sides of an image: ground and roof by the camera's height, the camera's axes in the state's, freed of the
- * attitude bias, and the sides that give rows. The footprint is set before. */
+/* Sets the common part of all sides of an image: ground and roof by the camera's height, the rotation from the camera's axes, corrected for
+ * the attitude bias, and the sides that give rows. The footprint is set before. */
 /*@ requires goe_observation_is_open(obs) && \valid(solid); */
 void goe_touch_open(const goe_observation_t *obs, float height_m, goe_solid_t *solid);
 
-/* Adds the row of a side, (R27), and returns its derivatives by the states as goe_rows_add() does: those by GOE_GROUND and GOE_TOP
- * are set, the others are the model's. Null if the side is not visible: neither end of it is ahead, or, of a level side, not its own. */
+/* Adds the row of a side, (R27), and returns its derivatives by the states as goe_rows_add() does. It sets those by GOE_GROUND and GOE_TOP,
+ * the model sets the others. Null if the side is not visible: neither end of it is ahead or, for a level side, its own end is not. */
 /*@ requires goe_observation_is_open(obs) && goe_solid_is_closed(solid) && goe_rows_hold(rows);
     requires side < GOE_BOX_SIDES && rows->count < GOE_ROWS_MAX && \valid(touch) && \valid(gradient); */
 float *goe_touch_add(goe_rows_t *rows, const goe_observation_t *obs, const goe_solid_t *solid, size_t side,
