@@ -1,4 +1,4 @@
-/* Covariance. SPDX-License-Identifier: MIT */
+/* The covariance of the latest estimate. SPDX-License-Identifier: MIT */
 #include "goe_covariance.h"
 
 #include <string.h>
@@ -33,7 +33,7 @@ static void keep_valid(unsigned valid, goe_covariance_t covariance) {
     }
 }
 
-/* Of a stale answer: no variance below the one that was reported, whatever path was flown since. */
+/* For a stale estimate: no variance becomes smaller than the reported one, whatever path was flown since. */
 static void keep_at_least(const goe_estimator_t *estimator, goe_covariance_t covariance) {
     const goe_sigma_t *sigma = &estimator->estimate.sigma;
     const float least[GOE_QUANTITIES] = {sigma->x_m,     sigma->z_m,      sigma->orientation_deg,
@@ -43,8 +43,8 @@ static void keep_at_least(const goe_estimator_t *estimator, goe_covariance_t cov
     }
 }
 
-/* False if the estimate is not the filter's, or the filter has learned something else since. An image without a detection
- * changes nothing but the time. */
+/* Returns false if the estimate is not the filter's, or if the state has changed since, other than by time. An image without a detection
+ * changes only the time. */
 static bool covariance_of_filter(const goe_estimator_t *estimator, bool for_hazard, float ahead_s,
                                  goe_covariance_t covariance) {
     if (!goe_latest_by_filter(estimator) || estimator->filter.answer.outdated) {
@@ -69,8 +69,8 @@ static bool covariance_of_filter(const goe_estimator_t *estimator, bool for_haza
 }
 #endif
 
-/* Of an estimate that the filter no longer holds: its sigmas, and what the age adds. The correlations are lost. For a hazard, doubled
- * variances cover two fully correlated errors. */
+/* For an estimate that the filter no longer contains: its squared sigmas, and their growth with age. The correlations are lost. For a
+ * hazard, doubled variances cover two fully correlated errors. */
 static void covariance_of_answer(const goe_estimator_t *estimator, bool for_hazard, float ahead_s,
                                  goe_covariance_t covariance) {
     const bool lost = for_hazard && goe_latest_by_filter(estimator);

@@ -1,4 +1,4 @@
-/* The estimator: one image through the whole chain. SPDX-License-Identifier: MIT
+/* goe_init(), goe_update(), goe_reset(): they pass one image through the processing chain. SPDX-License-Identifier: MIT
  *
  *   image -> intake -> ego motion -> aligned points -> window -----------------> estimate
  *                                                  \-> filter -> quantities -/
@@ -27,8 +27,8 @@
 
 /* ------------------------------------------------------------------------------------------------------- the estimate -- */
 
-/* Every call hands out an estimate. Four words at a time are two instructions on ARM; memcpy() does not know that they are
- * aligned, and takes twice as long. */
+/* Every call copies an estimate. On ARM, two instructions copy four words; memcpy() does not know that they are aligned, and takes twice as
+ * long. */
 #if defined(__GNUC__)
 #define BLOCK_BYTES 32u
 #define ESTIMATE_BLOCKS (sizeof(goe_estimate_t) / BLOCK_BYTES)
@@ -50,7 +50,7 @@ static inline void copy_estimate(goe_estimate_t *to, const goe_estimate_t *from)
 static inline void copy_estimate(goe_estimate_t *to, const goe_estimate_t *from) { *to = *from; }
 #endif
 
-/* The estimate grows old while images are refused, too, as far as their times can be believed. */
+/* The estimate also ages while images are refused. Their times count only if they are later than the latest image. */
 static void set_age(const goe_estimator_t *estimator, int64_t image_us, goe_estimate_t *estimate) {
     estimate->age_s = 0.0f;
     if (goe_is_set(&estimate->fresh) || !(estimate->valid & GOE_HAS_POSITION)) {
@@ -61,13 +61,13 @@ static void set_age(const goe_estimator_t *estimator, int64_t image_us, goe_esti
     estimate->age_s = goe_latest_since_s(estimator, now_us);
 }
 
-/* Fields that accompany every answer, also a refused image's. */
+/* Fields that every output contains, also after a refused image. */
 static void complete(const goe_estimator_t *estimator, int64_t image_us, goe_estimate_t *estimate) {
     set_age(estimator, image_us, estimate);
     estimate->trajectory_heading_deg = goe_motion_heading_deg(&estimator->motion);
     if (estimate->valid & GOE_HAS_ORIENTATION) {
         goe_motion_turn(&estimator->motion, estimate->length_axis, estimate->length_axis_ne);
-        estimate->width_axis_ne[0] = -estimate->length_axis_ne[1]; /* to its right */
+        estimate->width_axis_ne[0] = -estimate->length_axis_ne[1]; /* to the right of it */
         estimate->width_axis_ne[1] = estimate->length_axis_ne[0];
     }
 }
@@ -81,7 +81,7 @@ static void forget_track(goe_estimator_t *estimator) {
     goe_window_clear(&estimator->window);
 #endif
 #if GOE_WITH_FILTER
-    if (goe_uses_filter(estimator)) { /* the window needs no filter, and has no time for one */
+    if (goe_uses_filter(estimator)) { /* the window method uses no filter, and must not spend time on it */
         goe_filter_clear(&estimator->filter);
     }
 #endif
@@ -90,7 +90,7 @@ static void forget_track(goe_estimator_t *estimator) {
 /* ------------------------------------------------------------------------------------------------------------- filter -- */
 
 #if GOE_WITH_FILTER
-/* No new answer: the last one grows old, and follows the motion. */
+/* No new estimate: the last one ages, and its position relative to the camera follows the motion. */
 static void grow_old(goe_estimator_t *estimator) {
     goe_estimate_t *estimate = &estimator->estimate;
     const goe_motion_t *motion = &estimator->motion;
@@ -101,7 +101,7 @@ static void grow_old(goe_estimator_t *estimator) {
         return;
     }
     const float grown_m2 = goe_latest_grown_m2(estimator, s);
-    const float north_m = estimate->velocity_north_m_s * s; /* 0 of an obstacle that stands still */
+    const float north_m = estimate->velocity_north_m_s * s; /* 0 for a static obstacle */
     const float east_m = estimate->velocity_east_m_s * s;
     estimate->x_m += motion->heading_cos * east_m - motion->heading_sin * north_m;
     estimate->z_m += motion->heading_cos * north_m + motion->heading_sin * east_m;
@@ -109,7 +109,7 @@ static void grow_old(goe_estimator_t *estimator) {
     estimate->sigma.z_m = sqrtf(goe_square(estimate->sigma.z0_m) + grown_m2);
 }
 
-/* An old answer that lies behind, with all of its extent, while the image shows the obstacle ahead is wrong. */
+/* Drops an old estimate whose whole extent lies behind the camera, while the image shows the obstacle ahead: it is wrong. */
 /*@ requires \valid(estimator) && \valid_read(view); */
 static void drop_contradicted(goe_estimator_t *estimator, const goe_view_t *view) {
     goe_estimate_t *estimate = &estimator->estimate;
@@ -151,7 +151,7 @@ static goe_status_t update_refined(goe_estimator_t *estimator, const goe_view_t 
     const goe_settings_t *settings = &estimator->settings;
     unsigned swapped;
     const bool measured = goe_refined_update(&estimator->filter, settings, view, &swapped);
-    for (unsigned i = 0; i < swapped; i++) { /* points out of order: each pair counts */
+    for (unsigned i = 0; i < swapped; i++) { /* each pair of points that is out of order counts */
         goe_fault_count(faults, GOE_SWAPPED);
     }
     return report_refined(estimator, view, faults, measured && goe_filter_reports(&estimator->filter, settings->model));
@@ -167,7 +167,7 @@ static goe_status_t take_refined(goe_estimator_t *estimator, const goe_view_t *v
 
 /* --------------------------------------------------------------------------------------------------------- the chain -- */
 
-/* The autopilot's filter jumped: by a known amount the ground moves along, by an unknown one the track ends. */
+/* The autopilot's filter jumped: a known jump moves the ground along, an unknown one ends the track. */
 static void follow_reset(goe_estimator_t *estimator, const goe_pose_t *pose) {
     if (!goe_is_set(&pose->reset_delta_known)) {
         forget_track(estimator);
@@ -181,7 +181,7 @@ static void follow_reset(goe_estimator_t *estimator, const goe_pose_t *pose) {
 #endif
 }
 
-/* North and east of an older answer move with T's origin. */
+/* North and east of an older estimate move with T's origin. */
 static void follow_motion(goe_estimator_t *estimator, goe_view_t *view) {
     goe_estimate_t *estimate = &estimator->estimate;
     const float north_m = estimator->motion.origin_ne_m[0];
@@ -195,18 +195,18 @@ static void follow_motion(goe_estimator_t *estimator, goe_view_t *view) {
     }
 }
 
-/* Whether the track may begin again: it began with an earlier image, T's heading is the nose's, no position is known, and the nose
- * has turned by more than 45 degrees from Z. */
+/* Whether a new track may begin: an earlier image showed a feature, T's heading is that of the nose, no position is known, and the nose has
+ * turned by more than 45 degrees from Z. */
 static bool may_begin_again(const goe_estimator_t *estimator, const goe_view_t *view) {
     const float *to_trajectory = view->camera_to_trajectory;
-    const float *nose = view->camera_to_body; /* its first row: the nose in the camera's axes */
+    const float *nose = view->camera_to_body; /* its first row: the nose's direction, camera axes */
     const float x = to_trajectory[0] * nose[0] + to_trajectory[1] * nose[1] + to_trajectory[2] * nose[2];
     const float z = to_trajectory[6] * nose[0] + to_trajectory[7] * nose[1] + to_trajectory[8] * nose[2];
     const bool known = (estimator->estimate.valid & GOE_HAS_POSITION) != 0u;
     return goe_is_set(&estimator->settings.heading_auto) && estimator->motion.detected && !known && goe_absolute(x) > z;
 }
 
-/* Whether features are visible, and all of them more than 60 degrees from Z. */
+/* Whether features are visible, and all of them are more than 60 degrees from Z. */
 /*@ requires \valid_read(view); */
 static bool lies_aside(const goe_view_t *view) {
     bool aside = view->seen;
@@ -216,8 +216,8 @@ static bool lies_aside(const goe_view_t *view) {
     return aside;
 }
 
-/* After a turn: features far from T's Z axis would give little information, and a track without a known position has nothing to
- * lose. The track begins here, and the faults of this image are counted once. */
+/* After a turn, features far from T's Z axis give little information, and a track without a known position has nothing to lose: a new track
+ * begins with this image. The faults of this image are counted only once. */
 static GOE_NOINLINE void align_after_turn(goe_estimator_t *estimator, goe_view_t *view, goe_faults_t *faults) {
     uint32_t fault_counts[GOE_FAULT_COUNTS];
     memcpy(fault_counts, faults->fault_counts, sizeof fault_counts);
@@ -240,7 +240,7 @@ static void open_view(goe_estimator_t *estimator, const goe_image_t *image, cons
     view->camera = camera;
     view->box_noise_rel = 0.0f;
 #if GOE_WITH_FILTER
-    if (goe_uses_filter(estimator)) { /* the filter alone has settings of the detector */
+    if (goe_uses_filter(estimator)) { /* only the filter has settings of the detector */
         view->box_noise_rel = estimator->settings.detector.box_noise_rel;
     }
 #endif
@@ -275,7 +275,7 @@ static goe_status_t take_image(goe_estimator_t *estimator, const goe_image_t *im
     }
     return status;
 #else
-    return GOE_CONVERGING; /* not reached: goe_init() admits no other method */
+    return GOE_CONVERGING; /* not reached: goe_init() accepts no other method */
 #endif
 }
 
@@ -309,7 +309,7 @@ goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator_size, const g
     return GOE_OK;
 }
 
-/* Nothing changes but a counter and the time by which goe_decide() moves the aircraft on; the answer is the older one. */
+/* Refuses an image: only a counter and the time by which goe_decide() moves the aircraft on change. Returns the older estimate. */
 static GOE_NOINLINE void refuse(goe_estimator_t *estimator, goe_status_t status, int64_t time_us,
                                 goe_estimate_t *estimate) {
     goe_count_cause(estimator->fault_counts, status);
@@ -321,14 +321,14 @@ static GOE_NOINLINE void refuse(goe_estimator_t *estimator, goe_status_t status,
     estimate->fresh = false;
 }
 
-/* Whether all outputs, and the memory that places the next image, are numbers. */
+/* Whether all outputs are valid, and the camera's position, which places the next image, is finite. */
 static bool is_sound(const goe_estimator_t *estimator, const goe_estimate_t *estimate) {
     const uint32_t place =
         goe_larger_bits(goe_magnitude(estimator->motion.dx_m), goe_magnitude(estimator->motion.dz_m));
     return goe_guard_estimate(estimate) && place < GOE_INFINITY_BITS;
 }
 
-/* The track's memory is not what the library left there. */
+/* Ends the track: its memory was changed from outside. */
 static GOE_NOINLINE goe_status_t give_up(goe_estimator_t *estimator, goe_estimate_t *estimate) {
     forget_track(estimator);
     memset(estimate, 0, sizeof *estimate);

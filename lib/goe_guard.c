@@ -1,4 +1,4 @@
-/* Seal and final check. SPDX-License-Identifier: MIT */
+/* Seal over settings and mounting, and the final check of an estimate. SPDX-License-Identifier: MIT */
 #include "goe_guard.h"
 
 #include <string.h>
@@ -6,7 +6,7 @@
 #include "maths/goe_scalar.h"
 
 #define READY 0x474F4533u /* "GOE3" */
-#define SEED 0x5EA1u      /* memory of zeros is not sealed */
+#define SEED 0x5EA1u      /* not 0, so memory of zeros is not sealed */
 #define EXPONENT_STEP 0x00800000u
 #define HAS_ALL                                                                                                        \
     (GOE_HAS_POSITION | GOE_HAS_LENGTH | GOE_HAS_HEIGHT | GOE_HAS_ORIENTATION | GOE_HAS_CENTER | GOE_HAS_WIDTH |       \
@@ -14,7 +14,7 @@
 
 /* ------------------------------------------------------------------------------------------------------------ words -- */
 
-/* Whatever type lies there. memcpy() does not know that it is aligned, and takes four times as long where that matters. */
+/* Reads a word of any stored type. memcpy() does not know that it is aligned, and takes four times as long where that matters. */
 #if defined(__GNUC__)
 typedef uint32_t __attribute__((may_alias)) word_t;
 
@@ -46,7 +46,7 @@ static inline void add(goe_seal_t *seal, uint32_t word) {
     seal->turned = word ^ (seal->turned << 1 | seal->turned >> 31);
 }
 
-/* Partly written out: done by every call. */
+/* Partly unrolled, because every call computes it. */
 static goe_seal_t seal_of(const goe_estimator_t *estimator) {
     const unsigned char *from = (const unsigned char *)estimator + SEALED_FROM;
     goe_seal_t seal = {SEED, SEED};
@@ -72,7 +72,7 @@ void goe_guard_seal(goe_estimator_t *estimator) {
     estimator->ready = READY;
 }
 
-/* Memory that is neither ready nor sealed was never set. */
+/* Memory with a wrong mark and a wrong seal was never initialized. */
 goe_status_t goe_guard_judge(const goe_estimator_t *estimator) {
     const goe_seal_t seal = seal_of(estimator);
     const bool sealed = seal.sum == estimator->seal.sum && seal.turned == estimator->seal.turned;
@@ -83,12 +83,12 @@ goe_status_t goe_guard_judge(const goe_estimator_t *estimator) {
     return sealed || ready ? GOE_CORRUPTED : GOE_NOT_INITIALIZED;
 }
 
-/* ----------------------------------------------------------------------------------------------------------- answers -- */
+/* --------------------------------------------------------------------------------------------------------- estimates -- */
 
-/* Bit 31: the exponent is that of infinities and NaNs. */
+/* Sets bit 31 if the exponent is that of infinities and NaNs. */
 static inline uint32_t overflow(const float *at) { return (goe_bits_at(at) & GOE_INFINITY_BITS) + EXPONENT_STEP; }
 
-/* Partly written out, too. */
+/* Partly unrolled, too. */
 bool goe_guard_finite(const float *floats, size_t count) {
     const float *x = floats;
     const float *end = floats + count;
@@ -102,7 +102,7 @@ bool goe_guard_finite(const float *floats, size_t count) {
     return any >> 31 == 0u;
 }
 
-/* The floats of an estimate lie side by side, but for one count. */
+/* The floats of an estimate are contiguous, except for one count. */
 #define FIRST offsetof(goe_estimate_t, age_s)
 #define BETWEEN offsetof(goe_estimate_t, nis_rows)
 #define SECOND offsetof(goe_estimate_t, nis_ratio)

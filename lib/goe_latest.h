@@ -1,4 +1,4 @@
-/* The latest estimate as the calls read it: by which method, how old it is, and what the filter left with it. SPDX-License-Identifier: MIT */
+/* Method, age and stored data of the latest estimate, for the functions that read it. SPDX-License-Identifier: MIT */
 #ifndef GOE_LATEST_H
 #define GOE_LATEST_H
 
@@ -21,13 +21,13 @@ static inline bool goe_latest_by_filter(const goe_estimator_t *estimator) {
     return estimator->estimate.method == GOE_METHOD_FILTER;
 }
 
-/* From the image behind the estimate to a later time, s. */
+/* Time from the image that gave the estimate to a later time, s. */
 static inline float goe_latest_since_s(const goe_estimator_t *estimator, int64_t now_us) {
     return goe_time_between_s(estimator->estimate_time_us, now_us, GOE_TIME_MAX_US);
 }
 
-/* Variance that the place relative to the camera gains in a time without a new answer, m2, along X as along Z: by the velocity
- * of an obstacle that moves and, filter, by the errors of the own motion. */
+/* Growth of the variance of the position relative to the camera in a time without a new estimate, m2, along X as along Z: by the velocity
+ * of a moving obstacle and, in the filter method, by the errors of the own motion. */
 static inline float goe_latest_grown_m2(const goe_estimator_t *estimator, float since_s) {
     const goe_sigma_t *sigma = &estimator->estimate.sigma;
     const float north = goe_square(sigma->velocity_north_m_s);
@@ -41,8 +41,8 @@ static inline float goe_latest_grown_m2(const goe_estimator_t *estimator, float 
     return velocity_m2_s2 * since_s * since_s + walk_m2_s * since_s;
 }
 
-/* Height of the camera at the latest image, m, that the latest estimate's own height is counted with. With the height_bias_m of
- * goe_latest_answer() it is the height above the obstacle's ground. */
+/* Height of the camera at the latest image, m, as the method of the latest estimate uses it. Plus the height_bias_m of goe_latest_answer(),
+ * it is the height above the obstacle's ground. */
 static inline float goe_latest_camera_height(const goe_estimator_t *estimator) {
 #if GOE_WITH_FILTER
     if (goe_latest_by_filter(estimator)) {
@@ -52,8 +52,8 @@ static inline float goe_latest_camera_height(const goe_estimator_t *estimator) {
     return estimator->motion.height_m;
 }
 
-/* What the filter left with the latest estimate; all 0 if the estimate is the window method's. An image without a detection, or a new start
- * of the filter, does not change it. */
+/* Data that the filter stored with the latest estimate; all 0 if the estimate is the window method's. An image without a detection, or a
+ * restart of the filter, changes only the flags. */
 static inline goe_answer_t goe_latest_answer(const goe_estimator_t *estimator) {
     goe_answer_t answer;
 #if GOE_WITH_FILTER

@@ -1,7 +1,7 @@
-/* Self-check of the arithmetic. SPDX-License-Identifier: MIT
+/* Self-check: does the arithmetic contract, reorder, flush or misround? SPDX-License-Identifier: MIT
  *
- * Operands are read through volatile, which keeps the compiler from evaluating the expressions itself; then they are plain
- * floats, which it may transform just as it transforms the rest of the library. */
+ * Operands are read through volatile, so the compiler cannot evaluate the expressions itself. Then they are plain floats, which it may
+ * transform as it transforms the rest of the library. */
 #include <math.h>
 
 #include "goe.h"
@@ -9,7 +9,7 @@
 
 static bool same(float a, uint32_t bits) { return goe_bits(a) == bits; }
 
-/* (1 + 2^-12)^2 - (1 + 2^-11) is 2^-24 exactly, and 0 if the product is rounded first. */
+/* (1 + 2^-12)^2 - (1 + 2^-11) is exactly 2^-24, and 0 if the product is rounded first. */
 static bool contracts(void) {
     volatile float probe_a = 1.000244140625f;
     volatile float probe_b = 1.00048828125f;
@@ -18,7 +18,7 @@ static bool contracts(void) {
     return !same(a * a - b, 0u);
 }
 
-/* (2^25 + 1) - 2^25 is 0 in floats and 1 if reordered. */
+/* (2^25 + 1) - 2^25 is 0 in floats, and 1 if it is reordered. */
 static bool reassociates(void) {
     volatile float probe_large = 33554432.0f;
     volatile float probe_one = 1.0f;
@@ -30,16 +30,16 @@ static bool reassociates(void) {
 #define QUOTIENTS 3
 #define DIVISOR 41.0f
 
-/* 5/d, 7/d and 11/d with one divisor invite the compiler to compute 1/d once, side by side or before a loop, and a constant
- * d to compute it beforehand; with d = 41 all three quotients come out differently. Bits are joined by |, not ||: a
- * compiler that may skip a division does not merge it with the others. */
+/* 5/d, 7/d and 11/d have one divisor: this invites the compiler to compute 1/d once, side by side or before a loop; for a constant d,
+ * beforehand. With d = 41 all three quotients then differ. The bits are joined by |, not ||: a compiler that may skip a division does not
+ * merge it with the others. */
 static bool reciprocates(void) {
     static const uint32_t right[QUOTIENTS] = {0x3DF9C190u, 0x3E2ED44Bu, 0x3E895DA9u};
     volatile float probe_five = 5.0f;
     volatile float probe_seven = 7.0f;
     volatile float probe_eleven = 11.0f;
     volatile float probe_divisor = DIVISOR;
-    volatile int probe_count = QUOTIENTS; /* so that the loop stays one */
+    volatile int probe_count = QUOTIENTS; /* the compiler must keep the loop */
     const float dividend[QUOTIENTS] = {probe_five, probe_seven, probe_eleven};
     const float divisor = probe_divisor;
     const int count = probe_count;
@@ -54,7 +54,7 @@ static bool reciprocates(void) {
     return off != 0u;
 }
 
-/* Vector units may flush where the scalar unit does not (Helium always does): so also in a loop that invites them. */
+/* A vector unit may flush although the scalar unit does not (Helium always does). The loops below invite the compiler to use it. */
 static bool flushes(void) {
     volatile float smallest_normal = 1.17549435e-38f;
     volatile float probe_half = 0.5f;
@@ -74,7 +74,7 @@ static bool flushes(void) {
     return off != 0u || !same(subnormal, 0x00400000u) || !same(subnormal / half, 0x00800000u);
 }
 
-/* 1e38 * 10 overflows float but not a wider register; 1 + 2^-24 rounds back to 1 in float. */
+/* 1e38 * 10 overflows float, but not a wider register. In float, 1 + 2^-24 is rounded back to 1. */
 static bool exceeds(void) {
     volatile float probe_large = 1.0e38f;
     volatile float probe_ten = 10.0f;
@@ -85,7 +85,7 @@ static bool exceeds(void) {
     return goe_magnitude((large * ten) / ten) < GOE_INFINITY_BITS || !same((1.0f + half_ulp) + half_ulp, 0x3F800000u);
 }
 
-/* Ties go to even: 1 + 2^-24 down, 1 + 3 2^-24 up, the same below zero. */
+/* Ties are rounded to even: 1 + 2^-24 down, 1 + 3 2^-24 up, and negative numbers in the same way. */
 static bool misrounds(void) {
     volatile float probe_tie_down = 5.9604645e-08f;
     volatile float probe_tie_up = 1.7881393e-07f;
@@ -95,13 +95,13 @@ static bool misrounds(void) {
 
 #define MANTISSA_BITS 23u
 #define HIDDEN_BIT (1u << MANTISSA_BITS)
-/* A float is mantissa * 2^(exponent field - 150), the hidden bit among the mantissa's 24. */
+/* A float is mantissa * 2^(exponent field - 150). The hidden bit is one of the mantissa's 24 bits. */
 #define EXPONENT_OFFSET 150u
-#define ROOT_SHIFT_MAX 47u /* of the smallest subnormal */
+#define ROOT_SHIFT_MAX 47u /* that of the smallest subnormal */
 
-/* The root r 2^f of m 2^e, both mantissas whole, is the nearest float exactly if r is the whole number nearest to the root
- * of X = m 2^(e - 2f): (r - 1/2)^2 < X < (r + 1/2)^2, that is r^2 - r < X <= r^2 + r, which fit 64 bits; without a sign,
- * a number below 0 is too large. */
+/* Let m 2^e have the root r 2^f, with whole mantissas. It is the nearest float exactly if r is the whole number nearest to the root of X =
+ * m 2^(e - 2f): (r - 1/2)^2 < X < (r + 1/2)^2, that is r^2 - r < X <= r^2 + r. These numbers fit 64 bits. Without a sign, a number below 0
+ * becomes too large. */
 static bool root_is_nearest(uint32_t square_bits) {
     float square;
     memcpy(&square, &square_bits, sizeof square);
@@ -118,8 +118,8 @@ static bool root_is_nearest(uint32_t square_bits) {
     return shift <= ROOT_SHIFT_MAX && (m << shift) - (uint64_t)r * (r - 1u) - 1u < 2u * r;
 }
 
-/* Spread over all exponents, odd and even; the first are subnormal. 32 arguments miss a root that is wrong for a quarter
- * of all with a probability of 1e-4. */
+/* Spread over all exponents, odd and even; the first are subnormal. If a quarter of all roots is wrong, 32 arguments miss it with a
+ * probability of 1e-4. */
 #define ROOTS 32u
 #define ROOT_FIRST 0x00000001u
 #define ROOT_STEP 0x03FA5A5Bu /* ROOT_FIRST + (ROOTS - 1) ROOT_STEP is below infinity */

@@ -1,4 +1,4 @@
-/* Settings: defaults and ranges, from the list. SPDX-License-Identifier: MIT */
+/* Default values and range checks of the settings, taken from goe_settings_list.h. SPDX-License-Identifier: MIT */
 #include "goe_settings_internal.h"
 
 #include <string.h>
@@ -6,13 +6,13 @@
 #include "goe_settings_list.h"
 #include "maths/goe_scalar.h"
 
-#define FOCAL_MIN 0.05f /* of the image's size: a view of 169 degrees, which no lens model here describes */
-#define BEYOND_MAX 1.5f /* focal lengths of the principal point beyond the image, which may be a part of the sensor's */
+#define FOCAL_MIN 0.05f /* in image sizes: a view of 169 degrees, which no lens model here describes */
+#define BEYOND_MAX 1.5f /* focal lengths from image to principal point: the image may be a part of the sensor's */
 
 enum { SETTING_REAL, SETTING_COUNT, SETTING_TRUTH, SETTING_CHOICE };
 
-/* Arrays side by side, as entries of mixed sizes would be padded; names one after the other. Counts, truth values and choices
- * are exact in a float. */
+/* Separate arrays, because entries of mixed sizes would be padded; names in one string. Counts, truth values and choices are exact in a
+ * float. */
 #define NAME(field, kind, unit, low, high, value, text) #field "\0"
 #define PLACE(field, kind, unit, low, high, value, text) (uint16_t)offsetof(goe_settings_t, field),
 #define KIND(field, kind, unit, low, high, value, text) (uint8_t)SETTING_##kind,
@@ -62,7 +62,7 @@ static float read_field(const unsigned char *field, uint8_t kind) {
         case SETTING_COUNT:
             memcpy(&count, field, sizeof count);
             return (float)count;
-        case SETTING_TRUTH: /* not read as a bool: it may be neither */
+        case SETTING_TRUTH: /* not read as a bool: the byte may be neither 0 nor 1 */
             return (float)*field;
         default:
             memcpy(&choice, field, sizeof choice);
@@ -85,7 +85,7 @@ void goe_settings_default(goe_settings_t *settings) {
 #endif
 }
 
-/* Of the first `count` settings, at `from`. */
+/* Name of the first bad one of the first `count` settings, at `from`; null: none. */
 /*@ requires \valid_read(from + (0 .. sizeof(goe_settings_t) - 1));
     requires count <= sizeof(places) / sizeof(places[0]); */
 static const char *first_bad(const unsigned char *from, size_t count) {
@@ -107,7 +107,7 @@ static bool is_beyond(float center_px, float focal_px, float size_px) {
     return size_px > 0.0f && goe_larger(-center_px, center_px - size_px) > BEYOND_MAX * focal_px;
 }
 
-/* The name of a setting that no camera has: a focal length in millimeters, or the principal point of another image size. */
+/* Name of a value that no camera has: a focal length in millimeters, or the principal point of another image size. Null: none. */
 static const char *implausible(const goe_camera_t *camera) {
     if (is_too_short(camera->fx_px, camera->width_px)) {
         return "camera.fx_px";

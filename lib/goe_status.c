@@ -1,9 +1,9 @@
-/* Names of the statuses. SPDX-License-Identifier: MIT */
+/* Names of the statuses and of the reasons, as text. SPDX-License-Identifier: MIT */
 #include "goe.h"
 
-#define CALLS_FROM GOE_BAD_SETTINGS /* the numbers of the calls' statuses begin here, apart from those of images */
+#define CALLS_FROM GOE_BAD_SETTINGS /* first number of the statuses of calls, which are apart from those of images */
 
-/* One after the other, so that no addresses have to be kept: from the highest number down. */
+/* The names follow one another, so no addresses are kept; from the highest number down. */
 static const char of_images[] =
     "no_detection\0stale\0converging\0partial\0ok\0behind_camera\0lens_failed\0swapped\0edge_on\0"
     "no_edge\0bad_height\0no_baseline\0no_parallax\0abeam\0not_finite\0out_of_range\0"

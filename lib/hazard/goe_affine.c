@@ -1,4 +1,4 @@
-/* Sigmas and probabilities to first order. SPDX-License-Identifier: MIT */
+/* First-order error propagation: sigma, covariance and probability of a value. SPDX-License-Identifier: MIT */
 #include "hazard/goe_affine.h"
 
 #include <math.h>
@@ -9,7 +9,7 @@
 #if GOE_WITH_HAZARD
 
 #define SIGMA_MIN 1.0e-6f
-#define NUMBER_MAX 1.0e9f /* of any number reported */
+#define NUMBER_MAX 1.0e9f /* limit of any reported number */
 
 float goe_bounded(float x) { return goe_within(x, NUMBER_MAX) ? x : (x < 0.0f ? -NUMBER_MAX : NUMBER_MAX); }
 

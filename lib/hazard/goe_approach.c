@@ -1,4 +1,4 @@
-/* Times and distances of the closest approach. SPDX-License-Identifier: MIT */
+/* Time, distances and clearance of the closest approach. SPDX-License-Identifier: MIT */
 #include "hazard/goe_approach.h"
 
 #include <math.h>
@@ -10,7 +10,7 @@
 
 #if GOE_WITH_HAZARD
 
-#define HOVER_M_S 0.1f /* slower than this is taken as standing still */
+#define HOVER_M_S 0.1f /* a slower aircraft counts as hovering */
 #define SIGMA_MIN 1.0e-6f
 
 /* ---------------------------------------------------------------------------------------------------------- approach -- */
@@ -33,8 +33,8 @@ void goe_approach_course(const goe_motion_t *motion, const goe_intent_t *intent,
     }
 }
 
-/* Time to the closest approach, and the time at which the clearance counts: over the outline it is the lower end of the
- * flight. Value and derivatives are 0 for a time of now. */
+/* Finds the time to the closest approach, and the time at which the clearance counts: over the outline, that of the flight's lower end. For
+ * a time of now, value and derivatives are 0. */
 static void find_times(const goe_outline_t *o, const goe_course_t *course, goe_covariance_t covariance,
                        const goe_approach_t *approach, goe_affine_t *first, goe_affine_t *lowest) {
     const goe_affine_t *side = approach->side;
@@ -58,7 +58,7 @@ static void find_times(const goe_outline_t *o, const goe_course_t *course, goe_c
 }
 
 /* Upper bound of the time's sigma: the path meets the outline between its near and its far end. At a grazed edge the derivatives are too
- * large, as the entry jumps from one end to the other. */
+ * large, because the entry jumps from one end to the other. */
 static float time_sd_most(const goe_outline_t *o, const goe_course_t *course, goe_covariance_t covariance) {
     goe_affine_t far_end;
     goe_affine_t near_end;
@@ -67,8 +67,8 @@ static float time_sd_most(const goe_outline_t *o, const goe_course_t *course, go
     return (goe_affine_sigma(&near_end, covariance) + 0.5f * (far_end.value + near_end.value)) / course->speed_m_s;
 }
 
-/* Variance of the time along an edge which, as far as the orientation is known, may lean either way from the course: then
- * the closest corner is its other end, if the outline is passed at all. */
+/* Variance of the time from an edge that may lean either way from the course, within the sigma of the orientation. If it leans the other
+ * way, the closest corner is its other end, provided that the course passes the outline. */
 static float edge_variance(const goe_course_t *course, const goe_xz_t *edge, float length_m, float sigma_rad,
                            float passes) {
     const float lean = goe_absolute(goe_xz_dot(*edge, course->side[GOE_RIGHT]));
@@ -94,7 +94,7 @@ static float time_sd(const goe_outline_t *o, const goe_course_t *course, const g
     return goe_bounded(sd < most ? sd : most);
 }
 
-/* The clearance at the time of `lowest`. `share` scales that time's derivatives, so that they give its full sigma, time_sd(). */
+/* The clearance at the time `lowest`. `share` scales the derivatives of this time, so that they give its full sigma, time_sd(). */
 static void find_clearance(const goe_course_t *course, const goe_affine_t *lowest, float share, float height_m,
                            goe_affine_t *clearance) {
     clearance->value = height_m + course->climb_m_s * lowest->value;

@@ -1,4 +1,4 @@
-/* Probabilities of a violation. SPDX-License-Identifier: MIT */
+/* The conflict probability, and the other fields of goe_hazard_t. SPDX-License-Identifier: MIT */
 #include "hazard/goe_conflict.h"
 
 #include <math.h>
@@ -10,7 +10,7 @@
 
 #define SIGMA_MIN 1.0e-6f
 #define SPEED_MIN_M_S 0.1f
-#define AHEAD_MAX_S 60.0f /* for which a velocity is taken to last */
+#define AHEAD_MAX_S 60.0f /* longest time for which a velocity counts as constant */
 
 /* ------------------------------------------------------------------------------------------- sigmas and probability -- */
 
@@ -19,8 +19,8 @@ static const goe_affine_t *largest(const goe_approach_t *a) {
     return a->moves && side->value > a->ahead.value ? side : &a->ahead;
 }
 
-/* Probability that the obstacle is not passed on a side of the course. Each corner may spoil it, and the one that is likeliest
- * to is not always the nearest: the orientation moves some more than others. */
+/* Probability that the course does not pass the obstacle on one side. Any corner may violate the margin. The likeliest one is not always
+ * the nearest: the orientation moves some corners more than others. */
 static float side_violation(const goe_outline_t *o, const goe_affine_t *nearest, const goe_xz_t *away, float margin_m,
                             goe_covariance_t covariance) {
     float most = goe_affine_below(nearest, margin_m, covariance);
@@ -32,7 +32,7 @@ static float side_violation(const goe_outline_t *o, const goe_affine_t *nearest,
     return most;
 }
 
-/* Each is necessary for the margin to be violated: not passed on either side, and not out of the way along the course. */
+/* The margin is violated only if the course passes on neither side, and the outline is not out of the way along the course. */
 static float margin_violation(const goe_outline_t *o, const goe_course_t *course, const goe_approach_t *a,
                               float margin_m, goe_covariance_t covariance) {
     const float out = goe_affine_below(&a->ahead, margin_m, covariance);
@@ -44,9 +44,9 @@ static float margin_violation(const goe_outline_t *o, const goe_course_t *course
     return sides < 0.0f ? 0.0f : sides < out ? sides : out;
 }
 
-/* Of two normal variables both below their limits. Independent: the product. Positively correlated: towards the smaller
- * of the two, in proportion; that is at most 0.014 below the truth and at most 0.053 above it. Negatively correlated:
- * the product is an upper bound. */
+/* Probability that two normal variables are both below their limits. Independent: the product. Positively correlated: between the product
+ * and the smaller of the two, in proportion; that is at most 0.014 below the truth and at most 0.053 above it. Negatively correlated: the
+ * product, which is an upper bound. */
 static float both(float p, float q, float correlation) {
     const float independent = p * q;
     const float share = correlation < 0.0f ? 0.0f : correlation > 1.0f ? 1.0f : correlation;
@@ -104,17 +104,17 @@ void goe_conflict_add_intent(const goe_estimator_t *estimator, const goe_intent_
     covariance[GOE_HEIGHT][GOE_HEIGHT] += sd_m * sd_m;
 }
 
-/* The circle about a reference point, as near as the obstacle was in the image behind the estimate, and no nearer later; its covariance
- * is that of goe_quantities_covariance(). */
+/* The outline becomes a circle, as near as the obstacle was in the image that gave the estimate, and no nearer later. Its covariance is
+ * that of goe_quantities_covariance(). */
 static void meet_near_side(const goe_answer_t *answer, goe_model_t model, goe_outline_t *outline) {
     outline->reference.x += goe_bounded(answer->nearer.dx_m);
     outline->reference.z += goe_bounded(answer->nearer.dz_m);
     const float reach_m = goe_bounded(answer->reach_m);
-    const bool turns = model == GOE_MODEL_PRISM && reach_m > 0.0f; /* the width is an earlier one */
+    const bool turns = model == GOE_MODEL_PRISM && reach_m > 0.0f; /* the width is across the first line of sight */
     outline->half = turns ? reach_m : goe_larger(outline->half, reach_m);
 }
 
-/* The obstacle from where the camera is now. */
+/* Moves the outline relative to the camera: straight flight for s. */
 static void fly_on(const goe_course_t *course, float s, goe_outline_t *outline) {
     outline->reference.x -= course->speed_m_s * s * course->ahead.x;
     outline->reference.z -= course->speed_m_s * s * course->ahead.z;
@@ -134,7 +134,7 @@ void goe_conflict_foresee(const goe_estimator_t *estimator, const goe_intent_t *
     goe_approach_course(&estimator->motion, intent, &course);
     fly_on(&course, intent->since_image_s, &outline);
     const float height_m = goe_latest_camera_height(estimator) + course.climb_m_s * intent->since_image_s -
-                           (estimate->height_m - answer.height_bias_m); /* over the top now */
+                           (estimate->height_m - answer.height_bias_m); /* of the camera over the top, now */
     goe_approach_find(&outline, &course, covariance, height_m, &approach);
     hazard->has_clearance = (estimate->valid & GOE_HAS_HEIGHT) != 0u;
     report(&outline, &course, &approach, intent, covariance, hazard);

@@ -4,19 +4,19 @@
 
 #include "hazard/goe_affine.h"
 
-/* The relative intent: the own velocity minus the obstacle's, if this one is valid. */
+/* The intent relative to the obstacle: the own velocity minus the obstacle's, if that is valid. */
 goe_intent_t goe_conflict_relative(const goe_estimator_t *estimator, const goe_intent_t *intent);
 
-/* How long after the latest image the obstacle will be nearest, s, roughly: velocities, the own one and the obstacle's, add their
- * uncertainty up to then. */
+/* Approximate time from the latest image to the closest approach, s. Until then, the uncertainties of the own velocity and of the
+ * obstacle's velocity count. */
 float goe_conflict_ahead_s(const goe_estimator_t *estimator, const goe_intent_t *relative);
 
-/* Adds the error of the intent's own velocity to the place and to the height of the top, both relative to the camera then. */
+/* Adds the error of the intent's own velocity to the position and to the top's height, both relative to the camera at that time. */
 void goe_conflict_add_intent(const goe_estimator_t *estimator, const goe_intent_t *intent, float ahead_s,
                              goe_covariance_t covariance);
 
-/* Sets *hazard, all zero before, for an estimator that has a position and an intent within its ranges. covariance: with the
- * height counted from the altimeter's zero. */
+/* Sets *hazard, which must be all zero, for an estimator with a position and an intent within its ranges. In covariance, the height counts
+ * from the altimeter's zero. */
 void goe_conflict_foresee(const goe_estimator_t *estimator, const goe_intent_t *intent, goe_covariance_t covariance,
                           goe_hazard_t *hazard);
 

@@ -1,6 +1,6 @@
-/* The decision rule: the public calls. SPDX-License-Identifier: MIT
+/* The decision rule: goe_decide(), goe_rule_default(), goe_earliest_tcpa_s(). SPDX-License-Identifier: MIT
  *
- * One rule for the README, the examples and the flight layer. A failure never means "clear". */
+ * The README, the examples and the flight layer use this one rule. A failure never means "clear". */
 #include <math.h>
 #include <string.h>
 
@@ -11,9 +11,9 @@
 #if GOE_WITH_HAZARD
 
 #define SURE_SIGMA 2.0f
-#define SUPERSEDED_S 2.0f     /* of detections without an answer, after which the answer before them clears nothing */
-#define SILENT_S 2.0f         /* without an image, after which nothing is clear: the flight since then is not known */
-#define DISTANCE_MAX_M 1.0e4f /* as that of an intent */
+#define SUPERSEDED_S 2.0f     /* after this time of detections without a new estimate, the old one clears nothing */
+#define SILENT_S 2.0f         /* after this time without an image nothing is clear: the flight since is not known */
+#define DISTANCE_MAX_M 1.0e4f /* the limit of an intent */
 #define TIME_MAX_S 1.0e4f
 #define DOUBT_MAX 100.0f
 #define DRIFT_MAX_M_S 100.0f
@@ -26,8 +26,8 @@ void goe_rule_default(goe_rule_t *rule) {
     }
 }
 
-/* An image measures the inverse of the time, so the bound uses the sigma of that: for a small sigma it is the time less two sigmas, for a
- * sigma of half the time it is half of the time, and not 0. */
+/* An image measures the inverse of the time, so the bound uses the sigma of the inverse. For a small sigma it is the time minus two sigmas;
+ * for a sigma of half the time it is half of the time, and not 0. */
 float goe_earliest_tcpa_s(const goe_hazard_t *hazard) {
     const bool finite =
         hazard && goe_larger_bits(goe_magnitude(hazard->tcpa_s), goe_magnitude(hazard->tcpa_sd_s)) < GOE_INFINITY_BITS;
@@ -42,8 +42,8 @@ static bool is_rule(const goe_rule_t *rule) {
            is_between(rule->suspect_factor, 1.0f, DOUBT_MAX) && is_between(rule->stale_growth_m_s, 0.0f, DRIFT_MAX_M_S);
 }
 
-/* An estimate that is suspect, or that no image has renewed for a while, may be wrong towards the obstacle: both distances grow. An
- * intent that is not finite stays so, and is refused. */
+/* Enlarges both distances: an estimate that is suspect, or was not updated for a while, may be wrong toward the obstacle. An intent that is
+ * not finite stays so, and is refused. */
 static void widen(const goe_estimator_t *estimator, const goe_rule_t *rule, goe_intent_t *intent) {
     const goe_estimate_t *estimate = &estimator->estimate;
     const bool suspect = goe_is_set(&estimate->suspect);
@@ -59,7 +59,7 @@ static void widen(const goe_estimator_t *estimator, const goe_rule_t *rule, goe_
     }
 }
 
-/* Wide sigmas, too, make the probability small. So CLEAR requires that one of the two distances is kept at one sigma. */
+/* Wide sigmas also make the probability small. CLEAR therefore requires that one of the two distances is kept at one sigma. */
 static bool is_outside(const goe_hazard_t *hazard, const goe_intent_t *intent) {
     const bool aside = hazard->dcpa_m - hazard->dcpa_sd_m >= intent->margin_m;
     const bool above = hazard->has_clearance && hazard->clearance_m - hazard->clearance_sd_m >= intent->clearance_m;
@@ -67,14 +67,14 @@ static bool is_outside(const goe_hazard_t *hazard, const goe_intent_t *intent) {
 }
 
 #if GOE_WITH_FILTER
-/* Whether detections came for a while without an answer: the old one may be of something else. Silence is another matter. */
+/* Whether detections came for a while without a new estimate: the old one may belong to another object. Their absence does not count. */
 static bool is_superseded(const goe_estimator_t *estimator) {
     return estimator->filter.answer.outdated != 0u && !goe_is_set(&estimator->estimate.fresh) &&
            goe_latest_since_s(estimator, estimator->motion.time_us) > SUPERSEDED_S;
 }
 
-/* Whether the range is in doubt: no image has renewed it, it is that of a class, which may be wrong, and no image has tested it yet, or
- * the latest image shows the obstacle larger than it can be there. */
+/* Whether the range is in doubt: no image has updated it; or it is that of a class, which may be wrong, and no image has tested it yet; or
+ * the latest image shows the obstacle larger than it can be at this range. */
 static bool is_doubted(const goe_estimator_t *estimator) {
     const goe_answer_t *answer = &estimator->filter.answer;
     return goe_uses_filter(estimator) && (is_superseded(estimator) || answer->by_kind != 0u || answer->outgrown != 0u);
@@ -86,12 +86,12 @@ static bool is_doubted(const goe_estimator_t *estimator) {
 }
 #endif
 
-/* Whether the position is known to be wrong: the obstacle moves, and no velocity of it is estimated. */
+/* Whether the position is known to be wrong: the obstacle moves, and its velocity is not estimated. */
 static bool is_misplaced(const goe_estimate_t *estimate) {
     return estimate->reason == GOE_REASON_MOVES && (estimate->valid & GOE_HAS_VELOCITY) == 0u;
 }
 
-/* Between the two bounds of the time, and between a small probability and a distance that is kept, too little is known to clear. */
+/* Too little is known for CLEAR between the two bounds of the time, or if the probability is small but neither distance is kept. */
 static goe_decision_t decision_of(const goe_hazard_t *met, const goe_intent_t *intent, const goe_rule_t *rule) {
     if (met->conflict_probability < rule->conflict_probability_max) {
         return is_outside(met, intent) ? GOE_DECISION_CLEAR : GOE_DECISION_UNKNOWN;
@@ -124,8 +124,8 @@ static GOE_NOINLINE goe_decision_t judge(const goe_estimator_t *estimator, const
     return decision == GOE_DECISION_CLEAR && !clears ? GOE_DECISION_UNKNOWN : decision;
 }
 
-/* Whether the aircraft is too near now, judged as if it were at rest relative to the obstacle. At a creeping speed the closest approach is
- * a long time ahead even nearby. At a higher speed it is not: from within the margin it comes within the rule's time. */
+/* Whether the aircraft is too near now, judged as if it were at rest relative to the obstacle. At a creeping speed, the closest approach is
+ * far in the future even if it is near. At a higher speed it is not: within the margin, it comes within the rule's time. */
 static GOE_NOINLINE bool is_too_near(const goe_estimator_t *estimator, const goe_intent_t *intent,
                                      const goe_rule_t *rule, goe_hazard_t *met) {
     const goe_estimate_t *estimate = &estimator->estimate;
@@ -145,8 +145,8 @@ static GOE_NOINLINE bool is_too_near(const goe_estimator_t *estimator, const goe
     return true;
 }
 
-/* The caller may not know that images are refused, and since when. So the rule also judges the time of the newest of them. That time may
- * be wrong: it can only make the decision more severe. */
+/* The caller may not know that images are refused, and since when. The rule therefore also judges the time of the newest refused image.
+ * That time may be wrong: it can only make the decision more severe. */
 static goe_decision_t judge_refused(const goe_estimator_t *estimator, const goe_intent_t *intent,
                                     const goe_rule_t *rule, goe_decision_t now, goe_hazard_t *met) {
     const float since_s = estimator->estimate.age_s;

@@ -1,4 +1,4 @@
-/* What a planned flight will meet: the public call. SPDX-License-Identifier: MIT */
+/* goe_hazard(): the encounter of a planned flight with the obstacle. SPDX-License-Identifier: MIT */
 #include <string.h>
 
 #include "goe_guard.h"
@@ -16,7 +16,7 @@
 GOE_STATIC_ASSERT(offsetof(goe_hazard_t, conflict_probability) + sizeof(float) == offsetof(goe_hazard_t, has_clearance),
                   the_numbers_of_a_hazard_come_first);
 
-/* GOE_OK, or why the intent is refused. */
+/* Returns GOE_OK, or why the intent is refused. */
 static goe_status_t check_intent(const goe_intent_t *intent) {
     const uint32_t velocity = goe_largest_of_three(intent->velocity_ned_m_s);
     const uint32_t margin = goe_magnitude(intent->margin_m);

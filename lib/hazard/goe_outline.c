@@ -1,4 +1,4 @@
-/* The outline of an estimate: how far it reaches, where a course enters and leaves it. SPDX-License-Identifier: MIT */
+/* The outline, box or disc: how far it reaches, and where a course enters and leaves it. SPDX-License-Identifier: MIT */
 #include "hazard/goe_outline.h"
 
 #include <math.h>
@@ -9,8 +9,8 @@
 
 #if GOE_WITH_HAZARD
 
-#define PARALLEL 1.0e-5f    /* sine of an angle between two directions that counts as none */
-#define CHORD_MIN_M 1.0e-3f /* half chord that a derivative divides by */
+#define PARALLEL 1.0e-5f    /* sine of the angle between two directions that count as parallel */
+#define CHORD_MIN_M 1.0e-3f /* least half chord by which a derivative is divided */
 #define DISTANCE_MIN_M 1.0e-6f
 #define NUMBER_MAX 1.0e9f
 
@@ -44,7 +44,7 @@ void goe_outline_corner_along(const goe_outline_t *o, const goe_xz_t *m, float s
     at->by[GOE_HEIGHT] = 0.0f;
 }
 
-/* m k at the corner of a box on that side across and along its axes; at the center of a disc. */
+/* m k at the corner k of a box on the side of the signs of across and along; for a disc, k is the center. */
 GOE_NOINLINE static void corner_on(const goe_outline_t *o, const goe_xz_t *m, float across, float along,
                                    goe_affine_t *at) {
     const float side = across < 0.0f ? -0.5f : 0.5f;
@@ -74,8 +74,8 @@ void goe_outline_along(const goe_outline_t *o, const goe_xz_t *ahead, const goe_
 
 /* --------------------------------------------------------------------------------------------------------- crossing -- */
 
-/* Along the course into (way -1) or out of (way 1) a disc that it crosses. sigma_m: of how deep. Near the rim the chord
- * grows with the root of the depth, and its derivative is taken a sigma inside. */
+/* Distance along the course to the entry into (way -1) or the exit from (way 1) a disc that it crosses. sigma_m: sigma of the depth of the
+ * crossing. Near the rim the chord grows with the root of the depth, so its derivative is taken at least half a sigma inside. */
 static void chord_end(const goe_outline_t *o, const goe_course_t *course, float way, float sigma_m, goe_affine_t *end) {
     const goe_xz_t *right = &course->side[GOE_RIGHT];
     const float off = goe_xz_dot(*right, o->reference);
@@ -94,7 +94,7 @@ static goe_xz_t normal_of(const goe_outline_t *o, int face) {
     return (face & 1) ? goe_xz_negative(axis) : axis;
 }
 
-/* Along the course to the line of the face with the outward normal m; slope = m u, not 0. */
+/* Distance along the course to the line of the face with the outward normal m; slope = m u, not 0. */
 static void face_line(const goe_outline_t *o, const goe_course_t *course, const goe_xz_t *m, float slope,
                       goe_affine_t *line) {
     goe_outline_reach(o, m, line);
@@ -104,7 +104,7 @@ static void face_line(const goe_outline_t *o, const goe_course_t *course, const 
     line->by[GOE_ORIENTATION] = goe_xz_dot(goe_outline_right_of(*m), to_reference) * GOE_RAD_PER_DEG / slope;
 }
 
-/* The same for a box: the last of the faces that it enters by, the first of those that it leaves by. */
+/* The same for a box: it is entered by the last of the faces that are crossed inward, and left by the first of the others. */
 static void face_end(const goe_outline_t *o, const goe_course_t *course, float way, goe_affine_t *end) {
     bool any = false;
     memset(end, 0, sizeof *end);
@@ -132,7 +132,7 @@ void goe_outline_end(const goe_outline_t *o, const goe_course_t *course, float w
 
 /* -------------------------------------------------------------------------------------------------- its position --- */
 
-/* The way out of a box that the camera is in, other than to the sides of the course. */
+/* The way out of a box that contains the camera, by the nearest face that does not point against the course. */
 static goe_xz_t way_out_of_box(const goe_outline_t *o, const goe_course_t *course) {
     goe_affine_t depth;
     goe_xz_t best = course->ahead;
@@ -148,7 +148,7 @@ static goe_xz_t way_out_of_box(const goe_outline_t *o, const goe_course_t *cours
     return best;
 }
 
-/* From the outline to the camera now, or out of it by the shortest way. */
+/* From the outline to the camera now; inside the outline, the shortest way out. */
 static goe_xz_t way_from_box(const goe_outline_t *o, const goe_course_t *course) {
     const float across = -goe_xz_dot(o->width_axis, o->reference);
     const float along = -goe_xz_dot(o->length_axis, o->reference);

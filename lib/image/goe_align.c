@@ -1,4 +1,4 @@
-/* Alignment: the ego-motion transformation of Section 2. SPDX-License-Identifier: MIT */
+/* Rotation of image points into T: the ego-motion transformation of Section 2. SPDX-License-Identifier: MIT */
 #include "image/goe_align.h"
 
 #include <math.h>
@@ -8,9 +8,9 @@
 #include "image/goe_sides.h"
 #include "maths/goe_scalar.h"
 
-#define FORWARD_MIN 0.05f /* third component of a unit ray in T: farther aside than 87 degrees nothing can be aligned */
+#define FORWARD_MIN 0.05f /* least third component of a unit ray in T: beyond 87 degrees nothing can be aligned */
 
-/* The points of an image that has a box. */
+/* For an image with a box: its sides replace the points left, right and top. */
 static void replace_points(const goe_camera_t *camera, goe_view_t *view, goe_pixel_t pixels[GOE_FEATURES],
                            goe_faults_t *faults) {
     memcpy(pixels, goe_image_pixels(view->image), GOE_FEATURES * sizeof pixels[0]);
@@ -19,7 +19,7 @@ static void replace_points(const goe_camera_t *camera, goe_view_t *view, goe_pix
     goe_sides_points(camera, view, &pixels[GOE_POINT_LEFT], &pixels[GOE_POINT_RIGHT], &pixels[GOE_POINT_TOP]);
 }
 
-/* The rotation and the camera are read once: the compiler could not know that writing the points leaves them alone. */
+/* Rotation and camera are copied first: the compiler does not know that writing the points leaves them unchanged. */
 void goe_align_points(const goe_camera_t *camera, goe_view_t *view, goe_faults_t *faults) {
     goe_pixel_t replaced[GOE_FEATURES];
     const goe_pixel_t *pixels = goe_image_pixels(view->image);
@@ -48,7 +48,7 @@ void goe_align_points(const goe_camera_t *camera, goe_view_t *view, goe_faults_t
         float x = (pixel->u_px - cx_px) / fx_px;
         float y = (pixel->v_px - cy_px) / fy_px;
         if (distorts) {
-            float ray[2] = {x, y}; /* its own: x and y stay in registers */
+            float ray[2] = {x, y}; /* its own array: x and y stay in registers */
             if (!goe_camera_undistort(camera, &ray[0], &ray[1])) {
                 point->usable = false;
                 goe_fault_count(faults, GOE_LENS_FAILED);

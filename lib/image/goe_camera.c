@@ -1,31 +1,31 @@
-/* Camera. SPDX-License-Identifier: MIT */
+/* The camera's mounting and its lens model. SPDX-License-Identifier: MIT */
 #include "image/goe_camera.h"
 
 #include "maths/goe_rotation.h"
 #include "maths/goe_scalar.h"
 
 #define UNDISTORT_ROUNDS 20
-#define UNDISTORT_DONE 1.0e-7f   /* of the focal length; smaller steps are rounding */
-#define UNDISTORT_FAILED 1.0e-4f /* a last step larger than this did not converge */
-#define RAY_MAX 20.0f            /* 87 degrees off the axis: farther out no lens model means anything */
+#define UNDISTORT_DONE 1.0e-7f   /* focal lengths; smaller steps are rounding */
+#define UNDISTORT_FAILED 1.0e-4f /* focal lengths; with a larger last step it did not converge */
+#define RAY_MAX 20.0f            /* 87 degrees off the axis: farther out no lens model is valid */
 #define RADIAL_MIN 0.05f
 
 void goe_camera_mounting(const goe_camera_t *camera, float camera_to_body[9]) {
     float turn[9];
     goe_rotation_from_euler(camera->mount_yaw_deg, camera->mount_pitch_deg, camera->mount_roll_deg, turn);
-    for (int row = 0; row < 3; row++) { /* un-mounted: camera x, y, z = body y, z, x */
+    for (int row = 0; row < 3; row++) { /* without mounting angles: camera x, y, z = body y, z, x */
         camera_to_body[3 * row] = turn[3 * row + 1];
         camera_to_body[3 * row + 1] = turn[3 * row + 2];
         camera_to_body[3 * row + 2] = turn[3 * row];
     }
 }
 
-/* Brown-Conrady. */
+/* Brown-Conrady model. */
 goe_distorted_t goe_camera_distort(const goe_camera_t *camera, float x, float y) {
     const float r2 = x * x + y * y;
     const float radial = 1.0f + r2 * (camera->k1 + r2 * (camera->k2 + r2 * camera->k3));
     const float slope =
-        2.0f * (camera->k1 + r2 * (2.0f * camera->k2 + 3.0f * r2 * camera->k3)); /* of radial by r2 / 2 */
+        2.0f * (camera->k1 + r2 * (2.0f * camera->k2 + 3.0f * r2 * camera->k3)); /* derivative of radial by r2 / 2 */
     const float p1 = camera->p1;
     const float p2 = camera->p2;
     goe_distorted_t to;
@@ -37,7 +37,7 @@ goe_distorted_t goe_camera_distort(const goe_camera_t *camera, float x, float y)
     return to;
 }
 
-/* Brown-Conrady, inverted by the fixed-point iteration x <- (x_distorted - tangential(x)) / radial(x). */
+/* Brown-Conrady model, inverted by the fixed-point iteration x <- (x_distorted - tangential(x)) / radial(x). */
 bool goe_camera_undistort(const goe_camera_t *camera, float *ray_x, float *ray_y) {
     const float distorted_x = *ray_x;
     const float distorted_y = *ray_y;

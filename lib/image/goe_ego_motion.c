@@ -1,4 +1,4 @@
-/* Ego motion, Section 2 of the paper. SPDX-License-Identifier: MIT */
+/* Position, height and rotation of the camera in T, from the poses; Section 2. SPDX-License-Identifier: MIT */
 #include "image/goe_ego_motion.h"
 
 #include <math.h>
@@ -9,21 +9,21 @@
 #include "maths/goe_scalar.h"
 #include "maths/goe_time.h"
 
-#define PACE_SPAN_S 0.09f        /* of the poses that give rate and velocity: nearer ones give their noise */
-#define PACE_SPAN_MIN_S 0.045f   /* ... since the latest mark */
-#define PACE_SPAN_MAX_US 600000u /* farther ones give a mean */
+#define PACE_SPAN_S 0.09f        /* span of the poses that give rate and velocity: a shorter one gives their noise */
+#define PACE_SPAN_MIN_S 0.045f   /* least time since the latest mark that gives them */
+#define PACE_SPAN_MAX_US 600000u /* longest span: a longer one gives only a mean */
 #define PACE_SPAN_MAX_S ((float)PACE_SPAN_MAX_US * GOE_S_PER_US)
-#define PACE_COSINE_MIN 0.9f   /* of half the angle between them: more is no flight, but a jump */
-#define LEVEL_NOSE_MIN 1.0e-3f /* horizontal part of the nose's unit vector below which it has no heading */
-#define LEAP_MIN_M 8.0f        /* beyond the predicted place: less is the error of many positions */
-#define LEAP_MIN_S 0.1f        /* ... or of a time */
-#define LEAP_MIN_M_S2 40.0f    /* ... or an aircraft's acceleration */
-#define LEAPS_MAX 3            /* in a row: of more, the velocity is wrong */
-#define STEADY_SHARE 0.25f     /* of a leap's limit: an image nearer to the predicted place confirms the velocity */
-#define STEADY_IMAGES 8 /* in a row that do so, before any leaps: positions that are held from fix to fix do not */
-#define MOVING_M_S 1.0f /* least velocity that predicts a place: positions that are held have none */
+#define PACE_COSINE_MIN 0.9f   /* cosine of half the rotation in a span: more is a jump, not flight */
+#define LEVEL_NOSE_MIN 1.0e-3f /* least horizontal part of the nose's unit vector that gives a heading */
+#define LEAP_MIN_M 8.0f        /* least distance of a jump from the predicted place: many positions err by less */
+#define LEAP_MIN_S 0.1f        /* added, times the speed: an error of the time stamp */
+#define LEAP_MIN_M_S2 40.0f    /* added, times the squared time: an aircraft's acceleration */
+#define LEAPS_MAX 3            /* jumps in a row; after more, the velocity is wrong */
+#define STEADY_SHARE 0.25f     /* of that distance: an image nearer to the predicted place confirms the velocity */
+#define STEADY_IMAGES 8        /* in a row that confirm it, before any jump: positions held from fix to fix do not */
+#define MOVING_M_S 1.0f        /* least velocity that predicts a place: held positions have none */
 
-/* T's Z axis in (north, east): the set heading, or where the nose points. */
+/* Sets T's Z axis in (north, east): the configured heading, or the direction of the nose. */
 static void fix_heading(goe_motion_t *motion, const goe_settings_t *settings, const float body_to_ned[9]) {
     const float north = body_to_ned[0];
     const float east = body_to_ned[3];
@@ -61,7 +61,7 @@ static void camera_position(const goe_camera_t *camera, const goe_pose_t *pose, 
     position[2] = pose->position_ned_m[2] + arm[2];
 }
 
-/* An image that shows a feature fixes T and its origin; until one comes every image does, for as long. */
+/* Fixes T and its origin. Every image does this, up to the first one that shows a feature. */
 static void begin_track(goe_motion_t *motion, const goe_settings_t *settings, const float body_to_ned[9],
                         const float position[3]) {
     fix_heading(motion, settings, body_to_ned);
@@ -70,9 +70,9 @@ static void begin_track(goe_motion_t *motion, const goe_settings_t *settings, co
     motion->origin_ne_m[1] = position[1];
 }
 
-/* jump_m: known jump of the autopilot's down, 0 if there is none. The given height and down place the ground. If the ground
- * stays, the height jumped with down, and the jump is taken off it from now on. If the ground jumps with down, the height did
- * not jump: it is a range finder's. The nearer of both counts. */
+/* jump_m: known jump of the autopilot's down, 0 if there is none. The given height and down place the ground. If the ground stays, the
+ * height jumped with down, and from now on the jump is removed from it. If the ground jumps with down, the height did not jump, because it
+ * is a range finder's. The nearer of the two applies. */
 static void follow_height(goe_motion_t *motion, const goe_pose_t *pose, float camera_down_m, float jump_m) {
     const float ground_m = pose->height_m + camera_down_m;
     const float step_m = ground_m - motion->ground_m;
@@ -83,8 +83,8 @@ static void follow_height(goe_motion_t *motion, const goe_pose_t *pose, float ca
     motion->height_m = pose->height_m + motion->height_jump_m;
 }
 
-/* (NED -> T) (body -> NED) (camera -> body), column by column. Rows of NED -> T: X = (-sin, cos, 0), Y = (0, 0, 1),
- * Z = (cos, sin, 0): level, whatever the glide slope. */
+/* Computes (NED -> T) (body -> NED) (camera -> body), column by column. Rows of NED -> T: X = (-sin, cos, 0), Y = (0, 0, 1), Z = (cos, sin,
+ * 0). T is level, whatever the glide slope. */
 static void turn_into_trajectory(const goe_motion_t *motion, const float body_to_ned[9], goe_view_t *view) {
     const float *b = body_to_ned;
     float *turned = view->camera_to_trajectory;
@@ -101,7 +101,7 @@ static void turn_into_trajectory(const goe_motion_t *motion, const float body_to
     }
 }
 
-/* The camera's place by the pose, T axes. */
+/* Sets the camera's position, T axes, from the pose. */
 static void place_camera(goe_motion_t *motion, const float position[3]) {
     const float north = position[0] - motion->origin_ne_m[0];
     const float east = position[1] - motion->origin_ne_m[1];
@@ -110,7 +110,7 @@ static void place_camera(goe_motion_t *motion, const float position[3]) {
 }
 
 #if GOE_AUGMENTED
-/* An image that confirms the velocity counts, another one ends the row. */
+/* Counts images in a row that confirm the velocity; another image ends the row. */
 static void count_steady(goe_motion_t *motion, bool confirmed) {
     motion->leaps = 0;
     if (!confirmed) {
@@ -120,8 +120,7 @@ static void count_steady(goe_motion_t *motion, bool confirmed) {
     }
 }
 
-/* A jump that no reset announced, and that no aircraft flies, is not motion. The jump is the way from the predicted place to the given
- * one. */
+/* Removes a jump that no reset announced, and that no aircraft can fly. The jump is the way from the predicted place to the given one. */
 static bool undo_leap(goe_motion_t *motion, const float before_m[2], float since_s) {
     const float *v = motion->velocity_m_s;
     const float x_m = before_m[0] + v[0] * since_s;
@@ -145,7 +144,7 @@ static bool undo_leap(goe_motion_t *motion, const float before_m[2], float since
     return true;
 }
 
-/* now = turn mark, in NED: the vector part of `turn` over its scalar part, which is half the angle. */
+/* The rotation `turn` from mark to now, in NED (now = turn mark). half_ned: vector part over scalar part, which is half the angle. */
 static bool half_turn(const float now[4], const float mark[4], float half_ned[3]) {
     const float scalar = now[0] * mark[0] + now[1] * mark[1] + now[2] * mark[2] + now[3] * mark[3];
     const float north = now[1] * mark[0] - now[0] * mark[1] + now[3] * mark[2] - now[2] * mark[3];
@@ -174,11 +173,11 @@ static void set_mark(goe_motion_t *motion, const float attitude[4], const float 
     motion->mark_us = motion->time_us;
 }
 
-/* The motion by the poses since the mark; body_m: of the vehicle, T axes, as the arms of two cameras differ. A jump is not in
- * them. */
+/* Rate and velocity from the poses since the mark. body_m: position of the vehicle, T axes, because two cameras have different arms. It
+ * contains no jump. */
 static void find_pace(goe_motion_t *motion, const float attitude[4], const float body_m[2]) {
     float half[3];
-    const bool first = !motion->detected; /* no image before fixed T */
+    const bool first = !motion->detected; /* no earlier image fixed T */
     const float since_s = goe_time_between_s(motion->mark_us, motion->time_us, PACE_SPAN_MAX_US);
     if (!first && since_s < PACE_SPAN_MIN_S) {
         return;
@@ -198,14 +197,14 @@ static void find_pace(goe_motion_t *motion, const float attitude[4], const float
     }
 }
 
-/* For the filter: frees the own motion of a jump that no reset announced, and follows its rate and velocity. before_m, before_us: camera
- * and time of the image before. Returns whether there was a jump. */
+/* For the filter: removes a jump that no reset announced from the own motion, and updates rate and velocity. before_m, before_us: camera
+ * and time of the previous image. Returns whether there was a jump. */
 static GOE_NOINLINE bool follow_pace(goe_motion_t *motion, const goe_pose_t *pose, const float position[3],
                                      const float before_m[2], int64_t before_us) {
     const float arm_n = position[0] - pose->position_ned_m[0];
     const float arm_e = position[1] - pose->position_ned_m[1];
     const bool leapt = undo_leap(motion, before_m, goe_time_between_s(before_us, motion->time_us, PACE_SPAN_MAX_US));
-    if (motion->mark_us == before_us) { /* a span ended there: its rate has no part of this image's own error */
+    if (motion->mark_us == before_us) { /* a span ended there: its rate does not contain this image's own error */
         memcpy(motion->rate_before_rad_s, motion->rate_rad_s, sizeof motion->rate_rad_s);
     }
     const float body_m[2] = {motion->dx_m - (motion->heading_cos * arm_e - motion->heading_sin * arm_n),
@@ -215,7 +214,7 @@ static GOE_NOINLINE bool follow_pace(goe_motion_t *motion, const goe_pose_t *pos
 }
 #endif
 
-/* Fixes T and its origin, or moves the origin along with a known jump. */
+/* Fixes T and its origin; later, moves the origin along with a known jump. */
 static void place_origin(goe_motion_t *motion, const goe_settings_t *settings, const float body_to_ned[9],
                          const float position[3], const float jump_m[3]) {
     if (!motion->detected) {

@@ -1,24 +1,24 @@
-/* Own motion: from the vehicle's pose to the trajectory frame T. SPDX-License-Identifier: MIT */
+/* Motion of the camera in the trajectory frame T, from the vehicle's poses. SPDX-License-Identifier: MIT */
 #ifndef GOE_EGO_MOTION_H
 #define GOE_EGO_MOTION_H
 
 #include "image/goe_view.h"
 
-/* Takes the pose of view->image: fixes T and its origin up to the first image that shows a feature, compensates a reset of known
- * delta, and sets dx_m, dz_m (displacement of the camera since that image, T axes). view->camera and its rotation must be set;
- * view->camera_to_trajectory is set: the rotation of this image's rays into T. Returns whether it also compensated a jump that
- * no reset announced. */
+/* Takes the pose of view->image. Fixes T and its origin, up to the first image that shows a feature; compensates a reset of known size;
+ * sets dx_m, dz_m (displacement of the camera since that image, T axes). view->camera and view->camera_to_body must be set. Sets
+ * view->camera_to_trajectory, the rotation of this image's rays into T. Returns whether it also compensated a jump that no reset
+ * announced. */
 bool goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe_view_t *view);
 
-/* Of T's Z axis, clockwise from north, -180 to 180 degrees; 0 before the track's first image. */
+/* Heading of T's Z axis, clockwise from north, -180 to 180 degrees; 0 before the track's first image. */
 float goe_motion_heading_deg(const goe_motion_t *motion);
 
-/* Whether the autopilot's filter jumped since the image before. */
+/* Whether the autopilot's filter jumped since the previous image. */
 static inline bool goe_motion_reset(const goe_motion_t *motion, const goe_pose_t *pose) {
     return motion->time_us != GOE_TIME_UNKNOWN && pose->reset_count != motion->reset_count;
 }
 
-/* (X, Z) in T, relative to T's origin, to north and east. */
+/* Converts (X, Z) in T, relative to T's origin, to north and east. */
 static inline void goe_motion_place(const goe_motion_t *motion, float x_m, float z_m, float *north_m, float *east_m) {
     const float c = motion->heading_cos;
     const float s = motion->heading_sin;
@@ -26,13 +26,13 @@ static inline void goe_motion_place(const goe_motion_t *motion, float x_m, float
     *east_m = motion->origin_ne_m[1] + (s * z_m + c * x_m);
 }
 
-/* A direction (X, Z) in T to (north, east). */
+/* Converts a direction (X, Z) in T to (north, east). */
 static inline void goe_motion_turn(const goe_motion_t *motion, const float axis[2], float axis_ne[2]) {
     axis_ne[0] = motion->heading_cos * axis[1] - motion->heading_sin * axis[0];
     axis_ne[1] = motion->heading_sin * axis[1] + motion->heading_cos * axis[0];
 }
 
-/* The estimate's reference point relative to the camera at the latest image, if it is known. */
+/* Sets the estimate's reference point relative to the camera at the latest image, if the position is known. */
 static inline void goe_motion_relate(const goe_motion_t *motion, goe_estimate_t *estimate) {
     if ((estimate->valid & GOE_HAS_POSITION) != 0u) {
         estimate->x_m = estimate->x0_m - motion->dx_m;

@@ -1,4 +1,4 @@
-/* Counters of faults. SPDX-License-Identifier: MIT */
+/* Counters of the faults in images. SPDX-License-Identifier: MIT */
 #include "image/goe_fault.h"
 
 void goe_count_cause(uint32_t fault_counts[GOE_FAULT_COUNTS], goe_status_t fault) {

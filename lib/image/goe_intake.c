@@ -1,4 +1,4 @@
-/* Intake. SPDX-License-Identifier: MIT */
+/* Input checks: whether each number of an image is finite and in range. SPDX-License-Identifier: MIT */
 #include "image/goe_intake.h"
 
 #include "image/goe_ego_motion.h"
@@ -8,12 +8,12 @@
 #define POSITION_MAX_M 1.0e6f
 #define HEIGHT_MAX_M 1.0e5f
 #define PIXEL_MAX_PX 1.0e5f
-#define ATTITUDE_MAX 2.0f /* per element: keeps the squares finite */
+#define ATTITUDE_MAX 2.0f /* of each element: keeps the squares finite */
 #define NOISE_MAX_DEG 30.0f
 #define NOISE_MAX_M 1.0e3f
 #define NOISE_MAX_PX 100.0f
 #define SIZE_MAX_M 1.0e3f
-#define SIZE_SHARE_MIN 0.01f      /* a class is known no better */
+#define SIZE_SHARE_MIN 0.01f      /* least sigma of a class's size, over the size */
 #define NORM2_MIN (0.99f * 0.99f) /* the norm may be off by 1 % */
 #define NORM2_MAX (1.01f * 1.01f)
 
@@ -42,7 +42,7 @@ static uint32_t largest_side(const goe_box_t *box) {
     return with_side(largest, box, GOE_SIDE_BOTTOM, box->bottom_px);
 }
 
-/* Not finite outranks out of range, which outranks a bad attitude. */
+/* Not finite has priority over out of range, and this over a bad attitude. */
 static goe_status_t check_numbers(const goe_image_t *image, uint32_t attitude, bool reset) {
     const goe_pose_t *pose = &image->pose;
     const uint32_t height = goe_magnitude(pose->height_m);

@@ -1,20 +1,20 @@
-/* Sides of a box. SPDX-License-Identifier: MIT */
+/* Sides of a bounding box: which are measured, and the points that they give. SPDX-License-Identifier: MIT */
 #include "image/goe_sides.h"
 
 #include <math.h>
 
 #include "maths/goe_scalar.h"
 
-#define UPRIGHT 0.01f      /* sine of a lean that needs no turning back */
-#define COSINE_MIN 0.5f    /* of twice the lean: beyond 30 degrees width and height of a box hardly separate */
-#define DIRECTION_MIN 0.1f /* length of the vertical in the image, focal lengths: from straight above it has none */
+#define UPRIGHT 0.01f      /* sine of a lean that needs no correction */
+#define COSINE_MIN 0.5f    /* cosine of twice the lean: beyond 30 degrees a box hardly separates width and height */
+#define DIRECTION_MIN 0.1f /* least length of a vertical in the image, focal lengths: from above it has no direction */
 #define CUT_SIGMAS 3.0f    /* of a side's slow error, by which a detector may place a cut side inside the border */
 
 GOE_STATIC_ASSERT(GOE_SIDE_LEFT == 1u << GOE_BOX_LEFT && GOE_SIDE_TOP == 1u << GOE_BOX_TOP &&
                       GOE_SIDE_RIGHT == 1u << GOE_BOX_RIGHT && GOE_SIDE_BOTTOM == 1u << GOE_BOX_BOTTOM,
                   every_side_has_its_bit);
 
-/* Of the image's width. 0: nothing is near a border that is not known. */
+/* Whether a side is near the border; distances are in image widths. Nothing is near a border that is not known (size 0). */
 static bool is_near(float px, float size_px, float distance_px) {
     return size_px > 0.0f && (px < distance_px || px > size_px - 1.0f - distance_px);
 }
@@ -29,8 +29,8 @@ static unsigned near_border(const goe_camera_t *camera, const goe_sides_t *sides
     return set & sides->usable;
 }
 
-/* Top and bottom that the border may cut: a detector draws a cut side up to some sigma inside it. The slow error is that of the box which
- * ends at the border. Left and right are judged as a whole box, by `cut`. */
+/* Returns top and bottom if the border may cut them: a detector draws a cut side up to some sigma inside it. The slow error is that of the
+ * box that ends at the border. Left and right are judged for the whole box, by `cut`. */
 static unsigned may_be_cut(const goe_camera_t *camera, const goe_sides_t *sides, float noise_rel) {
     const float share = CUT_SIGMAS * noise_rel;
     const float top_px = sides->px[GOE_BOX_TOP];
@@ -43,7 +43,7 @@ static unsigned may_be_cut(const goe_camera_t *camera, const goe_sides_t *sides,
            (last_px - bottom_px < share * (last_px - top_px) ? GOE_SIDE_BOTTOM : 0u);
 }
 
-/* A side that is not measured may hold anything. The visible part ends at the image's border. */
+/* A side that is not measured may have any value: the visible part ends at the image's border. */
 static void end_at_border(const goe_camera_t *camera, goe_sides_t *sides) {
     if (!goe_sides_see(sides, GOE_SIDE_LEFT)) {
         sides->px[GOE_BOX_LEFT] = 0.0f;
@@ -70,7 +70,7 @@ void goe_sides_read(const goe_camera_t *camera, goe_view_t *view, goe_faults_t *
     const unsigned doubtful = may_be_cut(camera, sides, view->box_noise_rel);
     sides->usable = (uint8_t)(sides->usable & ~near_border(camera, sides, camera->border_rel));
     sides->doubtful = (uint8_t)(sides->usable & doubtful);
-    if (!swapped && (sides->usable & (sides->usable - 1u)) == 0u) { /* none or one */
+    if (!swapped && (sides->usable & (sides->usable - 1u)) == 0u) { /* at most one usable side */
         goe_fault_count(faults, GOE_BOX_INCOMPLETE);
     }
     end_at_border(camera, sides);
@@ -80,7 +80,7 @@ void goe_sides_read(const goe_camera_t *camera, goe_view_t *view, goe_faults_t *
 
 /* --------------------------------------------------------------------------------------------------------- points -- */
 
-/* The box about its middle (x, y), focal lengths; unit vector down the obstacle's verticals there. */
+/* The box about its middle (x, y), focal lengths, and the unit vector down the obstacle's verticals there. */
 typedef struct {
     float x, y, half_width, half_height, down_x, down_y;
 } box_frame_t;
@@ -98,7 +98,7 @@ static bool find_down(const goe_view_t *view, box_frame_t *frame) {
     return true;
 }
 
-/* An upright box about a leaning rectangle: half width = w c + h s, half height = w s + h c. */
+/* Inverts the upright box around a leaning rectangle: half width = w c + h s, half height = w s + h c. */
 static bool turn_back(box_frame_t *frame, bool has_height) {
     const float c = goe_absolute(frame->down_y);
     const float s = goe_absolute(frame->down_x);

@@ -1,10 +1,10 @@
-/* One image, aligned: what both methods see of it. SPDX-License-Identifier: MIT */
+/* The aligned view of one image: the common input of both methods. SPDX-License-Identifier: MIT */
 #ifndef GOE_VIEW_H
 #define GOE_VIEW_H
 
 #include "goe.h"
 
-/* The features of an image, in its order. */
+/* The features of an image, in the order of goe_image_t. */
 typedef enum {
     GOE_POINT_LEFT,
     GOE_POINT_RIGHT,
@@ -17,8 +17,8 @@ typedef enum {
 
 GOE_STATIC_ASSERT(GOE_POINT_COUNT == GOE_FEATURES, every_feature_has_a_name);
 
-/* An aligned image point: the image of a camera that looks along T's Z axis, X/Z and Y/Z of the ray in T, in units of the
- * focal length. x and y are valid only if usable. */
+/* An aligned image point: X/Z and Y/Z of the ray in T, in units of the focal length, as in a camera that looks along T's Z axis. x and y
+ * are valid only if usable. */
 typedef struct {
     float x, y;
     bool usable; /* visible, ahead, and within the lens model */
@@ -28,9 +28,9 @@ typedef struct {
 typedef enum { GOE_BOX_LEFT, GOE_BOX_TOP, GOE_BOX_RIGHT, GOE_BOX_BOTTOM, GOE_BOX_SIDES } goe_box_side_t;
 
 typedef struct {
-    float px[GOE_BOX_SIDES]; /* raw image */
-    uint8_t usable;          /* GOE_SIDE_... */
-    uint8_t doubtful;        /* of these, the level ones that the image's border may cut */
+    float px[GOE_BOX_SIDES]; /* in the raw image */
+    uint8_t usable;          /* mask of GOE_SIDE_... */
+    uint8_t doubtful;        /* mask: usable top and bottom that the image's border may cut */
     bool cut;                /* left or right is missing, or near the image's border */
 } goe_sides_t;
 
@@ -39,13 +39,13 @@ static inline bool goe_sides_see(const goe_sides_t *sides, unsigned set) { retur
 
 typedef struct {
     goe_point_t point[GOE_FEATURES]; /* by goe_feature_t */
-    goe_sides_t sides;               /* of the image's box; no side is usable if it has none */
-    bool seen;                       /* any point or side, in the image */
-    const goe_image_t *image;        /* as it was given */
-    const goe_motion_t *motion;      /* the track's own motion up to this image */
-    const goe_camera_t *camera;      /* that took it */
-    float box_noise_rel;             /* setting; 0: window method */
-    const float *camera_to_body;     /* rotations, row by row */
+    goe_sides_t sides;               /* of the image's box; without a box no side is usable */
+    bool seen;                       /* any point or side is visible in the image */
+    const goe_image_t *image;        /* as the caller gave it */
+    const goe_motion_t *motion;      /* the motion of the track up to this image */
+    const goe_camera_t *camera;      /* the one that took it */
+    float box_noise_rel;             /* setting; 0 for the window method */
+    const float *camera_to_body;     /* rotation matrices, row by row */
     float camera_to_trajectory[9];
 } goe_view_t;
 

@@ -1,8 +1,8 @@
-/* Angles. SPDX-License-Identifier: MIT */
+/* Arctangent, sine and cosine by polynomials. SPDX-License-Identifier: MIT */
 #include "maths/goe_angle.h"
 #include "maths/goe_scalar.h"
 
-/* Minimax polynomials in z = t^2, made by `python -m bench minimax`; the bounds are those of the polynomials alone. */
+/* Minimax polynomials in z = t^2, made by `python -m bench minimax`. The bounds are those of the polynomials alone. */
 #define TAN_PI_8 0.414213562f
 #define ATAN_1 0.333327567f /* atan t = t - t z (A1 - A2 z + A3 z^2 - A4 z^3), |t| <= tan(pi/8): 5e-9 rad */
 #define ATAN_2 0.199718793f
@@ -15,7 +15,7 @@
 #define COS_2 0.00138873675f
 #define COS_3 2.44384516e-05f
 
-#define DEG_MAX 1.0e6f /* an angle beyond it fits no int's quarters */
+#define DEG_MAX 1.0e6f /* for a larger angle the number of quarter turns may not fit an int */
 #define QUARTER_PI_RAD 0.785398163f
 #define HALF_PI_RAD 1.57079633f
 
@@ -24,7 +24,7 @@ static float arctan_of_fraction(float t) {
     return t - t * (z * (ATAN_1 - z * (ATAN_2 - z * (ATAN_3 - z * ATAN_4))));
 }
 
-/* 0 <= t <= 1. Above tan(pi/8): atan t = pi/4 + atan((t - 1)/(t + 1)), so that the polynomial stays short. */
+/* For 0 <= t <= 1. Above tan(pi/8), atan t = pi/4 + atan((t - 1)/(t + 1)) keeps the polynomial short. */
 static float arctan_of_unit(float t) {
     if (t <= TAN_PI_8) {
         return arctan_of_fraction(t);

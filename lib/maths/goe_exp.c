@@ -1,8 +1,8 @@
-/* The exponential. SPDX-License-Identifier: MIT */
+/* The exponential function. SPDX-License-Identifier: MIT */
 #include "maths/goe_exp.h"
 
 #define ARGUMENT_MAX 16.0f
-#define DOUBLINGS 6 /* e^x = (e^(x/64))^64, and of x/64 the series is short */
+#define DOUBLINGS 6 /* e^x = (e^(x/64))^64: for x/64 the series is short */
 
 float goe_exp(float x) {
     const float bounded = x > ARGUMENT_MAX ? ARGUMENT_MAX : (x > -ARGUMENT_MAX ? x : -ARGUMENT_MAX);

@@ -1,13 +1,13 @@
-/* The normal distribution. SPDX-License-Identifier: MIT */
+/* The normal distribution function. SPDX-License-Identifier: MIT */
 #include "maths/goe_normal.h"
 
-#include "goe.h" /* for the parts */
+#include "goe.h" /* defines the parts */
 
 #if GOE_WITH_HAZARD
 #include "maths/goe_scalar.h"
 
-/* Minimax polynomial made by `python -m bench minimax`. The upper tail is N(x)^-8, N = N1 + x (N2 + x (N3 + ...)), on
- * 0 <= x <= 5.2: 2.0e-7. The eighth power needs no exponential and falls off as fast as the tail does. */
+/* Minimax polynomial made by `python -m bench minimax`. The upper tail is N(x)^-8, N = N1 + x (N2 + x (N3 + ...)), on 0 <= x <= 5.2, with
+ * an error of 2.0e-7. The eighth power needs no exponential, and falls off as fast as the tail. */
 #define NORMAL_1 1.09050768f
 #define NORMAL_2 0.10876589f
 #define NORMAL_3 0.0487788176f
@@ -16,7 +16,7 @@
 #define NORMAL_6 0.0004315155f
 #define NORMAL_7 3.85143606e-05f
 #define NORMAL_8 1.60038211e-05f
-#define TAIL_END 5.2f /* 1e-7 lies beyond */
+#define TAIL_END 5.2f /* the tail beyond it is 1e-7 */
 
 float goe_normal_below(float x) {
     const float t = goe_absolute(x);

@@ -1,4 +1,4 @@
-/* Rotations. SPDX-License-Identifier: MIT */
+/* Rotation matrix from yaw, pitch and roll. SPDX-License-Identifier: MIT */
 #include "maths/goe_rotation.h"
 
 #include "maths/goe_angle.h"

@@ -1,8 +1,8 @@
-/* Rotation matrices, row by row: r[3 * row + column]. SPDX-License-Identifier: MIT */
+/* Rotation matrices, stored row by row: r[3 * row + column]. SPDX-License-Identifier: MIT */
 #ifndef GOE_ROTATION_H
 #define GOE_ROTATION_H
 
-/* Body -> NED of a Hamilton quaternion (w, x, y, z) of any non-zero norm. */
+/* Rotation body -> NED from a Hamilton quaternion (w, x, y, z) of any non-zero norm. */
 static inline void goe_rotation_from_quaternion(const float q[4], float r[9]) {
     const float w = q[0];
     const float x = q[1];
@@ -21,10 +21,10 @@ static inline void goe_rotation_from_quaternion(const float q[4], float r[9]) {
     r[8] = 1.0f - s * (x * x + y * y);
 }
 
-/* Rotation by yaw about z, then pitch about the new y, then roll about the newest x, in degrees. */
+/* Rotation by yaw about z, then by pitch about the rotated y, then by roll about the x that both rotated, in degrees. */
 void goe_rotation_from_euler(float yaw_deg, float pitch_deg, float roll_deg, float r[9]);
 
-/* turned = r v; turned may not overlap v. */
+/* turned = r v; turned must not overlap v. */
 /*@ requires \valid_read(r + (0 .. 8)) && \valid_read(v + (0 .. 2)) && \valid(turned + (0 .. 2));
     requires \separated(turned + (0 .. 2), r + (0 .. 8), v + (0 .. 2)); */
 static inline void goe_rotation_apply(const float r[9], const float v[3], float turned[3]) {

@@ -1,4 +1,4 @@
-/* A horizontal vector, viewed from above: X to the right, Z ahead. SPDX-License-Identifier: MIT */
+/* Horizontal vectors as viewed from above: X to the right, Z ahead. SPDX-License-Identifier: MIT */
 #ifndef GOE_XZ_H
 #define GOE_XZ_H
 
@@ -13,13 +13,13 @@ static inline goe_xz_t goe_xz_negative(goe_xz_t v) {
     return negative;
 }
 
-/* The same vector's coordinates in axes that are turned by the angle of c, s, clockwise as viewed from above. */
+/* Coordinates of the same vector in axes turned by the angle of c, s, clockwise as viewed from above. */
 static inline goe_xz_t goe_xz_into(goe_xz_t v, float c, float s) {
     const goe_xz_t turned = {c * v.x - s * v.z, s * v.x + c * v.z};
     return turned;
 }
 
-/* ... and out of them. */
+/* The inverse of goe_xz_into(). */
 static inline goe_xz_t goe_xz_out_of(goe_xz_t v, float c, float s) {
     const goe_xz_t turned = {c * v.x + s * v.z, c * v.z - s * v.x};
     return turned;

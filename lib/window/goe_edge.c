@@ -1,4 +1,4 @@
-/* Edges: (1) and the gates of Section 4. SPDX-License-Identifier: MIT */
+/* Edges of the obstacle's base: their heading (1), and the gates of Section 4. SPDX-License-Identifier: MIT */
 #include "window/goe_edge.h"
 
 #include "maths/goe_angle.h"
@@ -12,8 +12,8 @@ static bool in_order(const goe_view_t *view, goe_feature_t left, goe_feature_t r
     return !point[left].usable || !point[right].usable || point[left].x <= point[right].x;
 }
 
-/* (1). The edge through a and b meets the horizon y = 0 at x_a - y_a (x_b - x_a)/(y_b - y_a) = x/z of the vector below,
- * which needs no division: an edge parallel to the horizon simply has no Z component. */
+/* (1). The edge through a and b meets the horizon y = 0 at x_a - y_a (x_b - x_a)/(y_b - y_a). This is x/z of the vector below, which needs
+ * no division: an edge parallel to the horizon has no Z component. */
 static float heading_deg(const goe_point_t *a, const goe_point_t *b) {
     const float x = a->x * b->y - a->y * b->x;
     const float z = b->y - a->y;
@@ -21,7 +21,7 @@ static float heading_deg(const goe_point_t *a, const goe_point_t *b) {
     return goe_fold_deg(rad * GOE_DEG_PER_RAD);
 }
 
-/* edge->left and edge->right are usable; from and to are their pixels. */
+/* edge->left and edge->right must be usable; from and to are their pixels. */
 static void measure_edge(const goe_settings_t *settings, float fx_px, const goe_pixel_t *from, const goe_pixel_t *to,
                          goe_edge_t *edge) {
     const goe_point_t *left = edge->left;
@@ -49,7 +49,7 @@ static void add_edge(const goe_settings_t *settings, const goe_view_t *view, goe
 
 goe_status_t goe_edge_find(const goe_settings_t *settings, const goe_view_t *view, goe_edges_t *edges) {
     const bool near_corner = view->point[GOE_POINT_BASE_NEAR].usable;
-    const goe_feature_t end = near_corner ? GOE_POINT_BASE_NEAR : GOE_POINT_BASE_RIGHT; /* of the first edge */
+    const goe_feature_t end = near_corner ? GOE_POINT_BASE_NEAR : GOE_POINT_BASE_RIGHT; /* end of the first edge */
     edges->count = 0;
     if (!in_order(view, GOE_POINT_BASE_LEFT, end) || !in_order(view, end, GOE_POINT_BASE_RIGHT)) {
         return GOE_SWAPPED;

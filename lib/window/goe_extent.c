@@ -1,4 +1,4 @@
-/* Length and height. SPDX-License-Identifier: MIT */
+/* Length of the obstacle from one image, (6) and (7). SPDX-License-Identifier: MIT */
 #include "window/goe_extent.h"
 #include "maths/goe_scalar.h"
 

@@ -1,8 +1,8 @@
-/* Window least squares. SPDX-License-Identifier: MIT
+/* Least squares over the window, (5), in closed form. SPDX-License-Identifier: MIT
  *
- * Turned back into T, the 2N x 3 system (5) is the fit of two parallel straight lines
+ * Rotated back into T, the 2N x 3 system (5) is the fit of two parallel straight lines
  *   xi_k = X0/W - dX_k/W,   zeta_k = Z0/W - dZ_k/W
- * with one shared slope 1/W: exact, and far better conditioned than any factorisation of the dense system. */
+ * with one common slope 1/W. This is exact, and far better conditioned than any factorization of the dense system. */
 #include "window/goe_fit.h"
 
 #include <math.h>
@@ -11,9 +11,9 @@
 
 #if GOE_WITH_WINDOW
 
-#define PARALLAX_MIN 1.0e-6f /* change of the rows over the window, of their size: below lies the rounding of floats */
+#define PARALLAX_MIN 1.0e-6f /* change of the rows over the window, relative to their size: less is float rounding */
 #define METERS_MAX 1.0e6f    /* no obstacle is farther away or wider */
-#define SIGMA_MAX_M 1.0e9f   /* so that squares and products of sigmas stay finite */
+#define SIGMA_MAX_M 1.0e9f   /* keeps squares and products of sigmas finite */
 
 typedef struct {
     float dx_m, dz_m, xi, zeta; /* means over the window */
@@ -48,7 +48,7 @@ static void sum_means(const goe_fit_point_t *points, int length, moments_t *m) {
 /*@ requires \valid_read(points + (0 .. length - 1)) && \valid(m) && 1 <= length <= GOE_WINDOW_MAX; */
 static void sum_products(const goe_fit_point_t *points, int length, moments_t *m) {
     const goe_fit_point_t *end = points + length;
-    const moments_t mean = *m; /* a copy, so that the compiler may keep it in registers */
+    const moments_t mean = *m; /* a copy, which the compiler may keep in registers */
     float spread_m2 = 0.0f;
     float mixed_m = 0.0f;
     for (const goe_fit_point_t *p = points; p != end; p++) {
@@ -75,7 +75,7 @@ static float squared_residuals(const goe_fit_point_t *points, int length, const 
 
 static float bounded(float sigma_m) { return sigma_m < SIGMA_MAX_M ? sigma_m : SIGMA_MAX_M; }
 
-/* From the covariance of the fit: 1/W has s2/D, the window means have s2/N, and they are independent. */
+/* Uses the covariance of the fit: 1/W has s2/D, the window means have s2/N, and they are independent. */
 /*@ requires \valid_read(m) && \valid(fit) && 2 <= length <= GOE_WINDOW_MAX; */
 static void set_sigmas(const moments_t *m, int length, float squares, goe_estimate_t *fit) {
     const float s2 = squares / (float)(2 * length - 3);

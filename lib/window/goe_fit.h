@@ -1,4 +1,4 @@
-/* Window least squares (5) in closed form. SPDX-License-Identifier: MIT */
+/* Least squares over the window, (5), in closed form. SPDX-License-Identifier: MIT */
 #ifndef GOE_FIT_H
 #define GOE_FIT_H
 
@@ -6,7 +6,7 @@
 
 GOE_STATIC_ASSERT(GOE_WINDOW_MAX <= INT16_MAX, a_place_in_the_ring_fits_its_type);
 
-/* Adds a row; the oldest of `length` rows leaves. */
+/* Adds a row, which replaces the oldest of `length` rows. */
 /*@ requires \valid(ring) && 1 <= length <= GOE_WINDOW_MAX; */
 static inline void goe_fit_add(goe_fit_ring_t *ring, int length, float dx_m, float dz_m, goe_row_t row) {
     const int at = ring->next >= 0 && ring->next < length ? ring->next : 0;
@@ -19,9 +19,8 @@ static inline void goe_fit_add(goe_fit_ring_t *ring, int length, float dx_m, flo
     ring->count = (int16_t)(ring->count < INT16_MAX ? ring->count + 1 : INT16_MAX);
 }
 
-/* Solves (5) over the newest `length` rows, which must be there. GOE_OK with x0, z0, width, residual,
- * baseline and their sigmas set, or with *fit untouched GOE_NO_BASELINE,
- * GOE_NO_PARALLAX or GOE_ABEAM. */
+/* Solves (5) over the newest `length` rows, which must exist. Returns GOE_OK and sets x0, z0, width, residual, baseline and their sigmas;
+ * or leaves *fit unchanged and returns GOE_NO_BASELINE, GOE_NO_PARALLAX or GOE_ABEAM. */
 /*@ requires \valid_read(ring) && \valid(fit) && 3 <= length <= GOE_WINDOW_MAX; */
 goe_status_t goe_fit_solve(const goe_fit_ring_t *ring, int length, float min_baseline_m, goe_estimate_t *fit);
 

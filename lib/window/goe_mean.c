@@ -1,9 +1,9 @@
-/* Sliding mean. SPDX-License-Identifier: MIT */
+/* Sliding mean of a value, and its variance. SPDX-License-Identifier: MIT */
 #include "window/goe_mean.h"
 
 #if GOE_WITH_WINDOW
 
-/* Summed again each time: a running sum would collect rounding errors over a long track. */
+/* Summed again each time, because a running sum would collect rounding errors over a long track. */
 goe_average_t goe_mean_add(goe_mean_t *mean, int length, float value) {
     const int at = mean->next >= 0 && mean->next < length ? mean->next : 0;
     const int before = mean->count > 0 ? mean->count : 0;

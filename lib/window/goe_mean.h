@@ -1,4 +1,4 @@
-/* Sliding mean. SPDX-License-Identifier: MIT */
+/* Sliding mean of a value, and its variance. SPDX-License-Identifier: MIT */
 #ifndef GOE_MEAN_H
 #define GOE_MEAN_H
 
@@ -6,10 +6,10 @@
 
 typedef struct {
     float mean;
-    float variance; /* of the mean, from the spread of the values; 0 if there is one value */
+    float variance; /* of the mean, from the spread of the values; 0 for one value */
 } goe_average_t;
 
-/* Adds a value, of which the newest `length` count, and returns the mean of those. */
+/* Adds a value, and returns the mean of the newest `length` values. */
 /*@ requires \valid(mean) && 1 <= length <= GOE_WINDOW_MAX; */
 goe_average_t goe_mean_add(goe_mean_t *mean, int length, float value);
 

@@ -1,4 +1,4 @@
-/* Orientation. SPDX-License-Identifier: MIT */
+/* Orientation of the obstacle: which edge is its side, and the low-pass. SPDX-License-Identifier: MIT */
 #include "window/goe_orientation.h"
 
 #include <string.h>
@@ -8,12 +8,12 @@
 
 #if GOE_WITH_WINDOW
 
-/* Between +-30 and +-60 degrees the smaller angle no longer separates the side edge from the front edge under noise: there
- * the low-pass decides, or it would average +45 with -45. */
+/* Between +-30 and +-60 degrees, under noise, the smaller angle does not separate side edge and front edge. There the low-pass decides;
+ * otherwise it would average +45 with -45. */
 #define AMBIGUOUS_DEG 30.0f
 #define FOLDED_MAX_DEG 90.0f
 
-/* Orientation if `side` is the side edge and `front` the front edge, either of which may be missing. */
+/* The orientation if `side` is the side edge and `front` the front edge. Either may be missing. */
 /*@ requires side == \null || \valid_read(side);
     requires front == \null || \valid_read(front);
     requires side != \null || front != \null; */
@@ -36,7 +36,7 @@ static bool prefers_first(const goe_orientation_t *orientation, float first_deg,
     return first <= second;
 }
 
-/* b <- b + (g - b)/min(k, memory), angles of undirected lines. */
+/* b <- b + (g - b)/min(k, memory), for angles of undirected lines. */
 /*@ requires \valid(orientation) && 1 <= memory <= 1000 && 0 <= orientation->count <= 1000; */
 static void low_pass(goe_orientation_t *orientation, float measured_deg, int memory) {
     const float step = orientation->count > 0 ? goe_fold_deg(measured_deg - orientation->filtered_deg) : 0.0f;
@@ -48,7 +48,7 @@ static void low_pass(goe_orientation_t *orientation, float measured_deg, int mem
     orientation->variance_deg2 += (step * step - orientation->variance_deg2) * gain;
 }
 
-/* A value that no image can have left begins again. */
+/* Resets values that no image can have left there. */
 static void mend(goe_orientation_t *orientation, int memory) {
     if (orientation->count < 0 || orientation->count > memory ||
         !goe_within(orientation->filtered_deg, FOLDED_MAX_DEG)) {

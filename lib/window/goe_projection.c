@@ -1,11 +1,11 @@
-/* Projection models. SPDX-License-Identifier: MIT */
+/* Projection models: rows of (5) for a disc or a line. SPDX-License-Identifier: MIT */
 #include "window/goe_projection.h"
 
 #include <math.h>
 
 #if GOE_WITH_WINDOW
 
-#define WIDTH_MIN 1.0e-4f    /* smallest image width that is divided by, of the focal length */
+#define WIDTH_MIN 1.0e-4f    /* smallest image width that is a divisor, in focal lengths */
 #define DISC_MULTIPLIER 2.0f /* m in (5) */
 
 goe_status_t goe_projection_disc(const goe_point_t *left, const goe_point_t *right, goe_row_t *row) {

@@ -1,4 +1,4 @@
-/* The disc and the line projection model, as rows of (5). SPDX-License-Identifier: MIT */
+/* The projection models disc and line, which give the rows of (5). SPDX-License-Identifier: MIT */
 #ifndef GOE_PROJECTION_H
 #define GOE_PROJECTION_H
 
@@ -6,16 +6,16 @@
 
 #include "image/goe_view.h"
 
-#define GOE_FORWARD_MIN 0.05f /* third component of a unit ray in T, as in the alignment */
+#define GOE_FORWARD_MIN 0.05f /* least third component of a unit ray in T, as in the alignment */
 
-/* The two rows of (5) that one image gives, turned back into T by the orientation b, which leaves the residuals' norm:
+/* The two rows of (5) that one image gives, rotated back into T by the orientation b. This keeps the norm of the residuals:
  *   xi   = c (m x/S) + s (m/S) = (X0 - dX)/W
  *   zeta = c (m/S) - s (m x/S) = (Z0 - dZ)/W */
 typedef struct {
     float xi, zeta;
 } goe_row_t;
 
-/* The front edge, turned by the orientation: x' of its ends. */
+/* The ends x' of the front edge, rotated by the orientation. */
 typedef struct {
     float left, right;
 } goe_span_t;
@@ -25,15 +25,15 @@ typedef struct {
     float s, c;
 } goe_turn_t;
 
-/* (2), b = 0. GOE_OK, or GOE_SWAPPED if left is not left of right. */
+/* (2), b = 0. Returns GOE_OK; or GOE_SWAPPED if left is not left of right. */
 goe_status_t goe_projection_disc(const goe_point_t *left, const goe_point_t *right, goe_row_t *row);
 
-/* (3), (4) of the front edge from its left to its right end. GOE_OK, or GOE_EDGE_ON if the camera views it from its end or from
+/* (3), (4) for the front edge from its left to its right end. Returns GOE_OK; or GOE_EDGE_ON if the camera views it from its end or from
  * behind. */
 goe_status_t goe_projection_line(const goe_point_t *left, const goe_point_t *right, goe_turn_t turn, goe_span_t *span,
                                  goe_row_t *row);
 
-/* The virtual rotation (4) of an aligned point. False if the point is not ahead of the turned camera. */
+/* The virtual rotation (4) of an aligned point. Returns false if the point is not ahead of the rotated camera. */
 static inline bool goe_projection_turn(const goe_point_t *point, goe_turn_t turn, float *turned_x) {
     const float forward = turn.c + point->x * turn.s;
     if (!(forward > GOE_FORWARD_MIN * sqrtf(1.0f + point->x * point->x))) {

@@ -1,4 +1,4 @@
-/* The window method: one image through (1) to (8). SPDX-License-Identifier: MIT
+/* The window method: passes one image through the equations (1) to (8). SPDX-License-Identifier: MIT
  *
  *   aligned points -> disc row -------------------> fit -> length, height -> estimate
  *                 \-> edges -> orientation -> line row -/
@@ -20,7 +20,7 @@
 
 #if GOE_WITH_WINDOW
 
-/* What one image contributes, on its way through the chain. */
+/* Data of one image on its way through the processing chain. */
 typedef struct {
     const goe_settings_t *settings;
     const goe_view_t *view;
@@ -96,7 +96,7 @@ static int line_points_needed(const goe_settings_t *settings) {
                                                                   : settings->window.points;
 }
 
-/* The model to report: Section 4 of the paper, disc until enough line points are there. */
+/* The model to report, by Section 4 of the paper: disc until there are enough line points. */
 static goe_model_t reported_model(const goe_window_t *window, const goe_settings_t *settings) {
     if (settings->model != GOE_MODEL_AUTO) {
         return settings->model;
@@ -113,7 +113,7 @@ static void take_fit(const frame_t *frame, goe_model_t model) {
     estimate->images_used = frame->settings->window.points;
 }
 
-/* GOE_OK: solved. GOE_CONVERGING, GOE_STALE: nothing to solve. Otherwise why there is no solution. */
+/* Returns GOE_OK: solved; GOE_CONVERGING, GOE_STALE: nothing to solve; otherwise why there is no solution. */
 static goe_status_t solve(goe_window_t *window, const frame_t *frame) {
     const goe_model_t model = reported_model(window, frame->settings);
     const goe_fit_ring_t *ring = model == GOE_MODEL_LINE ? &window->line : &window->disc;
@@ -133,7 +133,7 @@ static goe_status_t solve(goe_window_t *window, const frame_t *frame) {
 
 /* ------------------------------------------------------------------------------------------- what hangs on a solution -- */
 
-/* Takes one image's length or height into its sliding mean. A mean that is not positive is no answer. */
+/* Adds one image's length or height to its sliding mean. A mean that is not positive is not valid. */
 static void take_extent(goe_mean_t *mean, int length, const goe_extent_t *extent, unsigned has, unsigned *valid,
                         float *value_m, float *sigma_m) {
     const goe_average_t average = goe_mean_add(mean, length, extent->value_m);
@@ -199,7 +199,7 @@ static void clear_center(goe_estimate_t *estimate) {
     estimate->sigma.center_east_m = 0.0f;
 }
 
-/* Middle of the base: a disc's reference point; half a length behind a box's front edge. */
+/* Reports the middle of the base: a disc's reference point; for a line, half a length behind the front edge. */
 static void report_center(goe_estimate_t *estimate, const goe_motion_t *motion) {
     const goe_sigma_t *sigma = &estimate->sigma;
     const float c = motion->heading_cos;
@@ -230,7 +230,7 @@ static void report_center(goe_estimate_t *estimate, const goe_motion_t *motion) 
 
 /* --------------------------------------------------------------------------------------------------------- the chain -- */
 
-/* What to say of an image that was taken. */
+/* The status of an image that was taken. */
 static goe_status_t judge(const frame_t *frame, goe_status_t solving) {
     if (solving == GOE_OK) {
         return frame->faults.first == GOE_OK ? GOE_OK : GOE_PARTIAL;
