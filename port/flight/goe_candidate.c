@@ -1,12 +1,12 @@
-/* Candidates, in a fixed table. SPDX-License-Identifier: MIT */
+/* Table of new obstacles that wait for confirmation or for a slot. SPDX-License-Identifier: MIT */
 #include "goe_candidate.h"
 
 #include "goe_flight_maths.h"
 
 #define APART_US 1000000
-#define BURIED_US 10000000 /* longer than any image is late */
-#define WAITING 1          /* of `images`: no image counts yet */
-#define OVERLAP_MIN 0.3f   /* the usual threshold of trackers by overlap */
+#define BURIED_US 10000000 /* longer than the delay of any image */
+#define WAITING 1          /* value of `images` while no image counts */
+#define OVERLAP_MIN 0.3f   /* usual threshold of trackers that match by overlap */
 
 static float length(int from, int to) { return to > from ? (float)(to - from) : 0.0f; }
 
@@ -26,7 +26,7 @@ static bool is_same(const goe_flight_candidate_t *candidate, const goe_flight_ca
     return seen->id != 0u || goe_flight_candidate_overlap(candidate->box_px, seen->box_px) >= OVERLAP_MIN;
 }
 
-/* Its place in the table; none: GOE_FLIGHT_CANDIDATES. */
+/* Index of this detection's candidate; GOE_FLIGHT_CANDIDATES: there is none. */
 static int find(const goe_flight_candidate_t *table, const goe_flight_candidate_t *seen) {
     int i = 0;
     while (i < GOE_FLIGHT_CANDIDATES && !is_same(&table[i], seen)) {

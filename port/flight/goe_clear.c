@@ -1,16 +1,15 @@
-/* Clearance. SPDX-License-Identifier: MIT
+/* Clear fraction of an order's path. SPDX-License-Identifier: MIT
  *
- * The exact response of an autopilot is unknown: half a second late or two, straight to the target or first parallel to the line. The
- * test therefore covers a region and not one path:
+ * The exact response of an autopilot is unknown: it obeys half a second late or two, and flies straight to the target or first parallel to
+ * the line. The test therefore covers a region and not one path:
  *
  *   late     straight on for late_m, an arc of the turn's radius, straight to the target
- *   fan      the triangle from the earliest beginning of the turn to both sides of the circle about the target; or, where
- *            the aircraft flies through, to the target and to the beginning of a line parallel to the course
- *   end      the disc about the target, or the line flown on behind it
+ *   fan      the triangle from the earliest start of the turn to both sides of the circle around the target; or, if the aircraft
+ *            flies through, to the target and to the start of a line parallel to the course
+ *   end      the disc around the target, or the line flown beyond it
  *
- * Before an obstacle, where an aircraft turns away, its sigma along the nearest distance counts. On the way past it the sigma across the
- * line of sight counts if that is less: the uncertainty of the range shrinks as it comes nearer, and the target moves with it.
- */
+ * If the aircraft turns away before an obstacle, the obstacle's sigma along the least distance counts. On the way past it, the sigma across
+ * the line of sight counts if it is smaller: the range becomes more certain as it shrinks, and the target moves with the obstacle. */
 #include "goe_clear.h"
 
 #include <math.h>
@@ -25,10 +24,10 @@
 #define LENGTH_MIN_M2 1.0e-6f
 #define NOBODY (-1)
 
-/* Straight: from, to. Arc: about a center, from one point to the other, to the right or to the left. */
+/* A part of a path. Straight: from, to. Arc: around a center, from one point to the other, to the right or to the left. */
 typedef struct {
     float from_m[2], to_m[2], center_m[2];
-    float radius_m;           /* 0: straight */
+    float radius_m;           /* 0: a straight leg */
     bool right, whole, minor; /* minor: less than half a circle */
 } leg_t;
 
@@ -37,7 +36,7 @@ enum { LEGS = 8 };
 typedef struct {
     leg_t leg[LEGS];
     int legs;
-    float fan_m[3][2]; /* corners */
+    float fan_m[3][2]; /* its corners */
     bool has_fan;
 } region_t;
 
@@ -61,7 +60,7 @@ static void turn_variance(const float course_ne[2], const float ne_m2[3], float 
     turned_m2[2] = s * s * ne_m2[0] - 2.0f * c * s * ne_m2[1] + c * c * ne_m2[2];
 }
 
-/* One sigma of the place along a vector of this length. */
+/* One sigma of the position along the vector off_m of this length. */
 static float sd_along_m(const float variance_m2[3], const float off_m[2], float length_m) {
     const float n = off_m[0] / length_m;
     const float e = off_m[1] / length_m;
@@ -108,7 +107,7 @@ static void minus(const float a[2], const float b[2], float difference[2]) {
     difference[1] = a[1] - b[1];
 }
 
-/* From the nearest point of the leg to the place; square of its length. */
+/* Computes off_m, from the nearest point of the leg to the place. Returns the square of its length. */
 static float off_straight_m2(const float from_m[2], const float to_m[2], const float at_m[2], float off_m[2]) {
     float along[2];
     minus(to_m, from_m, along);
@@ -120,7 +119,7 @@ static float off_straight_m2(const float from_m[2], const float to_m[2], const f
     return dot(off_m, off_m);
 }
 
-/* Whether the arc passes abeam of the place. Ends belong to the legs before and after it. */
+/* Whether the arc passes abeam of the place. Its ends belong to the legs before and after it. */
 static bool is_abeam(const leg_t *leg, const float out_m[2]) {
     float from[2];
     float to[2];
@@ -175,7 +174,7 @@ static float sure_m(const goe_flight_clear_slot_t *slot, const goe_flight_clear_
     return length_m - within_m - slot->radius_m - way->sigmas * passed_m;
 }
 
-/* The least distance of one obstacle's circle. */
+/* Distance of the path to one obstacle's circle, minus the sigmas. */
 static float spare_m(const region_t *region, const goe_flight_clear_way_t *way, const goe_flight_clear_slot_t *slot) {
     float nearest[2] = {0.0f, 0.0f};
     float least = DISTANCE_MAX_M * DISTANCE_MAX_M;
@@ -216,14 +215,14 @@ static void add_straight(region_t *region, const float from_m[2], const float to
     memcpy(leg->to_m, to_m, sizeof leg->to_m);
 }
 
-/* From the turn's beginning on the course by an arc towards the place, then straight. A place within the turn's circle is not reached:
- * the circle is flown. */
+/* From the start of the turn on the course by an arc toward the place, then straight. A place inside the turn's circle is not reached: the
+ * path is then the whole circle. */
 static void add_turn(region_t *region, float begin_m, float turn_m, const float place_m[2]) {
     const float begin[2] = {begin_m, 0.0f};
     leg_t *arc = add(region);
     float d[2];
     arc->right = place_m[1] > 0.0f;
-    arc->minor = place_m[0] > begin_m; /* whatever rounding makes of an arc of next to nothing */
+    arc->minor = place_m[0] > begin_m; /* decides for a very short arc, whatever the rounding */
     arc->radius_m = turn_m;
     arc->center_m[0] = begin_m;
     arc->center_m[1] = arc->right ? turn_m : -turn_m;
@@ -244,7 +243,7 @@ static void add_turn(region_t *region, float begin_m, float turn_m, const float 
     add_straight(region, leaves, place_m);
 }
 
-/* Both ends of the circle about the target, viewed from the turn's beginning; inner_m: nearer to the course. */
+/* Both ends of the circle around the target, viewed from the start of the turn. inner_m: the one nearer to the course. */
 static bool ends_of_circle(const float begin_m[2], const goe_flight_clear_way_t *way, float inner_m[2],
                            float outer_m[2]) {
     float to[2];
@@ -261,7 +260,7 @@ static bool ends_of_circle(const float begin_m[2], const goe_flight_clear_way_t 
     return true;
 }
 
-/* Where an autopilot that leaves its line by 45 degrees at once begins to fly parallel to it. */
+/* The point at which an autopilot that leaves its line by 45 degrees at once begins to fly parallel to it. */
 static void shift_aside(const float begin_m[2], const goe_flight_clear_way_t *way, float sideways_m[2]) {
     const float *line = way->line_m;
     float to[2];
@@ -297,9 +296,9 @@ static void begin_region(const goe_flight_clear_own_t *own, const goe_flight_cle
         return;
     }
     if (way->circle_m > 0.0f && !ends_of_circle(early_m, way, inner_m, outer_m)) {
-        return; /* on the circle already */
+        return; /* already on the circle */
     }
-    if (!(way->circle_m > 0.0f) && way->shifts) { /* 45 degrees away from the course, at once */
+    if (!(way->circle_m > 0.0f) && way->shifts) { /* leaves the course by 45 degrees, at once */
         shift_aside(early_m, way, outer_m);
     }
     add_turn(region, own->late_m, own->turn_m, inner_m);

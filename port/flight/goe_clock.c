@@ -1,8 +1,8 @@
-/* Capture time. SPDX-License-Identifier: MIT
+/* Capture time of an image by the autopilot's clock. SPDX-License-Identifier: MIT
  *
- * One-way: a message cannot arrive before it was sent, so the least of (arrival - sending) is the offset of the clocks plus the
- * least delay of the link, which only settings.delay_s gives. The least is that of two buckets of 10 s: a clock that
- * drifts by 50 ppm is off by 1 ms at most. */
+ * One-way messages: a message cannot arrive before it was sent. The least of (arrival - sending) is therefore the offset of the clocks plus
+ * the least delay of the link, which only settings.delay_s gives. It is the least of two buckets of 10 s: a clock that drifts by 50 ppm is
+ * off by 1 ms at most. */
 #include "goe_clock.h"
 
 #include <math.h>
@@ -10,10 +10,10 @@
 #include "goe_flight_maths.h"
 
 #define BUCKET_US 10000000
-#define STRANGE_US 1000000 /* an arrival that far off the least is another clock, or a stuck message */
+#define STRANGE_US 1000000 /* an arrival so far from the least is of another clock, or a stuck message */
 #define STRANGE_MAX 3
-#define SETTLED 8           /* messages after which the least is close to what there is */
-#define SPREAD_MEMORY 16.0f /* messages */
+#define SETTLED 8           /* number of messages after which the least is close to its final value */
+#define SPREAD_MEMORY 16.0f /* number of messages */
 #define DRIFT_SD_US 1000.0f
 #define SD_MAX_US 1.0e6f
 
@@ -55,7 +55,7 @@ static uint32_t least(const goe_flight_clock_t *clock) {
     return before ? clock->before_us : clock->offset_us;
 }
 
-/* How far arrivals lie above the least: while few have come, the least may be as far above the truth. */
+/* Mean excess of arrivals over the least. While few have come, the least may exceed the truth by as much. */
 static void follow_spread(goe_flight_clock_t *clock, uint32_t offset_us) {
     const int32_t above_us = goe_flight_between_us(offset_us, least(clock));
     const float excess_us = goe_flight_clamped((float)above_us, 0.0f, (float)STRANGE_US);

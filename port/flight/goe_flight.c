@@ -1,4 +1,4 @@
-/* The chain of the flight layer, and its settings. SPDX-License-Identifier: MIT */
+/* Public functions of the flight layer: settings, samples, frames, assessment, sectors. SPDX-License-Identifier: MIT */
 #include "goe_flight.h"
 
 #include <math.h>
@@ -28,13 +28,13 @@
 #define POSE_ALIVE_S 0.5f
 #define SECTOR_MAX_CM 65000u
 #define NOBODY (-1)
-/* Of an obstacle, as goe_flight.h lists it. */
+/* Bits of goe_flight_obstacle_t.valid. */
 #define REPORTED (GOE_HAS_POSITION | GOE_HAS_HEIGHT | GOE_HAS_WIDTH | GOE_HAS_LENGTH | GOE_HAS_ORIENTATION)
 
-#define UNLOCATED_DEG 5.0f /* by which the bearings of a detection without a place may change before the next one */
-#define DEPTH_SHARE 0.25f  /* of the range, by which an obstacle of unknown length may reach nearer than its outline */
+#define UNLOCATED_DEG 5.0f /* possible change of bearing from a detection without a position to the next one */
+#define DEPTH_SHARE 0.25f  /* of the range: an obstacle of unknown length may reach so much nearer than its outline */
 
-#define OUTLINED (GOE_HAS_POSITION | GOE_HAS_WIDTH) /* of an obstacle with an outline at a place */
+#define OUTLINED (GOE_HAS_POSITION | GOE_HAS_WIDTH) /* bits of an obstacle with position and outline */
 
 /* ---------------------------------------------------------------------------------------------------------- settings -- */
 
@@ -169,7 +169,7 @@ static goe_flight_status_t check_ready(const goe_flight_t *flight) {
     return flight->tag == TAG ? GOE_FLIGHT_OK : GOE_FLIGHT_NOT_INITIALIZED;
 }
 
-/* Fields of the decision that depend on the settings. */
+/* Also checks the seal, for calls that depend on the settings. */
 static goe_flight_status_t check_sealed(const goe_flight_t *flight) {
     const goe_flight_status_t ready = check_ready(flight);
     return ready == GOE_FLIGHT_OK && !goe_flight_is_sealed(flight) ? GOE_FLIGHT_CORRUPTED : ready;
@@ -211,7 +211,7 @@ static goe_flight_status_t refuse(goe_flight_t *flight, goe_flight_status_t stat
     return status;
 }
 
-/* A sample that is not newer is refused; many of them say that the clock was set back. */
+/* Refuses a sample that is not newer. Many of them show that the clock was set back. */
 static goe_flight_status_t refuse_time(goe_flight_t *flight) {
     flight->history.stale++;
     if (flight->history.stale >= STALE_MAX) {
@@ -231,7 +231,7 @@ static bool view_alive(const goe_flight_t *flight, int number, uint32_t now_us) 
     return parts->viewed && goe_flight_between_s(now_us, parts->viewed_us) <= flight->settings.detector_timeout_s;
 }
 
-/* An input that was dead stays dead until it gives a sign again: times of half an hour ago would look like future times. */
+/* A dead input stays dead until its next message. Otherwise, times of half an hour ago would look like future times. */
 static void bury(goe_flight_t *flight, uint32_t now_us) {
     for (int i = 0; i < GOE_CAMERAS_MAX; i++) {
         if (!camera_alive(flight, i, now_us)) {
@@ -241,7 +241,7 @@ static void bury(goe_flight_t *flight, uint32_t now_us) {
     }
 }
 
-/* The newest time there is, and the same without wrapping. */
+/* Advances base_us, the newest time, which does not wrap. */
 static void advance(goe_flight_t *flight, uint32_t time_us) {
     const int32_t on_us = goe_flight_between_us(time_us, (uint32_t)flight->base_us);
     const bool first = flight->history.attitude_count + flight->history.position_count == 0;
@@ -267,7 +267,7 @@ static bool is_unit(const float q[4]) {
     return square >= least && square <= most;
 }
 
-/* Whether it would be taken: newer than the newest of its kind, or the first. */
+/* Whether a sample would be accepted: it is newer than the newest of its kind, or the first. */
 static bool is_newer(uint8_t count, const uint32_t *newest_us, uint32_t time_us) {
     return count == 0 || goe_flight_between_us(time_us, *newest_us) > 0;
 }
@@ -321,7 +321,7 @@ static goe_flight_status_t check_position(const goe_flight_position_t *p) {
     return within ? GOE_FLIGHT_OK : GOE_FLIGHT_OUT_OF_RANGE;
 }
 
-/* A delta counts only with a mark that changed; then it must be a number. */
+/* Checks the jump, which counts only if a mark changed; then it must be finite. */
 static goe_flight_status_t check_delta(const goe_flight_t *flight, const goe_flight_position_t *p) {
     const bool changed = flight->marks.position_known && (flight->marks.horizontal != p->reset_horizontal ||
                                                           flight->marks.vertical != p->reset_vertical);
@@ -334,8 +334,7 @@ static goe_flight_status_t check_delta(const goe_flight_t *flight, const goe_fli
     return goe_flight_all_within(p->reset_delta_ned_m, 3, POSITION_MAX_M) ? GOE_FLIGHT_OK : GOE_FLIGHT_OUT_OF_RANGE;
 }
 
-/* Distance of the position from its prediction by the velocity: an unknown jump, as well as it can be known. The kept
- * obstacles move along. */
+/* Estimates an unknown jump as well as possible: the position minus its prediction by the velocity. The kept obstacles move along. */
 static void guess_jump(const goe_flight_t *flight, const goe_flight_position_t *sample, float jump_ned_m[3]) {
     const goe_flight_history_position_t *newest = goe_flight_history_newest_position(&flight->history);
     for (int i = 0; newest && i < 3; i++) {
@@ -368,7 +367,7 @@ static void follow_reset(goe_flight_t *flight, const goe_flight_position_t *samp
     }
 }
 
-/* The ground by the best source of this sample. */
+/* Sets the ground from the best source of this sample. */
 static void note_ground(goe_flight_t *flight, const goe_flight_position_t *sample) {
     flight->ground_source = GOE_FLIGHT_HOME;
     flight->ground_down_m = 0.0f;
@@ -427,7 +426,7 @@ static float height_sd_m(const goe_flight_t *flight) {
     return flight->ground_source == GOE_FLIGHT_RANGE_FINDER ? settings->range_finder_sd_m : terrain_sd_m;
 }
 
-/* Only flipped bits make it otherwise. */
+/* Returns false only after a flipped bit. */
 static bool is_finite_view(const goe_flight_slot_view_t *view) {
     return goe_flight_all_finite(view->pose.ned_m, 3) && goe_flight_all_finite(view->pose.q, 4) &&
            goe_flight_finite(view->attitude_sd_deg) && goe_flight_finite(view->ground_down_m) &&
@@ -528,7 +527,7 @@ goe_flight_status_t goe_flight_frame(goe_flight_t *flight, const goe_flight_fram
     if (status != GOE_FLIGHT_OK) {
         return refuse(flight, status);
     }
-    goe_flight_clock_t clock = flight->clock; /* its update is kept only with the frame, which may come again */
+    goe_flight_clock_t clock = flight->clock; /* kept only if the frame is accepted, as it may come again */
     status = find_view(flight, frame, &clock, &view);
     if (status != GOE_FLIGHT_OK) {
         goe_flight_count(status == GOE_FLIGHT_TOO_NEW ? &flight->counters.early : &flight->counters.late);
@@ -546,7 +545,7 @@ goe_flight_status_t goe_flight_frame(goe_flight_t *flight, const goe_flight_fram
 
 /* -------------------------------------------------------------------------------------------------------- assessment -- */
 
-/* The newest position, moved on. */
+/* The newest position, extrapolated by the velocity. */
 static void find_own(const goe_flight_t *flight, uint32_t now_us, goe_flight_reaction_own_t *own) {
     const goe_flight_history_position_t *newest = goe_flight_history_newest_position(&flight->history);
     const float on_s = goe_flight_clamped(goe_flight_between_s(now_us, newest->time_us), 0.0f, POSE_ALIVE_S);
@@ -556,7 +555,7 @@ static void find_own(const goe_flight_t *flight, uint32_t now_us, goe_flight_rea
     }
 }
 
-/* Images older than delay_max_s do not come any more: to there the estimates can be moved on. */
+/* Images older than delay_max_s no longer arrive, so the estimates are predicted up to that time. */
 static void catch_up(goe_flight_t *flight, uint32_t now_us) {
     goe_flight_slot_view_t view;
     const uint32_t delay_us = (uint32_t)(flight->settings.delay_max_s * 1.0e6f);
@@ -627,7 +626,7 @@ static bool is_finite_hazard(const goe_hazard_t *hazard) {
     return goe_flight_all_finite(number, (int)(sizeof number / sizeof number[0]));
 }
 
-/* Only flipped bits make it otherwise. */
+/* Returns false only after a flipped bit. */
 static bool is_finite_assessment(const goe_flight_assessment_t *a) {
     return goe_flight_all_finite(a->target_ned_m, 3) && goe_flight_finite(a->needed_s) &&
            goe_flight_finite(a->clear_m) && is_finite_hazard(&a->hazard);
@@ -762,7 +761,7 @@ static bool is_passed_over(const goe_flight_t *flight, const goe_flight_slot_t *
                goe_flight_lookout_doubt(flight, slot) * flight->settings.clearance_m;
 }
 
-/* What the latest complete images show of cameras whose detectors are alive. */
+/* Marks as clear the sectors that the latest complete images show, for cameras whose detectors are alive. */
 static void open_sectors(const goe_flight_t *flight, uint32_t max_cm, uint16_t sector_cm[GOE_FLIGHT_SECTORS]) {
     const uint32_t newest_us = (uint32_t)flight->base_us;
     const bool later = goe_flight_between_us(flight->assessed_us, newest_us) > 0;
@@ -779,13 +778,13 @@ static void open_sectors(const goe_flight_t *flight, uint32_t max_cm, uint16_t s
     }
 }
 
-/* By how much an obstacle may be nearer than its estimate: two sigmas; a suspect one may be anywhere ahead. */
+/* By how much an obstacle may be nearer than its estimate: two sigmas; any distance if it is suspect. */
 static float nearer_m(const goe_flight_slot_t *slot, const float away_ne_m[2]) {
     return slot->suspect ? POSITION_MAX_M : 2.0f * goe_flight_slot_sd_along_m(slot, away_ne_m[0], away_ne_m[1]);
 }
 
-/* The box of an obstacle with an outline reaches beyond it if the obstacle reaches far back, as a wall at the side does, and then its near
- * end may be nearer than its sigma says. So the box counts, unless all of the outline is well beyond max_cm. */
+/* The box of an obstacle reaches beyond its outline if the obstacle extends far back, as a wall at the side does. Its near end may then be
+ * nearer than its sigma shows. The box therefore counts, unless the whole outline is well beyond max_cm. */
 static bool may_reach(const goe_flight_t *flight, const goe_flight_slot_t *slot, uint32_t max_cm) {
     const goe_flight_history_position_t *own = goe_flight_history_newest_position(&flight->history);
     if (!own || !slot->in_view || is_passed_over(flight, slot)) {
@@ -797,7 +796,7 @@ static bool may_reach(const goe_flight_t *flight, const goe_flight_slot_t *slot,
     return goe_flight_geometry_reaches(max_cm, away, goe_flight_slot_radius_m(slot), nearer_m(slot, away) + far_m);
 }
 
-/* Where an obstacle was detected that has no position or an old one, or whose width is not known; and the boxes of the others. */
+/* Makes sectors unknown: those of detections without a position, with an old one or without a width; those of the other boxes. */
 static void close_sectors(const goe_flight_t *flight, uint32_t max_cm, uint16_t sector_cm[GOE_FLIGHT_SECTORS]) {
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         const goe_flight_slot_t *slot = &flight->slot[i];

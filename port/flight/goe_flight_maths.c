@@ -1,4 +1,4 @@
-/* Numbers, angles and rotations. SPDX-License-Identifier: MIT */
+/* Finite numbers, angles and rotations of the flight layer. SPDX-License-Identifier: MIT */
 #include "goe_flight_maths.h"
 
 #include <math.h>
@@ -19,9 +19,9 @@ bool goe_flight_all_within(const float *numbers, int count, float limit) {
     return within;
 }
 
-#define DEG_MAX 1.0e6f /* quarters of an angle beyond it fit no int */
+#define DEG_MAX 1.0e6f /* for a larger angle the number of quarter turns may not fit an int */
 
-/* Minimax, made by `python -m bench minimax`: 5e-9 rad of themselves. */
+/* Minimax polynomial, made by `python -m bench minimax`. Its own error: 5e-9 rad. */
 #define TAN_PI_8 0.414213562f
 #define ATAN_3 0.333327567f /* atan t = t - t z (A3 - A5 z + A7 z^2 - A9 z^3), |t| <= tan(pi/8), z = t^2 */
 #define ATAN_5 0.199718793f
@@ -47,7 +47,7 @@ float goe_flight_atan2_deg(float y, float x) {
     return y < 0.0f ? -deg : deg;
 }
 
-/* Taylor series up to t^7 and t^8: |t| <= pi/4, where the next term is below 3.2e-7. */
+/* Taylor series up to t^7 and t^8. For |t| <= pi/4, the next term is below 3.2e-7. */
 void goe_flight_sincos_deg(float angle_deg, float *sine, float *cosine) {
     const float deg = goe_flight_within(angle_deg, DEG_MAX) ? angle_deg : 0.0f;
     const int quarter = (int)(deg * (1.0f / 90.0f) + (deg < 0.0f ? -0.5f : 0.5f));

@@ -1,4 +1,4 @@
-/* Numbers, angles and rotations of the flight layer. SPDX-License-Identifier: MIT */
+/* Finite numbers, angles and rotations of the flight layer. SPDX-License-Identifier: MIT */
 #ifndef GOE_FLIGHT_MATHS_H
 #define GOE_FLIGHT_MATHS_H
 
@@ -58,7 +58,7 @@ static inline void goe_flight_count(uint16_t *counter) {
 /* Angle of (y, x) in degrees, -180 to 180, 0 for (0, 0). Error at most 3e-5 degrees. */
 float goe_flight_atan2_deg(float y, float x);
 
-/* Sine and cosine of |deg| <= 1e4. Error at most 1e-6. An angle beyond 1e6, or not finite, counts as 0; below as well. */
+/* Sine and cosine of |deg| <= 1e4. Error at most 1e-6. An angle beyond 1e6, or not finite, counts as 0, also in the next function. */
 void goe_flight_sincos_deg(float angle_deg, float *sine, float *cosine);
 
 /* The angle in [0, 360), for |deg| <= 1e4. */

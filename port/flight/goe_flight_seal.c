@@ -1,11 +1,11 @@
-/* Seal. SPDX-License-Identifier: MIT */
+/* Seal (checksum) over the layer's settings and cameras. SPDX-License-Identifier: MIT */
 #include "goe_flight_seal.h"
 
 #include "goe_flight_maths.h"
 
 #define SEED 0x5EA1u
 
-/* All floats, and nothing between them. */
+/* All floats, without padding between them. */
 #define FROM offsetof(goe_flight_t, settings)
 #define TO (offsetof(goe_flight_t, attitude_white_sd_deg) + sizeof(float))
 #define NUMBERS ((TO - FROM) / sizeof(float))
@@ -14,7 +14,7 @@ GOE_STATIC_ASSERT(TO - FROM ==
                       sizeof(goe_flight_settings_t) + GOE_CAMERAS_MAX * sizeof(goe_flight_camera_t) + sizeof(float),
                   sealed_memory_is_whole);
 
-/* As the estimator's seal: every change of one number, and of two bits but the same bit of two numbers 32 apart. */
+/* As the estimator's seal, it detects every change of one number, and of two bits, except the same bit of two numbers 32 apart. */
 static goe_seal_t seal_of(const goe_flight_t *flight) {
     const unsigned char *from = (const unsigned char *)flight + FROM;
     goe_seal_t seal = {SEED, SEED};

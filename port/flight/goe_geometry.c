@@ -1,4 +1,4 @@
-/* Places. SPDX-License-Identifier: MIT */
+/* Pixels of positions, latitude and longitude, bearings and sectors. SPDX-License-Identifier: MIT */
 #include "goe_geometry.h"
 
 #include <math.h>
@@ -11,20 +11,20 @@
 #define POLE_COSINE_MIN 0.017f
 #define TURN_E7 3600000000
 #define LENS_ROUNDS 16
-#define LENS_OFF 1.0e-3f /* focal lengths: less than a tenth of a degree */
-#define AHEAD_MIN 0.02f  /* of a direction, along the optical axis */
-#define STEEP 100.0f     /* tangent of a right angle, for bearings: straight down or up may be in between */
+#define LENS_OFF 1.0e-3f /* tolerance in focal lengths: less than a tenth of a degree */
+#define AHEAD_MIN 0.02f  /* least component of a direction along the optical axis */
+#define STEEP 100.0f     /* tangent that counts as a right angle of bearings: straight down or up may be in between */
 #define SECTOR_DEG 5.0f
-#define SECTOR_COS 0.99619470f /* of that */
+#define SECTOR_COS 0.99619470f /* of SECTOR_DEG */
 #define SECTOR_SIN 0.08715574f
-#define HALF_COS 0.99904822f /* of half of it */
+#define HALF_COS 0.99904822f /* of half a sector */
 #define HALF_SIN 0.04361939f
 #define CM_PER_M 100.0f
-#define TOUCH_MIN 1u /* cm: 0 means something else to some readers */
+#define TOUCH_MIN 1u /* cm; for some readers 0 has another meaning */
 
 /* ------------------------------------------------------------------------------------------------------------ camera -- */
 
-/* As defined at goe_camera_t: camera x, y, z are body y, z, x of the un-mounted camera, then yaw, pitch, roll. */
+/* The mounting, as defined at goe_camera_t: without it camera x, y, z are body y, z, x; then yaw, pitch, roll. */
 static void mount(const goe_camera_t *settings, float r[9]) {
     float sy;
     float cy;
@@ -65,8 +65,8 @@ void goe_flight_geometry_camera(goe_flight_camera_t *camera, const goe_camera_t 
     camera->border_px = settings->border_rel * settings->width_px;
 }
 
-/* Brown-Conrady, as goe_camera_t defines it; x and y in focal lengths. The third number is the larger of its two slopes, along the radius
- * and across. Returns false where the radial part folds back: nothing of there is in the image, though its distorted point may be. */
+/* The Brown-Conrady model of goe_camera_t; x and y in focal lengths. The third number is the larger of the two slopes, along and across the
+ * radius. Returns false where the radial part folds back: nothing there is in the image, although its distorted point may be. */
 static bool distort(const float lens[5], float x, float y, float distorted[3]) {
     const float square = x * x + y * y;
     const float radial = 1.0f + square * (lens[0] + square * (lens[1] + square * lens[4]));
@@ -77,8 +77,7 @@ static bool distort(const float lens[5], float x, float y, float distorted[3]) {
     return slope > 0.0f;
 }
 
-/* The inverse, by x <- x + (distorted - distort(x)) / slope, with the larger slope, so that no step overshoots. Returns false if it does
- * not converge. */
+/* The inverse, by x <- x + (distorted - distort(x)) / slope. The larger slope avoids overshoots. Returns false if it does not converge. */
 static bool undistort(const float lens[5], const float distorted[2], float *x, float *y) {
     *x = distorted[0];
     *y = distorted[1];
@@ -152,7 +151,7 @@ void goe_flight_geometry_lat_lon(int32_t origin_lat_e7, int32_t origin_lon_e7, c
 
 /* ---------------------------------------------------------------------------------------------------------- bearings -- */
 
-/* A ray through a pixel, north, east, down; its length is of no interest. Returns false if the lens model has none there. */
+/* The ray through a pixel: north, east, down, of any length. Returns false if the lens model has none there. */
 static bool look_through(const goe_flight_camera_t *camera, const float body_to_ned[9], float u_px, float v_px,
                          float ray[3]) {
     const float shown[2] = {(u_px - camera->center_px[0]) / camera->focal_px[0],
@@ -165,12 +164,12 @@ static bool look_through(const goe_flight_camera_t *camera, const float body_to_
     return found;
 }
 
-/* From -180 to 180. */
+/* Difference of two angles, from -180 to 180. */
 static float apart_deg(float from_deg, float to_deg) {
     return goe_flight_positive_deg(to_deg - from_deg + 180.0f) - 180.0f;
 }
 
-/* The camera's axes: x, y, and the optical one; north, east, down. */
+/* The camera's axes x, y and optical axis, as north, east, down. */
 static void find_axes(const goe_flight_camera_t *camera, const float q[4], float axis[3][3]) {
     float body_to_ned[9];
     goe_flight_rotation(q, body_to_ned);
@@ -202,7 +201,7 @@ static bool is_visible(const goe_flight_camera_t *camera, float axis[3][3], cons
 void goe_flight_geometry_open_sectors(uint16_t sector_cm[GOE_FLIGHT_SECTORS], uint32_t max_cm,
                                       const goe_flight_camera_t *camera, const float q[4], float above_m) {
     float axis[3][3];
-    float edge[3] = {HALF_COS, -HALF_SIN, above_m * CM_PER_M / (float)max_cm}; /* of sector 0, to its left */
+    float edge[3] = {HALF_COS, -HALF_SIN, above_m * CM_PER_M / (float)max_cm}; /* left edge of sector 0 */
     bool left = false;
     find_axes(camera, q, axis);
     for (int i = -1; i < GOE_FLIGHT_SECTORS; i++) {
@@ -222,11 +221,11 @@ void goe_flight_geometry_bearings(const goe_flight_camera_t *camera, const float
     float body_to_ned[9];
     float middle[3];
     float ray[3];
-    float tangent = 0.0f; /* of the widest corner */
+    float tangent = 0.0f; /* of the corner farthest from the middle */
     goe_flight_rotation(q, body_to_ned);
     bool unknown = !look_through(camera, body_to_ned, 0.5f * (extent_px[0] + extent_px[2]),
                                  0.5f * (extent_px[1] + extent_px[3]), middle);
-    for (int i = 0; i < 9; i++) { /* corners, and middles of the sides, which a lens bends outward; i = 4: the middle */
+    for (int i = 0; i < 9; i++) { /* corners, middles of the sides (a lens bends these outward), i = 4: the middle */
         const int row = i / 3;
         const float right = 0.5f * (float)(i % 3);
         const float down = 0.5f * (float)row;
@@ -238,7 +237,7 @@ void goe_flight_geometry_bearings(const goe_flight_camera_t *camera, const float
         unknown = unknown || along * STEEP <= across;
         tangent = unknown ? tangent : goe_flight_larger(tangent, across / along);
     }
-    const float half_deg = goe_flight_atan2_deg(tangent, 1.0f) + 1.0f; /* whole degrees, up */
+    const float half_deg = goe_flight_atan2_deg(tangent, 1.0f) + 1.0f; /* rounded up to whole degrees */
     const float middle_deg = goe_flight_positive_deg(goe_flight_atan2_deg(middle[1], middle[0]));
     bearings->middle_deg = (int16_t)middle_deg;
     bearings->half_deg = unknown ? GOE_FLIGHT_ANY_BEARING : (int16_t)half_deg;
@@ -263,7 +262,7 @@ bool goe_flight_geometry_reaches(uint32_t max_cm, const float away_ne_m[2], floa
     return !(near_side_cm(away_ne_m, radius_m) - nearer_m * CM_PER_M > (float)max_cm);
 }
 
-/* The nearest distance stays. GOE_FLIGHT_SECTOR_UNKNOWN replaces "clear", and no distance. */
+/* Keeps the nearest distance. GOE_FLIGHT_SECTOR_UNKNOWN replaces "clear", but no distance. */
 static void enter(uint16_t *sector_cm, uint16_t cm, uint32_t max_cm) {
     if (cm < *sector_cm || *sector_cm > max_cm) {
         *sector_cm = cm;

@@ -1,4 +1,4 @@
-/* Conversion of positions to pixels, latitude and longitude, and bearings. SPDX-License-Identifier: MIT */
+/* Pixels of positions, latitude and longitude, bearings and sectors. SPDX-License-Identifier: MIT */
 #ifndef GOE_FLIGHT_GEOMETRY_H
 #define GOE_FLIGHT_GEOMETRY_H
 
@@ -18,8 +18,8 @@ bool goe_flight_geometry_project(const goe_flight_camera_t *camera, const goe_fl
 void goe_flight_geometry_lat_lon(int32_t origin_lat_e7, int32_t origin_lon_e7, const float ne_m[2], int32_t *lat_e7,
                                  int32_t *lon_e7);
 
-/* Sectors whose ground at the distance max_cm a camera at this attitude and height views: a nearer obstacle on it, as high as the
- * aircraft, would be in the image. They are clear. */
+/* Marks as clear the sectors whose ground at the distance max_cm is visible to a camera at this attitude and height. Such an image also
+ * shows a nearer obstacle on that ground that is as high as the aircraft. */
 void goe_flight_geometry_open_sectors(uint16_t sector_cm[GOE_FLIGHT_SECTORS], uint32_t max_cm,
                                       const goe_flight_camera_t *camera, const float q[4], float above_m);
 
@@ -29,15 +29,15 @@ void goe_flight_geometry_open_sectors(uint16_t sector_cm[GOE_FLIGHT_SECTORS], ui
 void goe_flight_geometry_bearings(const goe_flight_camera_t *camera, const float q[4], const float extent_px[4],
                                   goe_flight_bearings_t *bearings);
 
-/* The sectors that these bearings touch, if they are wider by widen_deg on each side, are unknown. */
+/* Makes the sectors unknown that these bearings touch when they are wider by widen_deg on each side. */
 void goe_flight_geometry_close_sectors(uint16_t sector_cm[GOE_FLIGHT_SECTORS], const goe_flight_bearings_t *bearings,
                                        float widen_deg);
 
 /* Whether a circle, moved nearer by nearer_m, is within max_cm. */
 bool goe_flight_geometry_reaches(uint32_t max_cm, const float away_ne_m[2], float radius_m, float nearer_m);
 
-/* A circle at a place relative to the aircraft enters the sectors that it touches, by its nearest point. If this point is beyond
- * max_cm, but not if it is nearer by nearer_m, the clear ones of these sectors become unknown. */
+/* Enters a circle, at a place relative to the aircraft, into the sectors that it touches, with its nearest point. If this point is beyond
+ * max_cm, but within it when nearer by nearer_m, those of these sectors that are clear become unknown. */
 void goe_flight_geometry_enter_circle(uint16_t sector_cm[GOE_FLIGHT_SECTORS], uint32_t max_cm, const float away_ne_m[2],
                                       float radius_m, float nearer_m);
 

@@ -1,8 +1,8 @@
-/* Pose history. SPDX-License-Identifier: MIT
+/* History of the pose: two rings of samples, and the interpolation between samples. SPDX-License-Identifier: MIT
  *
- * Two rings, as autopilots publish attitude and position apart and at rates of their own. The newest sample is overwritten
- * while it lies less than 20 ms behind the one before it: so 4 ms samples leave gaps just under 24 ms, the newest sample is
- * always there, and 32 of them last for 0.6 s. */
+ * Autopilots publish attitude and position separately and at different rates, hence two rings. A new sample overwrites the newest one if
+ * that is less than 20 ms after the one before it. Samples every 4 ms therefore leave gaps just under 24 ms, the newest sample is always
+ * there, and 32 of them last for 0.6 s. */
 #include "goe_history.h"
 
 #include <math.h>
@@ -10,12 +10,12 @@
 #include "goe_flight_maths.h"
 
 #define THIN_US 20000
-#define GAP_MAX_US 500000                                /* over a longer gap nothing is interpolated */
-#define NEAR_S (2.0f * GAP_MAX_US * GOE_FLIGHT_S_PER_US) /* samples farther apart say nothing of a bend */
-#define CHANGES 4                                        /* of the rate, from sample to sample, that count */
+#define GAP_MAX_US 500000                                /* no interpolation over a longer gap */
+#define NEAR_S (2.0f * GAP_MAX_US * GOE_FLIGHT_S_PER_US) /* samples farther apart do not show a bend */
+#define CHANGES 4                                        /* number of changes of the rate that count */
 #define NONE (-1)
 #define NORM_MIN 0.5f
-/* Error of the interpolation over that of a straight line, one sigma: recorded flights, samples 200 ms apart. */
+/* Error of the interpolation over that of a straight line, one sigma, in recorded flights with samples 200 ms apart. */
 #define MISSED_BY_CUBIC 0.2f
 #define MISSED_BY_PARABOLA 0.5f
 
@@ -25,7 +25,7 @@ void goe_flight_history_clear(goe_flight_history_t *history) { memset(history, 0
 
 enum { ATTITUDES, POSITIONS };
 
-/* Place of the sample `back` before the newest in a ring whose next free place is `next`. */
+/* Index of the sample `back` samples before the newest, in a ring whose next free index is `next`. */
 static int place(int next, int back) {
     return (int)((unsigned)(next + 2 * GOE_FLIGHT_SAMPLES - 1 - back) % GOE_FLIGHT_SAMPLES);
 }
@@ -40,7 +40,7 @@ static uint32_t time_of(const goe_flight_history_t *h, int ring, int back) {
                              : h->position[place(h->position_next, back)].time_us;
 }
 
-/* Index for a sample of this time. Advances the ring if the sample needs a place of its own. NONE: it is not newer. */
+/* Index for a sample of this time; NONE: it is not newer. Advances the ring if the sample needs a place of its own. */
 static int make_place(goe_flight_history_t *h, int ring, uint32_t time_us) {
     uint8_t *next = ring == ATTITUDES ? &h->attitude_next : &h->position_next;
     uint8_t *count = ring == ATTITUDES ? &h->attitude_count : &h->position_count;
@@ -93,7 +93,7 @@ const goe_flight_history_position_t *goe_flight_history_newest_position(const go
 
 /* ----------------------------------------------------------------------------------------------------- interpolation -- */
 
-/* Two samples about a time: so many back from the newest, and how far on from the older to the newer. */
+/* The two samples around a time, counted back from the newest, and the share of the step from the older to the newer. */
 typedef struct {
     int newer, older;
     float share;
@@ -125,7 +125,7 @@ static float dot(const float a[4], const float b[4]) { return a[0] * b[0] + a[1]
 
 /* ----------------------------------------------------------------------------------------- attitude between samples -- */
 
-/* A sample by its time from the older one of the bracket, with the sign that makes it its neighbor: q and -q are the same. */
+/* A sample: its time from the older one of the bracket, and q with the sign of a neighbor, as q and -q are the same. */
 typedef struct {
     float at_s, q[4];
     bool known;
@@ -147,14 +147,14 @@ static knot_t knot(const goe_flight_history_t *h, int back, const goe_flight_his
     return k;
 }
 
-/* By how much the slope of the parabola through three knots, at the middle one, exceeds that from the middle to `to`. */
+/* The slope at the middle knot of the parabola through three knots, minus the slope of the line from the middle to `to`. */
 static float bend(const knot_t *outer, const knot_t *middle, const knot_t *to, int i) {
     const float before = (middle->q[i] - outer->q[i]) / (middle->at_s - outer->at_s);
     const float behind = (to->q[i] - middle->q[i]) / (to->at_s - middle->at_s);
     return (before - behind) * (to->at_s - middle->at_s) / (to->at_s - outer->at_s);
 }
 
-/* Of the turn between two attitudes, |2 vec(a* b)|^2, by |vec|^2 = 1 - dot^2; without cancellation for small turns. */
+/* Square of the angle between two attitudes: |2 vec(a* b)|^2, by |vec|^2 = 1 - dot^2; without cancellation for small turns. */
 static float turn_square(const float a[4], const float b[4]) {
     const float sign = dot(a, b) < 0.0f ? -1.0f : 1.0f;
     float square = 0.0f;
@@ -169,7 +169,7 @@ static float root_mean_deg(float integral, float time_s) {
 }
 
 static float rate_rms_deg_s(const goe_flight_history_t *h) {
-    float turns = 0.0f; /* integral of the rate's square */
+    float turns = 0.0f; /* integral of the squared rate */
     float time_s = 0.0f;
     for (int back = 0; back + 1 < count_of(h, ATTITUDES); back++) {
         const goe_flight_history_attitude_t *newer = &h->attitude[place(h->attitude_next, back)];
@@ -182,7 +182,7 @@ static float rate_rms_deg_s(const goe_flight_history_t *h) {
 }
 
 /* rms of the rate's change with time, over the latest samples. The error of the interpolation follows it, not the change at the image:
- * where three samples happen to lie on a line, the attitude between them does not. */
+ * three samples may lie on a line although the attitude between them does not. */
 static float change_rms_deg_s2(const goe_flight_history_t *h) {
     float changes = 0.0f; /* integral of the square */
     float time_s = 0.0f;
@@ -197,7 +197,7 @@ static float change_rms_deg_s2(const goe_flight_history_t *h) {
             for (int i = 0; i < 4; i++) {
                 square += goe_flight_square(bend(&older, &middle, &newer, i));
             }
-            /* a bend is half of the change of slope, over the step; an angle is twice its quaternion's vector */
+            /* a bend is half of the change of slope, over the step; an angle is twice the vector of its quaternion */
             changes += square * goe_flight_square(4.0f / newer.at_s) * between_s;
             time_s += between_s;
         }
@@ -205,9 +205,9 @@ static float change_rms_deg_s2(const goe_flight_history_t *h) {
     return root_mean_deg(changes, time_s);
 }
 
-/* Between two samples the cubic with slopes from the adjacent samples; if one of these is missing the parabola, without
- * both the straight line. Linear alone is off by half a degree in a flight that pitches by 24 degrees a second, rms, with
- * samples 200 ms apart; this by 0.1, and by 0.26 as a parabola. */
+/* Interpolates between two samples: by the cubic with slopes from the adjacent samples, by the parabola without one of these, by the
+ * straight line without both. In a flight that pitches by 24 degrees a second, rms, with samples 200 ms apart, the line is off by half a
+ * degree, the cubic by 0.1, the parabola by 0.26. */
 static void blend_attitude(const goe_flight_history_t *h, const bracket_t *bracket, goe_flight_history_pose_t *pose) {
     const goe_flight_history_attitude_t *from = &h->attitude[place(h->attitude_next, bracket->older)];
     const knot_t before = knot(h, bracket->older + 1, from);
@@ -226,13 +226,13 @@ static void blend_attitude(const goe_flight_history_t *h, const bracket_t *brack
         pose->q[i] = older.q[i] + f * (newer.q[i] - older.q[i]) + off;
     }
     const float norm =
-        sqrtf(dot(pose->q, pose->q)); /* neighbors are within half a turn: at least 0.7 but for the bend */
+        sqrtf(dot(pose->q, pose->q)); /* neighbors are within half a turn: at least 0.7, apart from the bend */
     const bool usable = norm > NORM_MIN;
     for (int i = 0; i < 4; i++) {
         pose->q[i] = usable ? pose->q[i] / norm : older.q[i];
     }
     const float missed = before.known && after.known ? MISSED_BY_CUBIC : MISSED_BY_PARABOLA;
-    const float bend_s2 = 0.5f * f * (1.0f - f) * step_s * step_s; /* of a straight line, by a change of the rate */
+    const float bend_s2 = 0.5f * f * (1.0f - f) * step_s * step_s; /* error of a straight line by a rate change */
     pose->spread_deg = bend_s2 > 0.0f ? missed * bend_s2 * change_rms_deg_s2(h) : 0.0f;
 }
 

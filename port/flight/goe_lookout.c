@@ -1,7 +1,7 @@
-/* Hazards from now. SPDX-License-Identifier: MIT
+/* The hazard of every obstacle from now on, and the worst of them. SPDX-License-Identifier: MIT
  *
- * The latest image is some tenths of a second old. A turn has bent the path since then, in half a second at the longest
- * (goe_flight_table_follow), by less than a meter. */
+ * The latest image is some tenths of a second old, half a second at most (goe_flight_table_follow). In this time, a turn bends the path by
+ * less than a meter. */
 #include "goe_lookout.h"
 
 #include <math.h>
@@ -13,10 +13,10 @@
 #define ANY_TIME_S 1.0e4f
 #define VELOCITY_MAX_M_S 1.0e3f
 #define SINCE_MAX_S 1.0e3f
-#define RISE_INSIDE 0.4f  /* of a probability by sigma: 1 from 1.25 sigma inside a limit on ... */
-#define RISE_OUTSIDE 0.2f /* ... 0 from 2.5 sigma outside of it on */
+#define RISE_INSIDE 0.4f  /* slope of a probability, per sigma inside the limit: 1 from 1.25 sigma on */
+#define RISE_OUTSIDE 0.2f /* the same outside the limit: 0 from 2.5 sigma on */
 #define SLOW_M2_S2 0.01f
-#define SOON_S 0.01f /* left before the obstacle ahead is reached */
+#define SOON_S 0.01f /* least time to an obstacle ahead */
 
 float goe_flight_lookout_doubt(const goe_flight_t *flight, const goe_flight_slot_t *slot) {
     return slot->suspect ? flight->settings.suspect_factor : 1.0f;
@@ -30,13 +30,13 @@ float goe_flight_lookout_drift_m(const goe_flight_t *flight, const goe_flight_sl
     return flight->settings.stale_growth_m_s * goe_flight_lookout_age_s(slot, now_us);
 }
 
-/* Probability that a distance lies below a limit: two straight lines, nowhere more than 0.01 below the normal distribution's. */
+/* Probability that a distance is below a limit: two straight lines, at most 0.01 below the normal distribution. */
 static float below(float limit_m, float distance_m, float sd_m) {
     const float inside = (limit_m - distance_m) / sd_m;
     return goe_flight_clamped(0.5f + inside * (inside > 0.0f ? RISE_INSIDE : RISE_OUTSIDE), 0.0f, 1.0f);
 }
 
-/* The clearance over the kept top at the closest approach, and what it leaves of the violation. */
+/* Sets the clearance over the kept top at the closest approach, and reduces the conflict probability accordingly. */
 static void pass_over(const goe_flight_t *flight, const goe_flight_slot_t *slot, float own_down_m,
                       goe_hazard_t *hazard) {
     const float limit_m = goe_flight_lookout_doubt(flight, slot) * flight->settings.clearance_m;
@@ -46,7 +46,7 @@ static void pass_over(const goe_flight_t *flight, const goe_flight_slot_t *slot,
     hazard->conflict_probability *= below(limit_m, hazard->clearance_m, hazard->clearance_sd_m);
 }
 
-/* The hazard of a place that is kept while the estimator knows none: from now on, at the velocity of the newest sample. */
+/* The hazard of a position that is kept while the estimator has none: from now on, at the velocity of the newest sample. */
 static void foresee_kept(const goe_flight_t *flight, const goe_flight_slot_t *slot, const float own_ned_m[3],
                          uint32_t now_us, goe_hazard_t *hazard) {
     const float *v = flight->velocity_ned_m_s;
@@ -90,7 +90,7 @@ static goe_decision_t decide(const goe_flight_t *flight, const goe_flight_slot_t
     return goe_decide(&slot->estimator, &intent, &rule, hazard);
 }
 
-/* The time that an action takes is for the reaction to know; here the rule's distances and probability count. */
+/* Computes the hazard by distances and probability. The reaction considers the time that an action takes. */
 static void assess(const goe_flight_t *flight, goe_flight_slot_t *slot, const float own_ned_m[3], uint32_t now_us) {
     goe_hazard_t hazard;
     if (!slot->used || !(slot->valid & GOE_HAS_POSITION)) {

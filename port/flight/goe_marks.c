@@ -1,4 +1,4 @@
-/* Resets. SPDX-License-Identifier: MIT */
+/* Detects resets of the autopilot's filter. SPDX-License-Identifier: MIT */
 #include "goe_marks.h"
 
 #include "goe_flight_maths.h"
@@ -12,7 +12,7 @@ goe_flight_marks_change_t goe_flight_marks_attitude(goe_flight_marks_t *marks, u
     return changed ? GOE_FLIGHT_MARKS_UNKNOWN : GOE_FLIGHT_MARKS_SAME;
 }
 
-/* A counter that rose by more than 1 hides an unreported jump. */
+/* If a counter rose by more than 1, one of the jumps was not reported. */
 static goe_flight_marks_change_t compare(uint32_t before, uint32_t now, bool counters) {
     if (before == now) {
         return GOE_FLIGHT_MARKS_SAME;

@@ -1,10 +1,10 @@
-/* Images in parts. SPDX-License-Identifier: MIT */
+/* Images whose detections come in several calls. SPDX-License-Identifier: MIT */
 #include "goe_parts.h"
 
 #include "goe_flight_maths.h"
 
 #define SAME_US                                                                                                        \
-    5000 /* between calls of one image: an age, or the offset of the sender's clock, differs a little from call to call */
+    5000 /* largest time between calls of one image: an age, or a clock offset, differs a little from call to call */
 
 static bool is_same(const goe_flight_parts_t *parts, uint32_t time_us) {
     const int32_t apart_us = goe_flight_between_us(time_us, parts->begun_us);

@@ -1,10 +1,10 @@
-/* Reaction. SPDX-License-Identifier: MIT
+/* The order: its choice against the worst obstacle, its review and its end. SPDX-License-Identifier: MIT
  *
- * A turn of radius R leaves the course by d after sqrt(d (2 R - d)) of it; by no more than R before it is crossed. So an
- * obstacle that needs d < R aside can be passed, and before one that needs more the only way is to turn away.
+ * A turn of radius R leaves the course by d after sqrt(d (2 R - d)) along it, and by at most R before it heads across the course. So the
+ * aircraft can pass an obstacle that needs d < R to the side; before one that needs more, it can only turn away.
  *
- * A side is a target next to the course: past the outline of the obstacle at hand, or farther out past that of another one, or in
- * the middle of the gap between the two. goe_clear.c computes how clear of all known obstacles each of them can be reached. */
+ * A side is a target next to the course: past the outline of the present obstacle; or farther out, past that of another one; or in the
+ * middle of the gap between the two. goe_clear.c computes the clear fraction of the path to each of them. */
 #include "goe_reaction.h"
 
 #include <math.h>
@@ -16,61 +16,61 @@
 
 #define GRAVITY_M_S2 9.80665f
 #define SURE_SIGMA 2.0f
-#define LIKELY_SIGMA 1.0f /* an order that is obeyed is left for another one only where that is likely to be better */
+#define LIKELY_SIGMA 1.0f /* an active order is replaced only if another one is likely to be better */
 #define SPEED_MIN_M_S 1.0f
 #define TIME_MAX_S 1.0e4f
 #define CLEAR_MAX_M 1000.0f
 #define LATE_VIOLATION                                                                                                 \
-    0.5f /* where no action comes in time, a hazard that is less likely than not is no reason for one */
+    0.5f /* least conflict probability that causes an order if no action comes in time: likelier than not */
 #define NOBODY (-1)
 #define TO_LEFT (-1)
 #define TO_RIGHT 1
 
-/* Shares of the margin. */
-#define FREE 0.75f     /* a way of this much is free: on the way to its target an aircraft cuts the corner */
-#define HOLD_FREE 0.5f /* to hold is for where no side is free */
-#define KEPT 0.33f     /* a target is left for a better one below this */
-#define GAIN 0.2f      /* by which that must be better */
+/* Fractions of the margin. */
+#define FREE 0.75f     /* a path with this fraction is clear: an aircraft cuts the corner on the way to its target */
+#define HOLD_FREE 0.5f /* the same for HOLD, which is for the case that no side is clear */
+#define KEPT 0.33f     /* below this fraction, a better target replaces the present one */
+#define GAIN 0.2f      /* by which the better one must exceed it */
 #define NEVER (-2.0f * GOE_FLIGHT_CLEAR_MAX)
 
-#define CLIMB_SLACK 0.5f /* of the clearance: a climb that lacks less than this is not left for another order */
+#define CLIMB_SLACK 0.5f /* of the clearance: a climb that lacks less than this is not replaced */
 
 #define SIDE_REMEMBERED_S 10.0f
-#define LATEST 1.2f      /* of roll_in_s: an autopilot may obey so late */
-#define TURNED 0.99f     /* cosine of 8 degrees: from there on the aircraft obeys */
-#define EARLY 0.33f      /* of roll_in_s: an autopilot may obey so soon */
-#define WHOLE 0.9f       /* more than this share makes no way better */
-#define SHARE_S 4.0f     /* s: what a whole margin is worth, between free ways */
-#define SAME_SIDE_S 0.5f /* ... and the side that was ordered before */
+#define LATEST 1.2f      /* of roll_in_s: the latest time at which an autopilot obeys */
+#define TURNED 0.99f     /* cosine of 8 degrees: after such a turn the aircraft obeys */
+#define EARLY 0.33f      /* of roll_in_s: the earliest time at which an autopilot obeys */
+#define WHOLE 0.9f       /* a larger fraction makes no path better */
+#define SHARE_S 4.0f     /* s: value of a whole margin, between clear paths */
+#define SAME_SIDE_S 0.5f /* s: value of the side that was ordered before */
 
-/* Everything about one obstacle on a course: right is positive aside. */
+/* One obstacle relative to the course. Aside is positive to the right. */
 typedef struct {
-    float ahead_m, aside_m;   /* of the center from the aircraft */
+    float ahead_m, aside_m;   /* of the center, from the aircraft */
     float keep_m;             /* required lateral distance of the center */
-    float rise_m, top_down_m; /* to the height that clears the top, and where that is; has_top */
+    float rise_m, top_down_m; /* climb to the height that clears the top, and its down; if has_top */
     float earliest_tcpa_s;
     bool has_top;
 } encounter_t;
 
-/* Scene of the decision: the aircraft on its course and every obstacle in the frame of it. */
+/* The scene of the decision: the aircraft on its course, and every obstacle in the frame of this course. */
 typedef struct {
     const goe_flight_t *flight;
     const goe_flight_reaction_own_t *own;
     goe_flight_clear_own_t at;
     goe_flight_clear_slot_t slot[GOE_FLIGHT_SLOTS];
     float speed_m_s;
-    float circle_m;  /* that is flown about a target; 0: it is flown through */
-    float line_m[2]; /* the line of the active order, or the course */
+    float circle_m;  /* radius of the circle around a target; 0: the aircraft flies through it */
+    float line_m[2]; /* direction of the order line, or of the course */
 } look_t;
 
 typedef struct {
     goe_flight_action_t action;
     float needed_s, cost_s;
-    float share;                /* of the margin, least */
-    goe_flight_clear_way_t way; /* of an order to a side, or to hold */
+    float share;                /* least clear fraction of the path */
+    goe_flight_clear_way_t way; /* path to a side, or of HOLD */
     float down_m;               /* of the target */
     int8_t edge, side;
-    bool gap; /* between the obstacle and `edge` */
+    bool gap; /* the target is between the obstacle and `edge` */
 } option_t;
 
 void goe_flight_reaction_clear(goe_flight_reaction_t *reaction) {
@@ -107,14 +107,14 @@ static float aside_sd_m(const goe_flight_slot_t *slot, const float course_ne[2])
     return sqrtf(goe_flight_larger(variance, 0.0f));
 }
 
-/* An order that is given now, or was given so long ago, is obeyed after straight on of this length. */
+/* Sets the distance straight on until the aircraft obeys an order that was given since_s ago. */
 static void set_delay(look_t *look, float since_s) {
     const float roll_in_s = look->flight->settings.roll_in_s;
     look->at.early_m = look->speed_m_s * goe_flight_larger(EARLY * roll_in_s - since_s, 0.0f);
     look->at.late_m = look->speed_m_s * goe_flight_larger(LATEST * roll_in_s - since_s, EARLY * roll_in_s);
 }
 
-/* False: no course to speak of. */
+/* Returns false if there is no course. */
 static bool look_around(const goe_flight_t *flight, const goe_flight_reaction_own_t *own, look_t *look) {
     const float north = flight->velocity_ned_m_s[0];
     const float east = flight->velocity_ned_m_s[1];
@@ -175,7 +175,7 @@ static float rise_of(const look_t *look, const encounter_t *e) {
     return e->has_top ? e->rise_m : look->flight->settings.clearance_m;
 }
 
-/* Of two ways: of those that are free the one of the least cost, else the clearer one. */
+/* Compares two paths: of clear ones, that of the lower cost is better; otherwise the clearer one. */
 static bool is_better(const option_t *a, const option_t *b) {
     const bool a_is_free = a->share >= FREE;
     const bool b_is_free = b->share >= FREE;
@@ -195,7 +195,7 @@ static bool is_on_course(const encounter_t *e) {
     return e->ahead_m > 0.0f && goe_flight_absolute(e->aside_m) < e->keep_m;
 }
 
-/* Of a climb straight on everything in the way is to be cleared: to the highest top, each in time. */
+/* Tries a climb straight on. It must clear everything in the way: up to the highest top, and each top in time. */
 static void try_climb(const look_t *look, int about, const encounter_t *e, option_t *best) {
     option_t option;
     const bool approach = look->own->approach;
@@ -230,7 +230,7 @@ static void try_climb(const look_t *look, int about, const encounter_t *e, optio
     }
 }
 
-/* The way that keeps aside_m to the right of the present course, abeam of the obstacle. */
+/* Tries the path that keeps aside_m to the right of the present course, abeam of the obstacle. */
 static void try_target(const look_t *look, const encounter_t *e, int side, float aside_m, int edge, bool gap,
                        option_t *best) {
     option_t option;
@@ -256,7 +256,7 @@ static void try_target(const look_t *look, const encounter_t *e, int side, float
     prefer(best, &option);
 }
 
-/* Past the outline of this obstacle; past that of another, farther out; between the two. */
+/* Tries the paths of a side: past this obstacle's outline; farther out, past that of another; between the two. */
 static void try_side(const look_t *look, int about, const encounter_t *e, int side, option_t *best) {
     const float base_m = e->aside_m + times(side, e->keep_m);
     const float wall_m = e->aside_m + times(side, look->slot[about].radius_m);
@@ -285,7 +285,7 @@ static void try_side(const look_t *look, int about, const encounter_t *e, int si
     }
 }
 
-/* Turns away and circles: about a point abeam, or at once. */
+/* Tries to turn away and circle: around a point abeam, or at once. */
 static void try_hold(const look_t *look, int side, option_t *best) {
     const float circle_m = goe_flight_larger(look->flight->settings.loiter_m, look->at.turn_m);
     for (int at_once = 0; at_once < 2; at_once++) {
@@ -311,8 +311,8 @@ static void try_hold(const look_t *look, int side, option_t *best) {
     }
 }
 
-/* The side or climb that is free and needs the least time; else to hold; else whatever keeps clearest. side: the only one that is
- * allowed; 0: both. */
+/* Chooses the clear side or climb of the lowest cost; otherwise HOLD; otherwise the clearest path. side: the only one that is allowed; 0:
+ * both. */
 static option_t choose(const look_t *look, int about, const encounter_t *e, int side) {
     option_t best;
     option_t hold;
@@ -354,7 +354,7 @@ static void order(goe_flight_t *flight, int slot, const look_t *look, const enco
     goe_flight_reaction_t *r = &flight->reaction;
     const float *course = look->at.course_ne;
     const bool aside = option->side != 0;
-    if (r->action == GOE_FLIGHT_NONE) { /* another order keeps the line of the first */
+    if (r->action == GOE_FLIGHT_NONE) { /* another order keeps the line of the first one */
         memcpy(r->from_ned_m, look->own->ned_m, sizeof r->from_ned_m);
         memcpy(r->course_ne, course, sizeof r->course_ne);
     }
@@ -382,7 +382,7 @@ static void order(goe_flight_t *flight, int slot, const look_t *look, const enco
     r->rising = r->falling = false;
 }
 
-/* Whether the hazard has stood for long enough; one that leaves no time needs none. */
+/* Whether the hazard has lasted long enough; it is due at once if no time is left. */
 static bool is_due(goe_flight_reaction_t *r, const goe_flight_settings_t *settings, const encounter_t *e,
                    float needed_s, bool is_hazard, uint32_t now_us) {
     if (!is_hazard || e->earliest_tcpa_s > needed_s + settings->reserve_s) {
@@ -394,7 +394,7 @@ static bool is_due(goe_flight_reaction_t *r, const goe_flight_settings_t *settin
     return e->earliest_tcpa_s <= needed_s || goe_flight_between_s(now_us, r->rising_us) >= settings->confirm_s;
 }
 
-/* How far to the right of the line the target is to lie, by one obstacle: past its outline on the side of the order; in a gap, at the
+/* Distance of the target to the right of the line, as one obstacle requires: past its outline on the side of the order; in a gap, at the
  * wall that is passed. */
 static float edge_of(const look_t *look, const goe_flight_reaction_t *r, int i, int side) {
     const goe_flight_clear_slot_t *one = &look->slot[i];
@@ -407,8 +407,8 @@ static float edge_of(const look_t *look, const goe_flight_reaction_t *r, int i, 
     return aside_m + times(side, beyond_m);
 }
 
-/* The target moves with the outline that it lies past, along the course on which it was chosen, and never inside of the obstacle's
- * that the order is about; or it stays in the middle of a gap. */
+/* Moves the target with the outline that it passes, along the course on which it was chosen, but never inside the outline of the order's
+ * obstacle. In a gap, the target stays in the middle. */
 static void follow(const look_t *look, goe_flight_reaction_t *r) {
     float ahead_m;
     float aside_m;
@@ -424,7 +424,7 @@ static void follow(const look_t *look, goe_flight_reaction_t *r) {
     r->target_ned_m[1] = r->from_ned_m[1] + r->along_ne[1] * ahead_m + r->along_ne[0] * target_m;
 }
 
-/* How clear the way is on which the order is flown from here. */
+/* Clear fraction of the order's path from here. */
 static float share_of_order(const look_t *look, const goe_flight_reaction_t *r, int *nearest) {
     goe_flight_clear_way_t way;
     memset(&way, 0, sizeof way);
@@ -434,7 +434,7 @@ static float share_of_order(const look_t *look, const goe_flight_reaction_t *r, 
     way.circle_m = look->circle_m;
     way.sigmas = LIKELY_SIGMA;
     way.turns_away = r->action == GOE_FLIGHT_HOLD || !(way.target_m[0] > 0.0f);
-    if (!(way.circle_m > 0.0f) && is_aside(r->action)) { /* it is flown through: also the line behind it counts */
+    if (!(way.circle_m > 0.0f) && is_aside(r->action)) { /* it is flown through: the line beyond it also counts */
         const float on_m = goe_flight_larger(2.0f * look->at.turn_m - way.target_m[0], 0.0f);
         way.target_m[0] += on_m * way.line_m[0];
         way.target_m[1] += on_m * way.line_m[1];
@@ -446,14 +446,14 @@ static float share_of_order(const look_t *look, const goe_flight_reaction_t *r, 
     return goe_flight_clear_share(&look->at, look->slot, &way, NEVER, nearest);
 }
 
-/* Left of another obstacle, but still right of the one that the order is about, or the other way round: no change of side. */
+/* Whether the other path is left of another obstacle, but still right of that of the order, or vice versa: no change of side. */
 static bool is_between(const look_t *look, const goe_flight_reaction_t *r, int nearest, const option_t *other) {
     return is_aside(r->action) && is_aside(other->action) && r->slot != NOBODY && r->slot != nearest &&
            times(r->side, other->way.target_m[1] - look->slot[r->slot].at_m[1]) > 0.0f;
 }
 
-/* Another way, if the one that was ordered is not clear any more: of the same side, or of the other one once; a second time only if
- * it is free and twice as clear. */
+/* Looks for another path if that of the order is no longer clear: first on the same side, then on the other side, which must be twice as
+ * clear. After one change of side, another one needs a clear path. */
 static void find_better(goe_flight_t *flight, look_t *look, float share, int nearest) {
     goe_flight_reaction_t *r = &flight->reaction;
     encounter_t e;
@@ -483,7 +483,7 @@ static void find_better(goe_flight_t *flight, look_t *look, float share, int nea
 static void review(goe_flight_t *flight, look_t *look) {
     goe_flight_reaction_t *r = &flight->reaction;
     int nearest;
-    if (r->action == GOE_FLIGHT_NONE || r->side == 0 || is_up(r->action)) { /* it may have ended just now */
+    if (r->action == GOE_FLIGHT_NONE || r->side == 0 || is_up(r->action)) { /* the order may have just ended */
         return;
     }
     follow(look, r);
@@ -511,7 +511,7 @@ static void review(goe_flight_t *flight, look_t *look) {
 
 /* --------------------------------------------------------------------------------------------------------------- end -- */
 
-/* Of one obstacle: whether it is on the line of the order or between that and the aircraft, and is not passed. */
+/* Whether an obstacle is on the order line, or between this line and the aircraft, and is not passed. */
 static bool is_in_the_way(const look_t *look, int i, float own_aside_m) {
     const goe_flight_slot_t *slot = &look->flight->slot[i];
     const goe_flight_reaction_t *r = &look->flight->reaction;
@@ -531,7 +531,7 @@ static bool is_in_the_way(const look_t *look, int i, float own_aside_m) {
            aside_m < goe_flight_larger(own_aside_m, 0.0f) + sure_m;
 }
 
-/* Whether the aircraft may turn back to the line from here, whatever is behind. */
+/* Whether the aircraft may turn back to the order line from here, whatever is behind it. */
 static bool is_way_back_clear(const look_t *look, float own_ahead_m, float own_aside_m) {
     const goe_flight_reaction_t *r = &look->flight->reaction;
     const float on_m = own_ahead_m + goe_flight_absolute(own_aside_m) + 2.0f * look->at.turn_m;
@@ -546,7 +546,7 @@ static bool is_way_back_clear(const look_t *look, float own_ahead_m, float own_a
     return goe_flight_clear_share(&look->at, look->slot, &way, HOLD_FREE, &nearest) >= HOLD_FREE;
 }
 
-/* How far aside of the line the aircraft comes before it flies back: straight on until it obeys, and a turn. */
+/* Largest distance from the order line before the aircraft flies back: straight on until it obeys, then a turn. */
 static float farthest_aside_m(const look_t *look, float own_aside_m) {
     const float *line = look->flight->reaction.course_ne;
     const float *course = look->at.course_ne;
@@ -557,7 +557,7 @@ static float farthest_aside_m(const look_t *look, float own_aside_m) {
     return (sine > 0.0f) == (own_aside_m > 0.0f) ? own_aside_m + (sine > 0.0f ? way_m : -way_m) : own_aside_m;
 }
 
-/* Whether the aircraft flies between the line of the order and this obstacle: on the side of the order it would be turned into it. */
+/* Whether the aircraft flies between the order line and this obstacle: on the side of the order, it would turn into the obstacle. */
 static bool is_outside(const look_t *look, const goe_flight_reaction_t *r, int i) {
     float ahead_m;
     float aside_m;
@@ -565,8 +565,8 @@ static bool is_outside(const look_t *look, const goe_flight_reaction_t *r, int i
     return is_aside(r->action) && i != r->slot && times(r->side, aside_m) > 0.0f;
 }
 
-/* Whether the obstacle of an order to a side lies ahead, and the way past it farther out than that past the next on the line: to turn to
- * that one would lead back into it. */
+/* Whether the obstacle of an order to a side is ahead, and the path past it is farther out than that past the next one on the line. An
+ * order for the next one would lead back into it. */
 static bool is_farther_out(const look_t *look, const goe_flight_reaction_t *r, int next) {
     float ahead_m;
     float aside_m;
@@ -575,15 +575,15 @@ static bool is_farther_out(const look_t *look, const goe_flight_reaction_t *r, i
            times(r->side, edge_of(look, r, r->slot, r->side) - edge_of(look, r, next, r->side)) > 0.0f;
 }
 
-/* Whether an obstacle counts for the end of the order. After a climb the aircraft sinks back to its line: the height of that decides. */
+/* Whether an obstacle counts for the end of the order. After a climb the aircraft descends to its line, whose height decides. */
 static bool counts_at_end(const look_t *look, int i) {
     const goe_flight_reaction_t *r = &look->flight->reaction;
     const bool up = is_up(r->action);
     return up ? goe_flight_clear_counts(look->flight, i, r->from_ned_m[2]) : look->slot[i].counts;
 }
 
-/* Whether the line of the order may be flown again: every obstacle lies behind on it, or surely aside of it, or is unknown; and the way
- * back to it is clear. The order turns to the nearest obstacle that is left. */
+/* Whether the order line may be flown again: every obstacle is behind on it, or surely to its side, or unknown; and the way back to it is
+ * clear. Otherwise, the order turns to the nearest obstacle that remains. */
 static bool is_over(const look_t *look, goe_flight_reaction_t *r, bool *behind) {
     float own_ahead_m;
     float own_aside_m;
@@ -607,7 +607,7 @@ static bool is_over(const look_t *look, goe_flight_reaction_t *r, bool *behind) 
     *behind = false;
     if (waits) {
         const bool may_turn = !left && r->slot != NOBODY && next != NOBODY && !is_up(r->action);
-        if (may_turn && !is_farther_out(look, r, next)) { /* past the one, before the next */
+        if (may_turn && !is_farther_out(look, r, next)) { /* one is passed, the next is ahead */
             r->slot = (int8_t)next;
             r->edge = is_aside(r->action) ? (int8_t)next : NOBODY;
             r->gap = false;
@@ -644,7 +644,7 @@ static void end_if_over(goe_flight_t *flight, const look_t *look) {
     }
 }
 
-/* The side of an order that has ended is forgotten later: an order soon after belongs to the same encounter. */
+/* Forgets the side of an ended order, but only after a while: an order soon after it belongs to the same encounter. */
 static void forget_side(goe_flight_reaction_t *r, uint32_t now_us) {
     if (r->action == GOE_FLIGHT_NONE && r->side != 0 &&
         goe_flight_between_s(now_us, r->falling_us) > SIDE_REMEMBERED_S) {
@@ -653,7 +653,7 @@ static void forget_side(goe_flight_reaction_t *r, uint32_t now_us) {
     }
 }
 
-/* The height of a climb rises with the tops on the course. */
+/* Raises the height of a climb with the tops on the course. */
 static void rise(goe_flight_t *flight, const look_t *look) {
     goe_flight_reaction_t *r = &flight->reaction;
     for (int i = 0; i < GOE_FLIGHT_SLOTS && is_up(r->action); i++) {
@@ -701,15 +701,14 @@ static void mend(goe_flight_reaction_t *r) {
 
 /* ------------------------------------------------------------------------------------------------------------- decide -- */
 
-/* Why no order is given here; GOE_FLIGHT_REASON_NONE: it may be. */
+/* The reason why no order may be given now; GOE_FLIGHT_REASON_NONE: it may. */
 static goe_flight_reason_t withheld(const goe_flight_t *flight, const goe_flight_reaction_own_t *own, float speed_m_s) {
     if (own->grounded) {
         return GOE_FLIGHT_REASON_LANDING;
     }
     const goe_flight_settings_t *settings = &flight->settings;
     const float above_m = flight->ground_down_m - own->ned_m[2];
-    const bool is_above =
-        above_m > -SURE_SIGMA * settings->home_sd_m; /* otherwise the ground lies lower than it is taken for */
+    const bool is_above = above_m > -SURE_SIGMA * settings->home_sd_m; /* otherwise the ground is lower than assumed */
     if (is_above && above_m < settings->order_height_m && settings->order_height_m > 0.0f) {
         return GOE_FLIGHT_REASON_LOW;
     }
@@ -723,10 +722,10 @@ static float simplest_s(const look_t *look, const encounter_t *e) {
     return goe_flight_smaller(right_s, left_s);
 }
 
-/* Time that is left beyond what the simplest action against this obstacle takes. */
+/* Time that is left, minus that of the simplest action against this obstacle. */
 static float slack_s(const look_t *look, const encounter_t *e) { return e->earliest_tcpa_s - simplest_s(look, e); }
 
-/* The worst obstacle; but another one, where that leaves less time. */
+/* The worst obstacle, or another one that leaves less time. */
 static int most_pressing(const look_t *look, int worst) {
     encounter_t e;
     int pressing = worst;
@@ -747,7 +746,7 @@ static int most_pressing(const look_t *look, int worst) {
     return pressing;
 }
 
-/* A side that was changed once is changed again only for one that is twice as clear. */
+/* After one change of side, only a side that is twice as clear causes another change. */
 static option_t choose_steadily(const look_t *look, int about, const encounter_t *e) {
     const goe_flight_reaction_t *r = &look->flight->reaction;
     const option_t option = choose(look, about, e, 0);
@@ -758,8 +757,8 @@ static option_t choose_steadily(const look_t *look, int about, const encounter_t
     return same.share > 0.0f && option.share < 2.0f * same.share ? same : option;
 }
 
-/* The previous order has just ended, the autopilot is about to fly back to its line, and that is clear: an obstacle on the course of this
- * moment is no reason for another order. */
+/* Whether the previous order has just ended, and the autopilot is about to fly back to its line on a clear path. An obstacle on the present
+ * course is then no reason for another order. */
 static bool is_flying_back(look_t *look) {
     const goe_flight_reaction_t *r = &look->flight->reaction;
     const float since_s = goe_flight_between_s(look->own->time_us, r->falling_us);
@@ -775,7 +774,7 @@ static bool is_flying_back(look_t *look) {
     return clear;
 }
 
-/* Whether an active climb does not reach the height over this obstacle before it. */
+/* Whether an active climb does not reach the height over this obstacle in time. */
 static bool is_too_low(const look_t *look, const encounter_t *e) {
     const goe_flight_settings_t *settings = &look->flight->settings;
     const float since_s = goe_flight_between_s(look->own->time_us, look->flight->reaction.ordered_us);
@@ -785,8 +784,8 @@ static bool is_too_low(const look_t *look, const encounter_t *e) {
     return begins_s + rise_m / settings->climb_m_s > e->earliest_tcpa_s;
 }
 
-/* Gives the order about one obstacle once it is due; returns the time that the best action needs. If that time is not left and the
- * conflict probability is too low for a late order, it sets *unlikely and changes nothing; with a null pointer it only gives no order. */
+/* Gives the order against one obstacle when it is due. Returns the time that the best action needs. If that time is not left, and the
+ * conflict probability is too low for a late order, sets *unlikely and changes nothing; with a null pointer, it only gives no order. */
 static float answer(goe_flight_t *flight, look_t *look, int about, bool *unlikely) {
     goe_flight_reaction_t *r = &flight->reaction;
     const goe_flight_settings_t *settings = &flight->settings;

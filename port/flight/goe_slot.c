@@ -1,4 +1,4 @@
-/* One obstacle. SPDX-License-Identifier: MIT */
+/* One tracked obstacle: its estimator, and the estimate that it keeps. SPDX-License-Identifier: MIT */
 #include "goe_slot.h"
 
 #include <math.h>
@@ -7,16 +7,16 @@
 #include "goe_flight_maths.h"
 #include "goe_geometry.h"
 
-#define AROUND 0.25f /* a box is taken as larger by this share: detectors and predictions err */
+#define AROUND 0.25f /* share by which a box is enlarged: detectors and predictions err */
 #define OVERLAP_MIN 0.3f
-#define ALIKE 3.0f /* a box this many times as wide or high as the latest one is of another thing */
+#define ALIKE 3.0f /* a box this many times as wide or high as the latest one shows another object */
 #define PIXEL_MAX 32000.0f
 #define SIZE_MIN_PX 8.0f
 #define KIND_MAX_M 1.0e3f
-#define SHORT_M2 1.0e-6f     /* of a vector without a direction */
-#define KIND_SHARE_MIN 0.01f /* of a size: the least sigma that the estimator takes */
+#define SHORT_M2 1.0e-6f     /* square of a vector that has no direction */
+#define KIND_SHARE_MIN 0.01f /* least sigma over size that the estimator accepts */
 #define LOCATED_S                                                                                                      \
-    0.15f /* detections for so long without a new position show something else; shorter: images too soon */
+    0.15f /* detections that give no new position for longer show another object; for less, images came too soon */
 
 /* ------------------------------------------------------------------------------------------------------------- track -- */
 
@@ -74,7 +74,7 @@ static void set_pose(const goe_flight_slot_t *slot, const goe_flight_slot_view_t
     pose->reset_delta_known = true;
 }
 
-/* Left and right within the border are not measured, and the top may lie outside with them. */
+/* Left and right in the border zone are not measured. The top may then also be outside the image. */
 static void keep_inside(goe_image_t *image, const goe_flight_camera_t *camera) {
     goe_pixel_t *side[3] = {&image->left, &image->right, &image->top};
     bool all = true;
@@ -126,7 +126,7 @@ static void note_center(goe_flight_slot_t *slot, const goe_estimate_t *estimate)
     slot->covariance_ne_m2[2] = goe_flight_square(estimate->sigma.center_east_m);
 }
 
-/* A box or line whose length is not known has no center: the middle of its front edge and the spread of that replace it. */
+/* A box or line of unknown length has no center. The middle of its front edge and the covariance of that replace it. */
 static void note_front(goe_flight_slot_t *slot, const float camera_ned_m[3], const goe_estimate_t *estimate) {
     float covariance[GOE_QUANTITIES][GOE_QUANTITIES];
     float s;
@@ -156,7 +156,7 @@ static void note_outline(goe_flight_slot_t *slot, const goe_estimate_t *estimate
     }
 }
 
-/* since_s: since the image before. */
+/* since_s: time since the previous image. */
 static void note(goe_flight_slot_t *slot, const float camera_ned_m[3], const goe_estimate_t *estimate, float since_s) {
     const bool placed = (estimate->valid & GOE_HAS_POSITION) != 0u;
     if (slot->remembered && !placed) {
@@ -181,7 +181,7 @@ static void note(goe_flight_slot_t *slot, const float camera_ned_m[3], const goe
     note_outline(slot, estimate);
 }
 
-/* At half the top's height, or half the own one where the top is not known. */
+/* The pixel at half the top's height, or at half the aircraft's height if the top is unknown. */
 static bool predict(const goe_flight_slot_t *slot, const goe_flight_camera_t *camera,
                     const goe_flight_history_pose_t *pose, float pixel[2]) {
     const float own_m = slot->ground_down_m - pose->ned_m[2];
@@ -190,7 +190,7 @@ static bool predict(const goe_flight_slot_t *slot, const goe_flight_camera_t *ca
     return goe_flight_geometry_project(camera, pose, point, pixel);
 }
 
-/* Whether a box shows the slot's position; the position may lie outside a box that the image border cuts. */
+/* Whether a box shows the slot's position. If the image border cuts the box, the position may lie outside it. */
 static bool shows_position(const goe_flight_slot_t *slot, const goe_flight_camera_t *camera,
                            const goe_flight_history_pose_t *pose, const int16_t box_px[4]) {
     const float left = (float)box_px[0];
@@ -203,8 +203,8 @@ static bool shows_position(const goe_flight_slot_t *slot, const goe_flight_camer
     return ahead && goe_flight_within(pixel[0] - 0.5f * (left + right), (0.5f + AROUND) * (right - left) + SIZE_MIN_PX);
 }
 
-/* Whether the latest detections show something else than the obstacle at its position: they do not move it, or are not where it is. It
- * stays so until the position is new. */
+/* Whether the latest detections show another object than the obstacle at its position: they do not change its position, or are elsewhere.
+ * This stays set until the position is new. */
 static void note_located(goe_flight_slot_t *slot, const goe_flight_camera_t *camera, const goe_flight_slot_view_t *view,
                          const goe_flight_detection_t *seen) {
     const bool old = slot->age_s + goe_flight_between_s(view->time_us, slot->taken_us) > LOCATED_S;
@@ -244,7 +244,7 @@ void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t cam
     set_pose(slot, view, jumps_ned_m, camera_ned_m[2], &image.pose);
     image.camera = number;
     image.noise.attitude_sd_deg = view->attitude_sd_deg;
-    image.noise.height_sd_m = slot->height_sd_m; /* counts once, in an image of the estimator's choice */
+    image.noise.height_sd_m = slot->height_sd_m; /* the estimator uses it once, in an image of its choice */
     if (seen) {
         set_features(&image, camera, seen);
         goe_flight_slot_bearings_of(seen, camera, view->pose.q, &slot->bearings);
@@ -281,7 +281,7 @@ static void widen(float extent[4], float u, float v, bool *any) {
     *any = true;
 }
 
-/* Left, top, right and bottom of the points of its border; false: it has none. */
+/* Left, top, right and bottom of its box, or of its points; false: it has none. */
 static bool extent_of(const goe_flight_detection_t *detection, float extent[4]) {
     const goe_pixel_t *const points[6] = {&detection->left,      &detection->right,     &detection->top,
                                           &detection->base_left, &detection->base_near, &detection->base_right};
@@ -304,7 +304,7 @@ static bool extent_of(const goe_flight_detection_t *detection, float extent[4]) 
 bool goe_flight_slot_box_of(const goe_flight_detection_t *detection, int16_t box_px[4]) {
     float extent[4];
     const bool any = extent_of(detection, extent);
-    for (int axis = 0; axis < 2; axis++) { /* two points of one row have a height too */
+    for (int axis = 0; axis < 2; axis++) { /* two points in one row also get a height */
         const float lacking = 0.5f * goe_flight_larger(SIZE_MIN_PX - (extent[axis + 2] - extent[axis]), 0.0f);
         const float low = goe_flight_clamped(extent[axis] - lacking, -PIXEL_MAX, PIXEL_MAX);
         const float high = goe_flight_clamped(extent[axis + 2] + lacking, -PIXEL_MAX, PIXEL_MAX);
@@ -314,7 +314,7 @@ bool goe_flight_slot_box_of(const goe_flight_detection_t *detection, int16_t box
     return any;
 }
 
-/* What the detection does not show of a box reaches to the image's border. */
+/* A side that the detection's box lacks is at the image's border. */
 void goe_flight_slot_bearings_of(const goe_flight_detection_t *detection, const goe_flight_camera_t *camera,
                                  const float q[4], goe_flight_bearings_t *bearings) {
     const goe_box_t *box = &detection->box;
@@ -341,7 +341,7 @@ static bool matches(const int16_t a[4], const int16_t b[4]) {
 float goe_flight_slot_claims(const goe_flight_slot_t *slot, const goe_flight_camera_t cameras[GOE_CAMERAS_MAX],
                              const goe_flight_slot_view_t *view, const int16_t box_px[4]) {
     float pixel[2];
-    const bool comparable = slot->camera == view->camera; /* boxes of two cameras are not */
+    const bool comparable = slot->camera == view->camera; /* boxes of two cameras are not comparable */
     if (!(slot->valid & GOE_HAS_POSITION)) {
         const float overlap = goe_flight_candidate_overlap(slot->box_px, box_px);
         return comparable && overlap >= OVERLAP_MIN ? overlap : 0.0f;

@@ -27,10 +27,10 @@ float goe_flight_slot_radius_m(const goe_flight_slot_t *slot);
 
 #define GOE_FLIGHT_SLOT_SD_MIN_M2 0.25f /* no distance to a kept place is known better than to half a meter */
 
-/* One sigma of the center along a horizontal vector; of a vector without a direction, at least the largest. */
+/* One sigma of the center along a horizontal vector; for a vector without a direction, at least the largest one. */
 float goe_flight_slot_sd_along_m(const goe_flight_slot_t *slot, float north_m, float east_m);
 
-/* Whether its obstacle was detected, and has no position yet, or one that does not follow its detections. */
+/* Whether its obstacle was detected, but has no position, or one that does not follow its detections. */
 bool goe_flight_slot_is_unplaced(const goe_flight_slot_t *slot);
 
 /* Shifts the slot's obstacle by a jump of the autopilot's position. */
@@ -43,7 +43,7 @@ void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t cam
                           const goe_flight_slot_view_t *view, const float jumps_ned_m[3],
                           const goe_flight_detection_t *seen);
 
-/* Whether the estimator takes this kind. goe_flight_slot_take() leaves out any other one, as the estimator would refuse the image. */
+/* Whether the estimator accepts this kind. goe_flight_slot_take() leaves out any other, because the estimator would refuse the image. */
 bool goe_flight_slot_is_good_kind(const goe_kind_t *kind);
 
 /* Computes a detection's box in whole pixels, from its box or its points. Returns false if it has neither. */

@@ -1,4 +1,4 @@
-/* Obstacle table. SPDX-License-Identifier: MIT */
+/* Assigns detections to slots, and ends tracks. SPDX-License-Identifier: MIT */
 #include "goe_table.h"
 
 #include "goe_candidate.h"
@@ -8,9 +8,9 @@
 
 #define COORDINATE_MAX_PX 1.0e5f
 #define PIXEL_SD_MAX_PX 100.0f
-#define UNDETECTED_S 2.0f /* after which a track without a position, or a passed one, may be given up */
-#define WORTH_KEPT 0.5f   /* a slot of more worth is never given up for a new obstacle */
-#define ORDERED_S 30.0f   /* while an order is active every obstacle is kept so long: the way back leads past it */
+#define UNDETECTED_S 2.0f /* after this time a track without a position, or a passed one, may be evicted */
+#define WORTH_KEPT 0.5f   /* a slot of a higher worth is never evicted */
+#define ORDERED_S 30.0f   /* while an order is active every obstacle is kept this long: the way back leads past it */
 #define NOBODY (-1)
 
 /* ------------------------------------------------------------------------------------------------------- detections -- */
@@ -40,11 +40,11 @@ static bool is_good(const goe_flight_detection_t *d) {
            is_good_pixel(&d->base_right);
 }
 
-/* A score of exactly 0 is none: a field that nobody set must not hide an obstacle. */
+/* A score of exactly 0 means no score: a field that nobody set must not hide an obstacle. */
 static bool is_weak(float score, float least) { return score > 0.0f && score < least; }
 
-/* Detections to be used, as bits; the others are counted, and so are bad kinds of used ones. *readable: there is a readable
- * detection, or the image has none. */
+/* The detections to use, as bits. The others are counted, and so are bad kinds of used ones. *readable: there is a readable detection, or
+ * the image has none. */
 static uint32_t usable(goe_flight_t *flight, const goe_flight_slot_view_t *view, const goe_flight_frame_t *frame,
                        bool *readable) {
     uint32_t bits = 0u;
@@ -79,7 +79,7 @@ static int slot_of(const goe_flight_t *flight, uint8_t camera, uint32_t id) {
     return NOBODY;
 }
 
-/* The slot whose obstacle this box shows best, of those that may be taken over, as bits. */
+/* The slot whose obstacle this box shows best. lost: the slots that may be taken over, as bits. */
 static int claimant(const goe_flight_t *flight, const goe_flight_slot_view_t *view, uint32_t lost,
                     const int16_t box_px[4], float *claim) {
     int best = NOBODY;
@@ -95,8 +95,8 @@ static int claimant(const goe_flight_t *flight, const goe_flight_slot_view_t *vi
     return best;
 }
 
-/* Slots without a detection in this image. Before it is complete, slots with one in the previous image are left out: theirs may still
- * come. */
+/* Slots without a detection in this image. While the image is incomplete, slots with a detection in the previous image are left out: theirs
+ * may still come. */
 static uint32_t lost_slots(const goe_flight_t *flight, const goe_flight_slot_view_t *view, uint32_t taken,
                            bool complete) {
     uint32_t bits = 0u;
@@ -110,7 +110,7 @@ static uint32_t lost_slots(const goe_flight_t *flight, const goe_flight_slot_vie
     return bits & ~taken;
 }
 
-/* The less, the sooner it is given up. */
+/* The slot of the lowest worth is evicted first. */
 static float worth(const goe_flight_t *flight, int i, uint32_t now_us) {
     const goe_flight_slot_t *slot = &flight->slot[i];
     const bool undetected = goe_flight_between_s(now_us, slot->detected_us) > UNDETECTED_S;
@@ -150,7 +150,7 @@ static int free_place(goe_flight_t *flight, uint32_t now_us) {
 
 /* ------------------------------------------------------------------------------------------------------------- frame -- */
 
-/* An estimator whose own settings are lost takes those of another. */
+/* An estimator that lost its own settings takes those of another slot. */
 static void mend(goe_flight_t *flight, int i) {
     goe_estimator_t *lost = &flight->slot[i].estimator;
     for (int k = 0; k < GOE_FLIGHT_SLOTS; k++) {
@@ -182,14 +182,14 @@ static void give_known(goe_flight_t *flight, const goe_flight_slot_view_t *view,
             *waiting &= ~(1u << k);
             if (((*taken >> i) & 1u) == 0u) {
                 give(flight, i, view, &frame->detection[k], taken);
-            } else { /* a second one of this id */
+            } else { /* a second detection of this id */
                 goe_flight_candidate_crowd(&flight->waiting, view->time_us);
             }
         }
     }
 }
 
-/* Whether another detection that waits shows the obstacle of a slot better. */
+/* Whether another waiting detection shows the obstacle of a slot better. */
 static bool is_outdone(const goe_flight_t *flight, const goe_flight_slot_view_t *view, const goe_flight_frame_t *frame,
                        uint32_t waiting, int slot, float claim) {
     for (int k = 0; k < frame->count; k++) {
@@ -223,7 +223,7 @@ static void give_renumbered(goe_flight_t *flight, const goe_flight_slot_view_t *
     }
 }
 
-/* The obstacle of a slot that is given up waits for another one. */
+/* The obstacle of an evicted slot waits for another slot. */
 static void wait_again(goe_flight_t *flight, const goe_flight_slot_t *slot) {
     goe_flight_candidate_t candidate = {slot->id, slot->detected_us, {0, 0, 0, 0}, slot->camera, 0, slot->bearings};
     memcpy(candidate.box_px, slot->box_px, sizeof candidate.box_px);
@@ -259,7 +259,8 @@ static void give_new(goe_flight_t *flight, const goe_flight_slot_view_t *view, c
     }
 }
 
-/* Images of two cameras need not come in the order of their exposures: what one does not see is not to hide the other's image. */
+/* Images of two cameras need not come in the order of their exposures: an image without the obstacle must not block one of the other
+ * camera. */
 static void give_nothing(goe_flight_t *flight, const goe_flight_slot_view_t *view, uint32_t taken) {
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         const goe_flight_slot_t *slot = &flight->slot[i];
@@ -285,7 +286,7 @@ bool goe_flight_table_take(goe_flight_t *flight, const goe_flight_slot_view_t *v
     return readable;
 }
 
-/* An obstacle ahead on the course is not given up, however long it was undetected. */
+/* An obstacle ahead on the course is kept, however long it was undetected. */
 static bool is_ahead(const goe_flight_t *flight, const goe_flight_slot_t *slot) {
     return slot->assessed && slot->hazard.tcpa_s > 0.0f &&
            slot->hazard.conflict_probability >= flight->settings.conflict_probability_max;
@@ -301,7 +302,7 @@ void goe_flight_table_age(goe_flight_t *flight, uint32_t now_us) {
             ordered ? goe_flight_larger(ORDERED_S, flight->settings.track_timeout_s) : flight->settings.track_timeout_s;
         slot->used = slot->used && (undetected_s <= most_s || is_ahead(flight, slot));
         if (!slot->used && i == flight->reaction.slot) {
-            flight->reaction.slot = NOBODY; /* whoever gets the slot next is not what the order is about */
+            flight->reaction.slot = NOBODY; /* the next obstacle in this slot is not that of the order */
         }
         if (!slot->used && i == flight->reaction.edge) {
             flight->reaction.edge = NOBODY;

@@ -1,21 +1,21 @@
 /* Comparison of the positions with the velocities. SPDX-License-Identifier: MIT
  *
- * Hazards and orders follow the velocity, the estimates follow the positions. An autopilot's own filter keeps the two together
- * within 0.4 m in a second and 0.9 m in ten (recorded flights of PX4 and ArduPlane). A port that mixes up axes, signs or units, a velocity
- * that nobody sets, that of the air instead of the ground, and a false fix of the satellites separate them. Which of the two is wrong is
- * not known here: so the layer corrects nothing, and clears nothing. */
+ * Hazards and orders use the velocity, the estimates use the positions. An autopilot's own filter keeps the two consistent within 0.4 m in
+ * a second and 0.9 m in ten (recorded flights of PX4 and ArduPlane). They differ more if a port mixes up axes, signs or units, if the
+ * velocity is never set or is that through the air, or after a false satellite fix. The layer does not know which of the two is wrong. It
+ * therefore corrects nothing, and clears nothing. */
 #include "goe_travel.h"
 
 #include <math.h>
 
 #include "goe_flight_maths.h"
 
-#define GAP_S 0.5f      /* between samples: beyond it the velocity in between is not known */
-#define OFF_M 4.0f      /* by which a way may differ horizontally, and ... */
-#define OFF_DOWN_M 3.0f /* ... vertically; so a climb of 2.5 m/s with the wrong sign exceeds it in a second */
-#define DOUBT_S 10.0f   /* of agreement before the pose counts again */
+#define GAP_S 0.5f      /* longest gap between samples over which the velocity is known */
+#define OFF_M 4.0f      /* allowed horizontal difference of a way */
+#define OFF_DOWN_M 3.0f /* allowed vertical one: a climb of 2.5 m/s with the wrong sign exceeds it in a second */
+#define DOUBT_S 10.0f   /* time of agreement until the pose counts again */
 
-/* Over a second the share of the way allows for late and rare samples in a turn, over ten for scale and slow drift alone. */
+/* Allowed share of the way: over a second it covers late and rare samples in a turn, over ten only scale errors and slow drift. */
 static const struct {
     float span_s, share;
 } spans[GOE_FLIGHT_TRAVELS] = {{1.0f, 0.3f}, {10.0f, 0.1f}};
@@ -28,7 +28,7 @@ static void begin(goe_flight_way_t *way, const goe_flight_position_t *sample) {
     memcpy(way->begun_ned_m, sample->position_ned_m, sizeof way->begun_ned_m);
 }
 
-/* By the mean velocity of two samples. */
+/* Adds a step by the mean velocity of two samples. */
 static void go_on(goe_flight_way_t *way, const float step_ned_m[3]) {
     for (int i = 0; i < 3; i++) {
         way->by_velocity_m[i] += step_ned_m[i];
@@ -37,7 +37,7 @@ static void go_on(goe_flight_way_t *way, const float step_ned_m[3]) {
     way->down_m += goe_flight_absolute(step_ned_m[2]);
 }
 
-/* NaN contradicts. */
+/* NaN also counts as a contradiction. */
 static bool is_contradicted(const goe_flight_way_t *way, const float ned_m[3], float share) {
     float apart[3];
     float moved[3];
