@@ -24,6 +24,7 @@
 #define SURE_SIGMA 2.0f
 #define REFUSED_MAX_US 1000000000u /* 1000 s, the range of goe_intent_t.since_image_s */
 #define ASIDE_MIN 1.7320508f       /* tangent of 60 degrees */
+#define UNANSWERED_IMAGES 16u      /* without a detection, after which one that gave no estimate no longer counts */
 
 /* ------------------------------------------------------------------------------------------------------- the estimate -- */
 
@@ -251,7 +252,37 @@ static void open_view(goe_estimator_t *estimator, const goe_image_t *image, cons
     } else {
         goe_align_points(camera, view, faults);
     }
-    estimator->motion.detected = estimator->motion.detected || view->seen;
+    if (view->seen && estimator->motion.detected == 0u) {
+        estimator->motion.detected = 1u;
+    }
+}
+
+/* Remembers that a detection gave no new estimate, until a detection does, or until the detector is silent. */
+static void note_detection(goe_motion_t *motion, bool detected, bool fresh) {
+    if (detected) {
+        motion->detected = (uint8_t)(fresh ? 1u : 1u + UNANSWERED_IMAGES);
+    } else if (motion->detected > 1u) {
+        motion->detected--;
+    }
+}
+
+/*@ requires \valid(estimator) && goe_view_is_open(view) && goe_faults_are_open(faults); */
+static goe_status_t estimate_view(goe_estimator_t *estimator, const goe_view_t *view, goe_faults_t *faults) {
+#if GOE_WITH_FILTER
+    if (goe_uses_filter(estimator)) {
+        return take_refined(estimator, view, faults);
+    }
+#endif
+#if GOE_WITH_WINDOW
+    const goe_status_t status =
+        goe_window_update(&estimator->window, &estimator->settings, view, faults, &estimator->estimate);
+    if (estimator->estimate.fresh) {
+        estimator->estimate_time_us = estimator->motion.time_us;
+    }
+    return status;
+#else
+    return GOE_CONVERGING; /* not reached: goe_init() admits no other method */
+#endif
 }
 
 static goe_status_t take_image(goe_estimator_t *estimator, const goe_image_t *image, const goe_camera_t *camera) {
@@ -262,21 +293,9 @@ static goe_status_t take_image(goe_estimator_t *estimator, const goe_image_t *im
         follow_reset(estimator, &image->pose);
     }
     open_view(estimator, image, camera, &view, &faults);
-#if GOE_WITH_FILTER
-    if (goe_uses_filter(estimator)) {
-        return take_refined(estimator, &view, &faults);
-    }
-#endif
-#if GOE_WITH_WINDOW
-    const goe_status_t status =
-        goe_window_update(&estimator->window, &estimator->settings, &view, &faults, &estimator->estimate);
-    if (estimator->estimate.fresh) {
-        estimator->estimate_time_us = estimator->motion.time_us;
-    }
+    const goe_status_t status = estimate_view(estimator, &view, &faults);
+    note_detection(&estimator->motion, view.seen, goe_is_set(&estimator->estimate.fresh));
     return status;
-#else
-    return GOE_CONVERGING; /* not reached: goe_init() accepts no other method */
-#endif
 }
 
 /* ------------------------------------------------------------------------------------------------------- public calls -- */

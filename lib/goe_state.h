@@ -53,7 +53,8 @@ typedef struct {
     float height_m;                 /* camera above ground at the latest image: as given, plus height_jump_m */
     float height_jump_m;            /* sum of those jumps of down that the given height also made */
     float ground_m;                 /* down of the ground, from the latest image's given height */
-    goe_flag_t detected;            /* a feature was visible: T and its origin are fixed */
+    uint8_t detected; /* 0: no feature was visible so far. Otherwise T and its origin are fixed, and the value less 1 is
+                                     * the number of images for which a detection without a new estimate still counts */
     uint8_t reset_count;
 #if GOE_AUGMENTED
     uint8_t paced; /* 0: the fields below are invalid; else 1 + images in a row at the predicted place */

@@ -45,9 +45,10 @@ static void fly_on(goe_filter_t *filter, const goe_motion_t *motion) {
 #endif
 }
 
-/* Whether an image comes so soon after the previous one that the errors of its box are the same. It is then not used. */
+/* Whether an image comes so soon after the latest one with rows that the errors of its box are the same: it is not used. Images without
+ * rows in between, of this camera or of another one, do not count. */
 static bool comes_too_soon(const goe_filter_t *filter, const goe_detector_t *detector, float since_s) {
-    return goe_filter_by_boxes(filter) && since_s < TOO_SOON_SHARE * detector->box_correlation_time_s;
+    return goe_filter_by_boxes(filter) && filter->due_s + since_s < TOO_SOON_SHARE * detector->box_correlation_time_s;
 }
 
 /* ------------------------------------------------------------------------------------------------------------- update -- */

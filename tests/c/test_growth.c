@@ -1,6 +1,7 @@
 /* Growth beyond what a range lets an obstacle have. SPDX-License-Identifier: MIT */
 #include "refined/goe_growth.h"
 
+#include <fenv.h>
 #include <math.h>
 #include <string.h>
 
@@ -95,6 +96,18 @@ static void what_cannot_be_compared_is_no_growth(void) {
     CHECK_SAME(0.0f, (float)growth());
 }
 
+/* [(R34)] GIVEN an obstacle whose reference point is exactly at the camera, with Z = 0, THEN nothing counts, and nothing is divided by 0. */
+static void an_obstacle_at_the_camera_is_no_growth(void) {
+    see(0.9, 2.0, 2.0);
+    goe_rows_clear(&sighting.rows, &sighting.matrix);
+    goe_footprint_rows(&sighting.sight, &sighting.rows);
+    sighting.sight.camera_m.z = 1.0f / sighting.state[GOE_INVERSE_RANGE];
+    CHECK_SAME(0.0f, goe_observation_reference(&sighting.sight).z);
+    (void)feclearexcept(FE_ALL_EXCEPT);
+    CHECK_SAME(0.0f, goe_growth_find(&sighting.sight, &sighting.rows));
+    TEST_ASSERT_EQUAL_INT(0, fetestexcept(FE_DIVBYZERO | FE_INVALID));
+}
+
 /* [(R34)] GIVEN a cut box THEN its error is that of a cut one: a size does not count that the border has made. */
 static void a_cut_box_is_no_growth(void) {
     see(0.9, 1.0, 2.0);
@@ -123,6 +136,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(an_excess_counts_in_sigmas);
     RUN_TEST(what_cannot_be_compared_is_no_growth);
+    RUN_TEST(an_obstacle_at_the_camera_is_no_growth);
     RUN_TEST(a_cut_box_is_no_growth);
     RUN_TEST(points_show_the_width);
     return UNITY_END();

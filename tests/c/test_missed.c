@@ -333,6 +333,89 @@ static void a_height_that_was_not_set_is_reported(void) {
     TEST_ASSERT_EQUAL_UINT32(0u, estimator.fault_counts[-GOE_NO_HEIGHT]);
 }
 
+/* Images in which the estimator takes the box, of those at 10 Hz that show the mast ahead. empty_hz: rate of the images without a
+ * detection in between, 0: none; phase_us: when the first of them comes. */
+static int used_boxes(int empty_hz, int64_t phase_us) {
+    int used = 0;
+    scene_default(&scene);
+    scene_make_cylinder(&scene);
+    scene.image_rate_hz = 1000.0; /* a step is a millisecond */
+    scene.boxes = true;
+    start();
+    for (int64_t ms = 0; ms < 6000; ms++) {
+        const bool boxed = ms % 100 == 0;
+        const bool empty = empty_hz > 0 && !boxed && (1000 * ms - phase_us) % (1000000 / empty_hz) == 0;
+        if (!boxed && !empty) {
+            continue;
+        }
+        scene_image(&scene, (int)ms, &image, NULL);
+        if (empty) {
+            hide_all();
+        }
+        (void)goe_update(&estimator, &image, &estimate);
+        used += boxed && estimate.fresh ? 1 : 0;
+    }
+    return used;
+}
+
+/* [goe_update]
+ * GIVEN boxes at 10 Hz, and images without a detection in between, at any rate and phase, as of a camera that is faster than its detector
+ * or of a second camera, WHEN the boxes come THEN all of them are used, as without those images. */
+static void images_without_a_detection_leave_every_box(void) {
+    static const int rates_hz[] = {10, 20, 40, 50, 100};
+    const int alone = used_boxes(0, 0);
+    TEST_ASSERT_TRUE(alone >= 58);
+    for (size_t i = 0; i < sizeof rates_hz / sizeof rates_hz[0]; i++) {
+        for (int64_t phase_us = 1000; phase_us < 1000000 / rates_hz[i]; phase_us += 3000) {
+            TEST_ASSERT_EQUAL_INT(alone, used_boxes(rates_hz[i], phase_us));
+        }
+    }
+}
+
+/* A detection that gives no estimate: its sides are exchanged. */
+static void spoil(void) {
+    const float left_px = image.box.left_px;
+    image.box.left_px = image.box.right_px;
+    image.box.right_px = left_px;
+}
+
+/* [GOE_DECISION_UNKNOWN]
+ * GIVEN an obstacle that is passed at a distance, by either method, WHEN detections give no new estimate for over two seconds THEN nothing
+ * is clear, until the detector is silent or a detection gives an estimate. */
+static void detections_without_an_estimate_clear_nothing(void) {
+    for (int by = 0; by < 2; by++) {
+        scene_default(&scene);
+        scene_make_cylinder(&scene);
+        scene.x0_m = 70.0;
+        scene.z0_m = 300.0;
+        scene.image_rate_hz = 10.0;
+        settings = scene_settings(&scene);
+        settings.method = by == 0 ? GOE_METHOD_FILTER : GOE_METHOD_WINDOW;
+        if (goe_init(&estimator, sizeof estimator, &settings, NULL) != GOE_OK) {
+            continue; /* the method is left out */
+        }
+        const goe_intent_t intent = intent_of(0.0);
+        int clear[4] = {0, 0, 0, 0};
+        for (int k = 0; k < 100; k++) {
+            scene.boxes = true;
+            scene_image(&scene, k, &image, NULL);
+            const int part =
+                k < 40 ? 0 : (k < 62 ? 1 : (k < 80 ? 2 : 3)); /* good; spoiled: two seconds, and after; none */
+            if (part == 1 || part == 2) {
+                spoil();
+            } else if (part == 3) {
+                hide_all();
+            }
+            (void)goe_update(&estimator, &image, &estimate);
+            const bool cleared = goe_decide(&estimator, &intent, NULL, NULL) == GOE_DECISION_CLEAR;
+            clear[part] += cleared && (part != 3 || k >= 97) ? 1 : 0;
+        }
+        TEST_ASSERT_TRUE(clear[0] > 20 && clear[1] > 15);
+        TEST_ASSERT_EQUAL_INT(0, clear[2]);
+        TEST_ASSERT_EQUAL_INT(3, clear[3]);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(an_image_without_a_detection_takes_no_warning_back);
@@ -342,5 +425,7 @@ int main(void) {
     RUN_TEST(a_turn_before_first_sight_costs_nothing);
     RUN_TEST(a_box_of_one_side_is_reported);
     RUN_TEST(a_height_that_was_not_set_is_reported);
+    RUN_TEST(images_without_a_detection_leave_every_box);
+    RUN_TEST(detections_without_an_estimate_clear_nothing);
     return UNITY_END();
 }

@@ -45,8 +45,8 @@ enum {
     HAZARDS,
     COVARIANCES,
     TWICE,
-    STATUSES, /* from GOE_NO_DETECTION down */
-    COUNTS = STATUSES + 18
+    STATUSES, /* from GOE_NO_DETECTION down to GOE_NO_HEIGHT */
+    COUNTS = STATUSES + (int)GOE_NO_DETECTION - (int)GOE_NO_HEIGHT + 1
 };
 
 fuzz_count_t fuzz_counts[COUNTS + 1] = {{"updates", 0},
@@ -93,6 +93,8 @@ fuzz_count_t fuzz_counts[COUNTS + 1] = {{"updates", 0},
                                         {"status_out_of_range", 0},
                                         {"status_bad_time", 0},
                                         {"status_bad_attitude", 0},
+                                        {"status_box_incomplete", 0},
+                                        {"status_no_height", 0},
                                         {NULL, 0}};
 
 static void count(int what) { fuzz_count_once(what); }
@@ -101,6 +103,7 @@ static void count_update(const goe_settings_t *settings, goe_status_t status, co
     const bool filter = settings->method == GOE_METHOD_FILTER;
     count(UPDATES);
     count(filter ? UPDATES_REFINED : UPDATES_WINDOW);
+    FUZZ_CHECK(status <= GOE_NO_DETECTION && status >= GOE_NO_HEIGHT);
     count(STATUSES + (int)GOE_NO_DETECTION - (int)status);
     if (e->reason != GOE_REASON_NONE) {
         count(REASONS + (int)e->reason - (int)GOE_REASON_CONVENTION);
