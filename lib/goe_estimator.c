@@ -259,11 +259,8 @@ static void open_view(goe_estimator_t *estimator, const goe_image_t *image, cons
 
 /* Remembers that a detection gave no new estimate, until a detection does, or until the detector is silent. */
 static void note_detection(goe_motion_t *motion, bool detected, bool fresh) {
-    if (detected) {
-        motion->detected = (uint8_t)(fresh ? 1u : 1u + UNANSWERED_IMAGES);
-    } else if (motion->detected > 1u) {
-        motion->detected--;
-    }
+    const unsigned still = motion->detected > 1u ? motion->detected - 1u : motion->detected;
+    motion->detected = (uint8_t)(!detected ? still : (fresh ? 1u : 1u + UNANSWERED_IMAGES));
 }
 
 /*@ requires \valid(estimator) && goe_view_is_open(view) && goe_faults_are_open(faults); */

@@ -66,33 +66,21 @@ static bool is_outside(const goe_hazard_t *hazard, const goe_intent_t *intent) {
     return aside || above;
 }
 
-/* Whether the filter's state is no longer that of the latest estimate. */
-static bool is_outdated(const goe_estimator_t *estimator) {
-#if GOE_WITH_FILTER
-    return goe_uses_filter(estimator) && estimator->filter.answer.outdated != 0u;
-#else
-    (void)estimator;
-    return false;
-#endif
-}
-
-/* Whether detections came for a while without a new estimate: the old one may belong to another object. Their absence does not count. */
-static bool is_superseded(const goe_estimator_t *estimator) {
-    const bool unanswered = estimator->motion.detected > 1u || is_outdated(estimator);
-    return unanswered && !goe_is_set(&estimator->estimate.fresh) &&
-           goe_latest_since_s(estimator, estimator->motion.time_us) > SUPERSEDED_S;
-}
-
-/* Whether the range is in doubt: it is that of a class, which may be wrong, and no image has tested it yet, or the latest image shows the
- * obstacle larger than it can be at this range. */
+/* Whether the estimate is in doubt. Detections came for a while without a new one: the old one may belong to another object. The absence
+ * of detections does not count. Filter: the range is that of a class, which may be wrong, and no image has tested it yet; or the latest
+ * image shows the obstacle larger than it can be at this range. */
 static bool is_doubted(const goe_estimator_t *estimator) {
+    bool superseded = estimator->motion.detected > 1u;
+    bool wrong = false;
 #if GOE_WITH_FILTER
-    const goe_answer_t *answer = &estimator->filter.answer;
-    return goe_uses_filter(estimator) && (answer->by_kind != 0u || answer->outgrown != 0u);
-#else
-    (void)estimator;
-    return false;
+    if (goe_uses_filter(estimator)) {
+        const goe_answer_t *answer = &estimator->filter.answer;
+        superseded = superseded || answer->outdated != 0u;
+        wrong = answer->by_kind != 0u || answer->outgrown != 0u;
+    }
 #endif
+    return wrong || (superseded && !goe_is_set(&estimator->estimate.fresh) &&
+                     goe_latest_since_s(estimator, estimator->motion.time_us) > SUPERSEDED_S);
 }
 
 /* Whether the position is known to be wrong: the obstacle moves, and its velocity is not estimated. */
@@ -129,8 +117,7 @@ static GOE_NOINLINE goe_decision_t judge(const goe_estimator_t *estimator, const
         return status == GOE_CONVERGING ? GOE_DECISION_UNKNOWN : GOE_DECISION_KEEP;
     }
     const goe_decision_t decision = decision_of(met, &wide, rule);
-    const bool clears = since_s <= SILENT_S && !is_superseded(estimator) && !is_doubted(estimator) &&
-                        !is_misplaced(&estimator->estimate);
+    const bool clears = since_s <= SILENT_S && !is_doubted(estimator) && !is_misplaced(&estimator->estimate);
     return decision == GOE_DECISION_CLEAR && !clears ? GOE_DECISION_UNKNOWN : decision;
 }
 

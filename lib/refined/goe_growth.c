@@ -14,12 +14,9 @@ float goe_growth_find(const goe_observation_t *obs, const goe_rows_t *rows) {
     const goe_feature_t low = tall ? GOE_POINT_TOP : GOE_POINT_LEFT;
     const goe_feature_t high = tall ? GOE_POINT_BASE_NEAR : GOE_POINT_RIGHT;
     const float ahead = goe_observation_reference(obs).z;
-    if (!(ahead > AHEAD_MIN)) {
-        return 0.0f;
-    }
     const float size = goe_touch_size(obs, tall ? GOE_BOX_TOP : GOE_BOX_LEFT, 2.0f * obs->state[GOE_HALF]);
     const float share2 = 2.0f * goe_square(obs->settings->detector.box_noise_rel) +
-                         obs->range_variance * goe_square(obs->camera_m.z / ahead);
+                         obs->range_variance * goe_square(obs->camera_m.z / goe_larger(ahead, AHEAD_MIN));
     float variance = share2 * goe_square(size);
     float excess = 0.0f;
     unsigned ends = 0;
@@ -30,7 +27,7 @@ float goe_growth_find(const goe_observation_t *obs, const goe_rows_t *rows) {
             ends++;
         }
     }
-    return ends == 2u && excess > 0.0f ? goe_square(excess) / variance : 0.0f;
+    return ends == 2u && ahead > AHEAD_MIN && excess > 0.0f ? goe_square(excess) / variance : 0.0f;
 }
 
 #endif
