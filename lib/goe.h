@@ -99,7 +99,7 @@ typedef enum {
     GOE_OK = 0,           /* new solution from this image and earlier ones; a call: success */
     GOE_PARTIAL = 1,      /* new solution, but part of the image was refused or unusable: see fault_counts */
     GOE_CONVERGING = 2,   /* image taken; no solution yet: few images, or sigma of the range above range_sd_rel_max */
-    GOE_STALE = 3,        /* image taken; it adds no information, and the earlier solution remains */
+    GOE_STALE = 3,        /* image taken; adds nothing or comes too soon; earlier solution remains */
     GOE_NO_DETECTION = 4, /* image taken for its pose: no feature is visible. Not a fault */
     /* faults of a feature; the image is taken */
     GOE_BEHIND_CAMERA = -1, /* a ray points backward or sideways: its third component in T is <= 0.05 of its norm */

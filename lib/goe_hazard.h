@@ -15,7 +15,7 @@ enum { GOE_X0, GOE_Z0, GOE_ORIENTATION, GOE_WIDTH, GOE_LENGTH, GOE_HEIGHT, GOE_Q
 
 /* Writes the covariance of x0_m, z0_m, orientation_deg, width_m, length_m, height_m of the latest estimate, in meters and
  * degrees. Rows and columns of a quantity that is not valid are 0. The diagonal contains the squared sigmas. For a stale
- * estimate the variances of x0, z0 and the height are larger: they include the growth of the sigmas with age.
+ * estimate of the filter the variances are larger: they include the growth with age.
  * All elements off the diagonal are 0 for an estimate of the window method, and for one from before a restart or a change of
  * the model.
  *   covariance  always written, unless null; all zero after a failure
@@ -86,7 +86,7 @@ typedef enum {
     GOE_DECISION_UNKNOWN = 0, /* too little is known. This does not mean "safe": keep the previous decision. Either
                                * no position is valid; or the probability is below conflict_probability_max, but one
                                * sigma could violate both distances; or the probability is reached, and only the
-                               * linear bound tcpa_s - 2 tcpa_sd_s is within act_within_s; or two seconds of detections
+                               * linear bound tcpa_s - 2 tcpa_sd_s is within act_within_s; or for two seconds detections
                                * gave no new estimate; or the latest image is over two seconds old; or the obstacle moves
                                * (GOE_REASON_MOVES) without a valid velocity, so the position is wrong; or the range is
                                * that of a detector's class, which no image confirms yet */
