@@ -1,4 +1,4 @@
-"""Buildings first detected nearby, with the base below the image: `filter.range_sd_rel_max` decides how soon a warning comes."""
+"""Buildings first detected nearby, the base below the image: a larger `filter.range_sd_rel_max` warns sooner."""
 
 from __future__ import annotations
 
