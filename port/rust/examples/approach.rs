@@ -14,7 +14,14 @@ fn detect(ahead_m: f32) -> BoundingBox {
 }
 
 fn main() -> Result<(), Error> {
-    let mut settings = Settings::for_camera(FOCAL_PX, FOCAL_PX, CENTER_PX, CENTER_PX, 2.0 * CENTER_PX, 2.0 * CENTER_PX);
+    let mut settings = Settings::for_camera(
+        FOCAL_PX,
+        FOCAL_PX,
+        CENTER_PX,
+        CENTER_PX,
+        2.0 * CENTER_PX,
+        2.0 * CENTER_PX,
+    );
     settings.detector.box_noise_rel = 0.01; // this detector does not err; real ones: leave the default
     let mut mast = Estimator::new(&settings)?;
     let intent = Intent {
