@@ -200,7 +200,7 @@ class PrismFilter:
         range_m = self._first_range_m(sight, size, foot)
         if not RANGE_MIN_M <= range_m <= RANGE_MAX_M:
             return False
-        self.turn, self.origin_m, self.start_s, self.time_s = turn, in_t.moved_m, in_t.time_s, in_t.time_s
+        self.turn, self.origin_m, (self.start_s, self.time_s, self.rows_s) = turn, in_t.moved_m, [in_t.time_s] * 3
         state = np.zeros(COUNT)
         state[[Q, W]] = 1 / range_m, 0.5 * size
         state[E] = sight.height_m / range_m - (0.0 if head is None else head[1])
@@ -420,19 +420,18 @@ class PrismFilter:
         self.first_s = in_t.time_s if self.first_s is None else self.first_s
         started = self.state is not None
         since_s = min(in_t.time_s - self.time_s, GAP_MAX_S) if started else 0.0
-        too_soon = started and since_s < EARLY_SHARE * self.errors.box_correlation_time_s
+        too_soon = started and in_t.time_s - self.rows_s < EARLY_SHARE * self.errors.box_correlation_time_s
         in_t = self.altimeter.read(in_t, started, 0.0 if too_soon else since_s)
         if too_soon or (not started and not self.start(in_t)):
             return False
         self.flown_m += float(np.linalg.norm((in_t.moved_m - self.last_m)[[0, 2]]))
         self.last_m = in_t.moved_m
         sight = in_t.turned(self.turn, self.origin_m)
-        span_s = min(in_t.time_s - self.time_s, GAP_MAX_S)
         self.time_s = in_t.time_s
         q_variance = self.full_covariance()[Q, Q]
-        self._wait(span_s)
+        self._wait(since_s)
         rows = self._rows(sight, q_variance)
-        self._whiten(sight, span_s, rows)
+        self._whiten(sight, since_s, rows)
         if rows is None:
             return False
         ratio = self._judge(rows)
@@ -448,9 +447,10 @@ class PrismFilter:
         if not kept.any():
             self.scatter.take_fit(RATIO_MOST)
             return False
+        self.rows_s = in_t.time_s
         self._learn(rows)
         self._doubt_height()
-        self._age(span_s)
+        self._age(since_s)
         rows = self._height_rows(rows)
         nis = self._update(rows, knows_depth(sight, self.state))
         self.scatter.take_fit(RATIO_MOST if poor else nis / len(rows.side))
