@@ -113,15 +113,15 @@ static bool is_sane(const goe_filter_t *filter) {
     return sane;
 }
 
-/* Counts the failures of a box of base corners. If it proves wrong more than once, the corners belong to something else. Residuals alone do
- * not decide: configured noise that is too small must not cost a true box its corners. */
+/* Counts the failures of a box of base corners. If it proves wrong more than once, the corners belong to something else. One failure does not
+ * decide: configured noise that is too small must not cost a true box its corners. */
 static void count_failure(goe_filter_t *filter, goe_model_t asked) {
     if (goe_filter_is_box(filter) && asked == GOE_MODEL_AUTO && filter->health.images >= EARLY_IMAGES) {
         filter->health.base_refused = goe_count_image(&filter->health.failed) >= FAILURES_MAX;
     }
 }
 
-/* One restart is an outlier's, or a crossing's; two of them so soon mean a bad track. */
+/* An outlier, or an obstacle that crosses another, may cause one restart. Two so soon mean a bad track. */
 static void count_restart(goe_health_t *health) {
     health->adrift = health->adrift || (health->steady > 0 && health->steady < RESTART_IMAGES);
     health->steady = 1;
