@@ -257,10 +257,17 @@ static void open_view(goe_estimator_t *estimator, const goe_image_t *image, cons
     }
 }
 
-/* Remembers that a detection gave no new estimate, until a detection does, or until the detector is silent. */
-static void note_detection(goe_motion_t *motion, bool detected, bool fresh) {
-    const unsigned still = motion->detected > 1u ? motion->detected - 1u : motion->detected;
-    motion->detected = (uint8_t)(!detected ? still : (fresh ? 1u : 1u + UNANSWERED_IMAGES));
+/* Remembers that a detection gave no new estimate a while after the latest one, until a detection does, or until the detector is silent. */
+static void note_detection(goe_estimator_t *estimator, bool detected) {
+    goe_motion_t *motion = &estimator->motion;
+    if (goe_is_set(&estimator->estimate.fresh)) {
+        motion->detected = 1u;
+    } else if (detected) {
+        const bool old = goe_latest_since_s(estimator, motion->time_us) > GOE_SUPERSEDED_S;
+        motion->detected = (uint8_t)(old ? 1u + UNANSWERED_IMAGES : 1u);
+    } else if (motion->detected > 1u) {
+        motion->detected--;
+    }
 }
 
 /*@ requires \valid(estimator) && goe_view_is_open(view) && goe_faults_are_open(faults); */
@@ -291,7 +298,7 @@ static goe_status_t take_image(goe_estimator_t *estimator, const goe_image_t *im
     }
     open_view(estimator, image, camera, &view, &faults);
     const goe_status_t status = estimate_view(estimator, &view, &faults);
-    note_detection(&estimator->motion, view.seen, goe_is_set(&estimator->estimate.fresh));
+    note_detection(estimator, view.seen);
     return status;
 }
 

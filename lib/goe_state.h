@@ -240,7 +240,7 @@ typedef struct {
     goe_flag_t paced; /* the velocity in axes is valid */
 #endif
     goe_naming_t naming;
-    uint8_t camera;       /* camera of the latest image */
+    uint8_t camera;       /* camera of the latest image with a detection */
     goe_flag_t has_datum; /* the datum is set, by the track's first image */
     float ground_scale;   /* 1/Z0 at which the sigma of GOE_GROUND was set, over the present 1/Z0 */
     float flown_m;        /* length of the path over ground since the filter's start */
@@ -248,6 +248,9 @@ typedef struct {
     goe_place_t measured; /* camera at the latest image that gave rows, the state's axes */
     float walk_s[2];      /* time since the random walk of the own position was last added along X, and along Z */
     float due_s;          /* time since process noise was last added; the next image that gives rows adds it */
+#if GOE_CAMERAS_MAX > 1
+    float whole_s; /* time since the latest rows of a box that no border cuts */
+#endif
     goe_kind_use_t kind;
     goe_candidate_t candidate;
     goe_health_t health;

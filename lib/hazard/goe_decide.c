@@ -11,7 +11,6 @@
 #if GOE_WITH_HAZARD
 
 #define SURE_SIGMA 2.0f
-#define SUPERSEDED_S 2.0f     /* after this time of detections without a new estimate, the old one clears nothing */
 #define SILENT_S 2.0f         /* after this time without an image nothing is clear: the flight since is not known */
 #define DISTANCE_MAX_M 1.0e4f /* the limit of an intent */
 #define TIME_MAX_S 1.0e4f
@@ -80,7 +79,7 @@ static bool is_doubted(const goe_estimator_t *estimator) {
     }
 #endif
     return wrong || (superseded && !goe_is_set(&estimator->estimate.fresh) &&
-                     goe_latest_since_s(estimator, estimator->motion.time_us) > SUPERSEDED_S);
+                     goe_latest_since_s(estimator, estimator->motion.time_us) > GOE_SUPERSEDED_S);
 }
 
 /* Whether the position is known to be wrong: the obstacle moves, and its velocity is not estimated. */

@@ -77,6 +77,9 @@ void goe_filter_wait(goe_filter_t *filter, float since_s) {
     filter->walk_s[0] += since_s;
     filter->walk_s[1] += since_s;
     filter->due_s += since_s;
+#if GOE_CAMERAS_MAX > 1
+    filter->whole_s += since_s;
+#endif
 }
 
 float goe_filter_due_drift2(const goe_filter_t *filter, const goe_navigation_t *navigation) {

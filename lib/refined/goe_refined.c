@@ -29,6 +29,7 @@
 #define LOST_S 0.5f            /* time without rows after which a known range does not count as known */
 #define VAGUE2 4.0f /* limit of (sigma of 1/Z0 times the way along Z)^2, which is below 1 for an obstacle ahead */
 #define DOUBTED_SIGMAS2 4.0f /* squared sigmas of a growth above which nothing is clear */
+#define NEVER_S 1.0e6f       /* without a whole box: longer than any correlation time */
 #define FADE_MAX 0.95f /* largest share of a box's error that remains from image to image, where it is not remembered */
 
 /* --------------------------------------------------------------------------------------------------------------- time -- */
@@ -45,10 +46,38 @@ static void fly_on(goe_filter_t *filter, const goe_motion_t *motion) {
 #endif
 }
 
+#if GOE_CAMERAS_MAX > 1
+/* Whether all sides of a box are the obstacle's own. */
+static bool is_whole(const goe_sides_t *sides) {
+    return sides->usable == GOE_SIDES_ALL && sides->doubtful == 0u && !sides->cut;
+}
+
+/* Whether a box of another camera replaces one that came just before, and is never too soon: it is whole, that one was not. */
+static bool replaces(const goe_filter_t *filter, const goe_view_t *view) {
+    return is_whole(&view->sides) && filter->whole_s > filter->due_s;
+}
+
+/* Whether a whole box of another camera makes that of this one superfluous: it is cut, and says less. */
+static bool is_replaced(const goe_filter_t *filter, const goe_detector_t *detector, const goe_view_t *view,
+                        float since_s) {
+    return view->sides.usable != 0u && !is_whole(&view->sides) &&
+           filter->whole_s + since_s < detector->box_correlation_time_s;
+}
+#endif
+
 /* Whether an image comes so soon after the latest one with rows that the errors of its box are the same: it is not used. Images without
  * rows in between, of this camera or of another one, do not count. */
-static bool comes_too_soon(const goe_filter_t *filter, const goe_detector_t *detector, float since_s) {
-    return goe_filter_by_boxes(filter) && filter->due_s + since_s < TOO_SOON_SHARE * detector->box_correlation_time_s;
+static bool comes_too_soon(const goe_filter_t *filter, const goe_detector_t *detector, const goe_view_t *view,
+                           float since_s) {
+    bool soon = filter->due_s + since_s < TOO_SOON_SHARE * detector->box_correlation_time_s;
+#if GOE_CAMERAS_MAX > 1
+    if (view->image->camera != filter->camera) {
+        soon = is_replaced(filter, detector, view, since_s) || (soon && !replaces(filter, view));
+    }
+#else
+    (void)view;
+#endif
+    return soon && goe_filter_by_boxes(filter);
 }
 
 /* ------------------------------------------------------------------------------------------------------------- update -- */
@@ -97,6 +126,9 @@ static bool measure(goe_filter_t *filter, const goe_observation_t *obs, goe_rows
     filter->answer.outdated = true;
     filter->measured.dx_m = obs->camera_m.x;
     filter->measured.dz_m = obs->camera_m.z;
+#if GOE_CAMERAS_MAX > 1
+    filter->whole_s = is_whole(obs->sides) ? 0.0f : filter->whole_s;
+#endif
     doubt(filter, obs);
     verdict->rows += goe_ground_row(filter, obs, rows);
     const float nis = goe_model_update(filter, 1.0f / rows->white_rad, rows, change);
@@ -118,14 +150,14 @@ static float outline_share(const goe_detector_t *detector, float fade) {
 
 /* Sets how much of a box's error remains from the previous image, and the effect of this image's position noise, including the second order
  * by the uncertain range. */
-static void note_time(goe_filter_t *filter, goe_observation_t *obs) {
+static void note_time(goe_filter_t *filter, goe_observation_t *obs, bool detected) {
     const goe_detector_t *detector = &obs->settings->detector;
     obs->range_variance = goe_filter_variance(filter, GOE_INVERSE_RANGE);
     const float relative2 = obs->range_variance / goe_square(filter->state[GOE_INVERSE_RANGE]);
-    const bool same = filter->camera == obs->number; /* a correlation in one camera is no evidence about another */
+    const bool same = !detected || filter->camera == obs->number; /* boxes of two cameras have independent errors */
     const bool fades = same && detector->box_correlation_time_s > 0.0f;
     obs->fade = fades ? goe_exp(-obs->since_s / detector->box_correlation_time_s) : 0.0f;
-    filter->camera = obs->number;
+    filter->camera = detected ? obs->number : filter->camera;
     if (obs->sides->usable != 0) {
         obs->outline_share = outline_share(detector, obs->fade);
     }
@@ -149,6 +181,9 @@ static bool open_image(goe_filter_t *filter, const goe_settings_t *settings, con
         filter->time_us = view->motion->time_us;
         filter->last.dx_m = view->motion->dx_m;
         filter->last.dz_m = view->motion->dz_m;
+#if GOE_CAMERAS_MAX > 1
+        filter->whole_s = is_whole(&view->sides) ? 0.0f : NEVER_S;
+#endif
     }
     return true;
 }
@@ -218,14 +253,14 @@ bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, co
         goe_filter_enter(filter, GOE_PHASE_NONE); /* an invalid phase: the filter restarts */
     }
     const float since_s = goe_time_between_s(filter->time_us, view->motion->time_us, GAP_MAX_US);
-    const bool too_soon = comes_too_soon(filter, &settings->detector, since_s);
+    const bool too_soon = comes_too_soon(filter, &settings->detector, view, since_s);
     goe_ground_read(filter, &settings->navigation, view, goe_filter_has_started(filter) && !too_soon ? since_s : 0.0f);
     if (too_soon || !open_image(filter, settings, view, &obs, swapped)) {
         return false;
     }
     obs.since_s = goe_time_between_s(filter->time_us, view->motion->time_us, GAP_MAX_US);
     fly_on(filter, view->motion);
-    note_time(filter, &obs);
+    note_time(filter, &obs, view->seen);
     goe_filter_wait(filter, obs.since_s);
     filter->time_us = view->motion->time_us;
     goe_observation_linearise(&obs);

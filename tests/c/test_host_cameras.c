@@ -202,11 +202,91 @@ static void a_bad_second_camera_is_named(void) {
     TEST_ASSERT_EQUAL_FLOAT(settings.camera.border_rel, settings.more_cameras[0].border_rel);
 }
 
+/* ------------------------------------------------------------------------------------------------ at the same time -- */
+
+#define FOCAL_PX 914.0
+#define SIZE_PX 1280.0
+#define PERIOD_US 100000
+#define MAST_M 3.0 /* half of its width */
+#define MAST_HIGH_M 30.0
+#define EYE_M 15.0 /* the camera above the ground */
+#define FIRST_M 150.0
+#define STEP_M 1.5 /* 15 m/s */
+#define LOOKS 70
+
+typedef enum { ALONE, CUT_BEFORE, EMPTY_BETWEEN } other_t; /* what the other camera gives */
+
+/* The box of a mast ahead, in the image of a level camera that is turned to the right by yaw; a border cuts it. */
+static void detect_mast(double ahead_m, double yaw_rad, goe_box_t *box) {
+    const double half_rad = asin(MAST_M / ahead_m);
+    const double scale = FOCAL_PX / ((ahead_m - MAST_M) * cos(yaw_rad));
+    box->left_px = (float)fmax(0.5 * SIZE_PX + FOCAL_PX * tan(-yaw_rad - half_rad), 0.0);
+    box->right_px = (float)fmax(0.5 * SIZE_PX + FOCAL_PX * tan(-yaw_rad + half_rad), 2.0);
+    box->top_px = (float)fmax(0.5 * SIZE_PX - scale * (MAST_HIGH_M - EYE_M), 0.0);
+    box->bottom_px = (float)fmin(0.5 * SIZE_PX + scale * EYE_M, SIZE_PX - 1.0);
+    box->sides = GOE_SIDES_ALL;
+}
+
+static void look_ahead(int64_t time_us, goe_image_t *image) {
+    memset(image, 0, sizeof *image);
+    image->pose.time_us = time_us;
+    image->pose.position_ned_m[0] = (float)(STEP_M * (double)time_us / PERIOD_US);
+    image->pose.position_ned_m[2] = (float)-EYE_M;
+    image->pose.height_m = (float)EYE_M;
+    image->pose.attitude[0] = 1.0f;
+}
+
+/* An approach to a mast that camera 0 sees whole. Returns how many of its images gave an estimate. */
+static int approach(other_t other, double yaw_deg, int64_t lead_us) {
+    int used = 0;
+    goe_settings_default(&settings);
+    settings.camera.fx_px = settings.camera.fy_px = (float)FOCAL_PX;
+    settings.camera.cx_px = settings.camera.cy_px = (float)(0.5 * SIZE_PX);
+    settings.camera.width_px = settings.camera.height_px = (float)SIZE_PX;
+    settings.more_cameras[0] = settings.camera;
+    settings.more_cameras[0].mount_yaw_deg = (float)yaw_deg;
+    start();
+    for (int k = 1; k <= LOOKS; k++) {
+        goe_image_t image;
+        const int64_t time_us = (int64_t)k * PERIOD_US;
+        if (other != ALONE) {
+            look_ahead(time_us - lead_us, &image);
+            image.camera = 1;
+            if (other == CUT_BEFORE) {
+                detect_mast(FIRST_M - (double)image.pose.position_ned_m[0], yaw_deg / 57.29577951308232, &image.box);
+            }
+            (void)goe_update(&estimator, &image, &estimate);
+        }
+        look_ahead(time_us, &image);
+        detect_mast(FIRST_M - (double)image.pose.position_ned_m[0], 0.0, &image.box);
+        (void)goe_update(&estimator, &image, &estimate);
+        used += estimate.fresh ? 1 : 0;
+    }
+    return used;
+}
+
+/* [GOE_CAMERAS_MAX, goe_image_t.camera]
+ * GIVEN a camera that sees the whole obstacle, and another one whose image comes shortly before and cuts it, or shows nothing, THEN the
+ * boxes of the first are used, and its errors remain known: the sigma is as without the other camera. */
+static void a_camera_takes_nothing_from_a_better_one(void) {
+    static const int64_t leads_us[] = {1, 1000, 20000, 60000, 90000};
+    const int alone = approach(ALONE, 0.0, 0);
+    const float alone_sd_m = estimate.sigma.z_m;
+    TEST_ASSERT_TRUE(alone >= LOOKS - 2 && alone_sd_m > 0.0f);
+    for (size_t i = 0; i < sizeof leads_us / sizeof leads_us[0]; i++) {
+        TEST_ASSERT_TRUE(approach(EMPTY_BETWEEN, 33.0, leads_us[i]) == alone);
+        CHECK_CLOSE(0.1 * (double)alone_sd_m, (double)alone_sd_m, (double)estimate.sigma.z_m);
+        TEST_ASSERT_TRUE(approach(CUT_BEFORE, 33.0, leads_us[i]) >= alone - 1);
+        CHECK_CLOSE(0.25 * (double)alone_sd_m, (double)alone_sd_m, (double)estimate.sigma.z_m);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_track_passes_from_one_camera_to_the_other);
     RUN_TEST(the_second_camera_adds_to_the_first);
     RUN_TEST(a_camera_that_is_not_there_is_refused);
     RUN_TEST(a_bad_second_camera_is_named);
+    RUN_TEST(a_camera_takes_nothing_from_a_better_one);
     return UNITY_END();
 }

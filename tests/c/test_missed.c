@@ -416,6 +416,30 @@ static void detections_without_an_estimate_clear_nothing(void) {
     }
 }
 
+/* GIVEN an obstacle that is passed at a distance, whose last box comes too soon after another one, WHEN the detector is silent from then on,
+ * THEN it stays clear. */
+static void a_box_too_soon_does_not_end_clear(void) {
+    scene_default(&scene);
+    scene_make_cylinder(&scene);
+    scene.x0_m = 70.0;
+    scene.z0_m = 300.0;
+    scene.image_rate_hz = 50.0;
+    scene.boxes = true;
+    start();
+    const goe_intent_t intent = intent_of(0.0);
+    for (int k = 0; k < 400; k++) {
+        scene_image(&scene, k, &image, NULL);
+        const bool boxed = k < 200 && (k % 50 == 0 || k % 50 == 2); /* pairs, 40 ms apart, once a second; then none */
+        if (!boxed) {
+            hide_all();
+        }
+        if (boxed || k % 50 == 25) {
+            (void)goe_update(&estimator, &image, &estimate);
+            TEST_ASSERT_TRUE(k < 150 || goe_decide(&estimator, &intent, NULL, NULL) == GOE_DECISION_CLEAR);
+        }
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(an_image_without_a_detection_takes_no_warning_back);
@@ -427,5 +451,6 @@ int main(void) {
     RUN_TEST(a_height_that_was_not_set_is_reported);
     RUN_TEST(images_without_a_detection_leave_every_box);
     RUN_TEST(detections_without_an_estimate_clear_nothing);
+    RUN_TEST(a_box_too_soon_does_not_end_clear);
     return UNITY_END();
 }
