@@ -252,22 +252,18 @@ static void open_view(goe_estimator_t *estimator, const goe_image_t *image, cons
     } else {
         goe_align_points(camera, view, faults);
     }
-    if (view->seen && estimator->motion.detected == 0u) {
-        estimator->motion.detected = 1u;
-    }
 }
 
-/* Remembers that a detection gave no new estimate a while after the latest one, until a detection does, or until the detector is silent. */
+/* Remembers for some images that a detection gave no new estimate although the latest one is old. The next estimate ends this. */
 static void note_detection(goe_estimator_t *estimator, bool detected) {
-    goe_motion_t *motion = &estimator->motion;
-    if (goe_is_set(&estimator->estimate.fresh)) {
-        motion->detected = 1u;
-    } else if (detected) {
-        const bool old = goe_latest_since_s(estimator, motion->time_us) > GOE_SUPERSEDED_S;
-        motion->detected = (uint8_t)(old ? 1u + UNANSWERED_IMAGES : 1u);
-    } else if (motion->detected > 1u) {
-        motion->detected--;
+    unsigned count = estimator->motion.detected;
+    if (detected) {
+        const bool old = goe_latest_since_s(estimator, estimator->motion.time_us) > GOE_SUPERSEDED_S;
+        count = old ? 1u + UNANSWERED_IMAGES : 1u;
+    } else if (count > 1u) {
+        count--;
     }
+    estimator->motion.detected = (uint8_t)count;
 }
 
 /*@ requires \valid(estimator) && goe_view_is_open(view) && goe_faults_are_open(faults); */
