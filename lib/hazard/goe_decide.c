@@ -78,8 +78,7 @@ static bool is_doubted(const goe_estimator_t *estimator) {
         wrong = answer->by_kind != 0u || answer->outgrown != 0u;
     }
 #endif
-    return wrong || (superseded && !goe_is_set(&estimator->estimate.fresh) &&
-                     goe_latest_since_s(estimator, estimator->motion.time_us) > GOE_SUPERSEDED_S);
+    return wrong || (superseded && goe_latest_since_s(estimator, estimator->motion.time_us) > GOE_SUPERSEDED_S);
 }
 
 /* Whether the position is known to be wrong: the obstacle moves, and its velocity is not estimated. */

@@ -213,8 +213,10 @@ static void a_bad_second_camera_is_named(void) {
 #define FIRST_M 150.0
 #define STEP_M 1.5 /* 15 m/s */
 #define LOOKS 70
+#define FIRST_ALONE 5  /* images without a box of the other camera */
+#define LOW_PX 1200.0f /* so near to the lower border that it may cut the box */
 
-typedef enum { ALONE, CUT_BEFORE, EMPTY_BETWEEN } other_t; /* what the other camera gives */
+typedef enum { ALONE, CUT_BEFORE, LOW_BEFORE, WHOLE_BEFORE, EMPTY_BETWEEN } other_t; /* what the other camera gives */
 
 /* The box of a mast ahead, in the image of a level camera that is turned to the right by yaw; a border cuts it. */
 static void detect_mast(double ahead_m, double yaw_rad, goe_box_t *box) {
@@ -227,6 +229,8 @@ static void detect_mast(double ahead_m, double yaw_rad, goe_box_t *box) {
     box->sides = GOE_SIDES_ALL;
 }
 
+static int used_by_other; /* images of camera 1 that gave an estimate */
+
 static void look_ahead(int64_t time_us, goe_image_t *image) {
     memset(image, 0, sizeof *image);
     image->pose.time_us = time_us;
@@ -236,9 +240,10 @@ static void look_ahead(int64_t time_us, goe_image_t *image) {
     image->pose.attitude[0] = 1.0f;
 }
 
-/* An approach to a mast that camera 0 sees whole. Returns how many of its images gave an estimate. */
-static int approach(other_t other, double yaw_deg, int64_t lead_us) {
+/* An approach to a mast that camera 0 sees whole, up to its image `last`. Returns how many of its images gave an estimate. */
+static int approach_until(int last, other_t other, double yaw_deg, int64_t lead_us) {
     int used = 0;
+    used_by_other = 0;
     goe_settings_default(&settings);
     settings.camera.fx_px = settings.camera.fy_px = (float)FOCAL_PX;
     settings.camera.cx_px = settings.camera.cy_px = (float)(0.5 * SIZE_PX);
@@ -252,17 +257,25 @@ static int approach(other_t other, double yaw_deg, int64_t lead_us) {
         if (other != ALONE) {
             look_ahead(time_us - lead_us, &image);
             image.camera = 1;
-            if (other == CUT_BEFORE) {
+            if (other != EMPTY_BETWEEN && k > FIRST_ALONE) {
                 detect_mast(FIRST_M - (double)image.pose.position_ned_m[0], yaw_deg / 57.29577951308232, &image.box);
+                image.box.bottom_px = other == LOW_BEFORE ? LOW_PX : image.box.bottom_px;
             }
             (void)goe_update(&estimator, &image, &estimate);
+            used_by_other += estimate.fresh ? 1 : 0;
         }
         look_ahead(time_us, &image);
-        detect_mast(FIRST_M - (double)image.pose.position_ned_m[0], 0.0, &image.box);
+        if (k <= last) {
+            detect_mast(FIRST_M - (double)image.pose.position_ned_m[0], 0.0, &image.box);
+        }
         (void)goe_update(&estimator, &image, &estimate);
         used += estimate.fresh ? 1 : 0;
     }
     return used;
+}
+
+static int approach(other_t other, double yaw_deg, int64_t lead_us) {
+    return approach_until(LOOKS, other, yaw_deg, lead_us);
 }
 
 /* [GOE_CAMERAS_MAX, goe_image_t.camera]
@@ -278,7 +291,23 @@ static void a_camera_takes_nothing_from_a_better_one(void) {
         CHECK_CLOSE(0.1 * (double)alone_sd_m, (double)alone_sd_m, (double)estimate.sigma.z_m);
         TEST_ASSERT_TRUE(approach(CUT_BEFORE, 33.0, leads_us[i]) >= alone - 1);
         CHECK_CLOSE(0.25 * (double)alone_sd_m, (double)alone_sd_m, (double)estimate.sigma.z_m);
+        TEST_ASSERT_TRUE(approach(LOW_BEFORE, 0.0, leads_us[i]) == alone && used_by_other == 0);
     }
+}
+
+/* [GOE_CAMERAS_MAX] GIVEN two cameras that see the whole obstacle at the same time THEN one of the two boxes is used. */
+static void of_two_equal_boxes_one_is_used(void) {
+    const int used = approach(WHOLE_BEFORE, 0.0, 1000);
+    TEST_ASSERT_TRUE(used + used_by_other >= LOOKS - 2 && used + used_by_other <= LOOKS);
+}
+
+/* [GOE_CAMERAS_MAX] GIVEN a camera that cuts the obstacle WHEN the camera that saw all of it sees nothing any more THEN its boxes are used
+ * after the correlation time. */
+static void a_cut_box_is_better_than_none(void) {
+    const int last = 40;
+    (void)approach_until(last, CUT_BEFORE, 33.0, 1000);
+    check_report("boxes of the camera that cuts", used_by_other);
+    TEST_ASSERT_TRUE(used_by_other > 8 && used_by_other < LOOKS - last - 8);
 }
 
 int main(void) {
@@ -288,5 +317,7 @@ int main(void) {
     RUN_TEST(a_camera_that_is_not_there_is_refused);
     RUN_TEST(a_bad_second_camera_is_named);
     RUN_TEST(a_camera_takes_nothing_from_a_better_one);
+    RUN_TEST(of_two_equal_boxes_one_is_used);
+    RUN_TEST(a_cut_box_is_better_than_none);
     return UNITY_END();
 }
