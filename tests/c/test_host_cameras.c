@@ -213,7 +213,7 @@ static void a_bad_second_camera_is_named(void) {
 #define FIRST_M 150.0
 #define STEP_M 1.5 /* 15 m/s */
 #define LOOKS 70
-#define FIRST_ALONE 5  /* images without a box of the other camera */
+#define FIRST_ALONE 5  /* images without such a box: as the first, it would place the mast too far away */
 #define LOW_PX 1200.0f /* so near to the lower border that it may cut the box */
 
 typedef enum { ALONE, CUT_BEFORE, LOW_BEFORE, WHOLE_BEFORE, EMPTY_BETWEEN } other_t; /* what the other camera gives */
@@ -257,7 +257,7 @@ static int approach_until(int last, other_t other, double yaw_deg, int64_t lead_
         if (other != ALONE) {
             look_ahead(time_us - lead_us, &image);
             image.camera = 1;
-            if (other != EMPTY_BETWEEN && k > FIRST_ALONE) {
+            if (other != EMPTY_BETWEEN && (other != LOW_BEFORE || k > FIRST_ALONE)) {
                 detect_mast(FIRST_M - (double)image.pose.position_ned_m[0], yaw_deg / 57.29577951308232, &image.box);
                 image.box.bottom_px = other == LOW_BEFORE ? LOW_PX : image.box.bottom_px;
             }
