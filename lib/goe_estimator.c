@@ -266,7 +266,6 @@ static void note_detection(goe_estimator_t *estimator, bool detected) {
     estimator->motion.detected = (uint8_t)count;
 }
 
-/*@ requires \valid(estimator) && goe_view_is_open(view) && goe_faults_are_open(faults); */
 static goe_status_t estimate_view(goe_estimator_t *estimator, const goe_view_t *view, goe_faults_t *faults) {
 #if GOE_WITH_FILTER
     if (goe_uses_filter(estimator)) {

@@ -29,6 +29,7 @@
 #define LOST_S 0.5f            /* time without rows after which a known range does not count as known */
 #define VAGUE2 4.0f /* limit of (sigma of 1/Z0 times the way along Z)^2, which is below 1 for an obstacle ahead */
 #define DOUBTED_SIGMAS2 4.0f /* squared sigmas of a growth above which nothing is clear */
+#define REPLACED_SHARE 0.1f  /* of the time constant: for which a whole box makes a cut one superfluous */
 #define NEVER_S 1.0e6f       /* without a whole box: longer than any correlation time */
 #define FADE_MAX 0.95f /* largest share of a box's error that remains from image to image, where it is not remembered */
 
@@ -61,7 +62,7 @@ static bool replaces(const goe_filter_t *filter, const goe_view_t *view) {
 static bool is_replaced(const goe_filter_t *filter, const goe_detector_t *detector, const goe_view_t *view,
                         float since_s) {
     return view->sides.usable != 0u && !is_whole(&view->sides) &&
-           filter->whole_s + since_s < detector->box_correlation_time_s;
+           filter->whole_s + since_s < REPLACED_SHARE * detector->box_correlation_time_s;
 }
 #endif
 
