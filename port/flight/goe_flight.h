@@ -27,11 +27,11 @@
  *             frame and an assessment return GOE_FLIGHT_CORRUPTED. [F3] An estimator that returns GOE_CORRUPTED starts again; if its
  *             settings are lost, it takes those of another slot. Until it has a position again, the slot keeps its position, hazard
  *             and warning, marked suspect. [F4] The rest (poses, clocks, positions, the active order) is not sealed.
- * Cost        On a Cortex-M4F (gcc), measured in instructions: a sample at most 1,700; a frame 49,300 for each obstacle in it
- *             (goe.h states the proved limit of goe_update(), which it contains); an assessment 29,700 with one obstacle and 23,200 for each further one with a position. While there is a hazard or an order, an
- *             assessment also examines paths: at most 4 times (4 + 4 GOE_FLIGHT_SLOTS), each against every obstacle.
- *             goe_flight_obstacle() 980; goe_flight_sectors() 12,800 with one obstacle; goe_flight_init() 12,700 for each
- *             slot. No loop runs longer than GOE_FLIGHT_SECTORS.
+ * Cost        On a Cortex-M4F (gcc), measured in instructions: a sample at most 1,700; a frame 49,300 for each obstacle in it (it
+ *             includes goe_update(), whose proved limit goe.h states); an assessment 29,700 with one obstacle and 23,200 for each
+ *             further one with a position. While there is a hazard or an order, an assessment also examines paths: at most 4 times
+ *             (4 + 4 GOE_FLIGHT_SLOTS), each against every obstacle. goe_flight_obstacle() 980; goe_flight_sectors() 12,800 with one
+ *             obstacle; goe_flight_init() 12,700 for each slot. No loop runs longer than GOE_FLIGHT_SECTORS.
  * Failure     A call that returns a negative status, or GOE_FLIGHT_TOO_NEW, changes nothing except counters, with two exceptions:
  *             after a failed goe_flight_init() *flight cannot be used, and the 16th GOE_FLIGHT_BAD_TIME in a row calls
  *             goe_flight_restart(). [F5]
