@@ -1,9 +1,9 @@
 /*
  * goe - Ground Obstacle Estimator
  *
- * One camera views a static ground obstacle: a building, a truck, a chimney. From the features in its images and the motion of
- * the aircraft, goe estimates the obstacle's position, size and orientation, each with a 1-sigma uncertainty. [A1] It also
- * predicts the closest approach and decides when to act.
+ * A camera views a building, a truck or a chimney, which stands still or moves straight. From the features in its images and the
+ * motion of the aircraft, goe estimates the obstacle's position, size and orientation, each with a 1-sigma uncertainty. [A1] It
+ * also predicts the closest approach and decides when to act.
  *
  * Copyright (c) 2026 the goe authors. SPDX-License-Identifier: MIT
  *
@@ -69,8 +69,8 @@
  * Failure     A call with a negative status changes only counters and the age that goe_decide() uses. The exceptions are each
  *             status that says "image taken", and GOE_CORRUPTED of goe_update(). [A21] Every output is finite. [A16] A quantity
  *             without its bit in goe_estimate_t.valid means nothing. Non-finite input is refused, also under -ffast-math. [A17]
- * Cost        Each function states its highest cost on a Cortex-M4F with gcc -O2, one camera and 8 images in the window method
- *             (GOE_WINDOW_MAX). Both are proved: instructions (not cycles), bytes of stack. [A23]
+ * Cost        Each function states its highest cost on a Cortex-M4F with gcc -O2 -fno-math-errno -ffp-contract=off, one camera and 8
+ *             images in the window method (GOE_WINDOW_MAX). Both are proved: instructions (not cycles), bytes of stack. [A23]
  */
 #ifndef GOE_H
 #define GOE_H
@@ -285,7 +285,7 @@ GOE_NODISCARD goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator
  * The window method's figure excludes lens distortion. */
 goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, goe_estimate_t *estimate);
 
-/* Ends the track; keeps settings and counters. Call it before another obstacle, after a teleport, or with features over 80 degrees from Z.
+/* Ends the track; keeps settings and counters. Call it before another obstacle, after a teleport, and after a turn of over 60 degrees.
  * Returns GOE_OK, GOE_BAD_ARGUMENT, GOE_NOT_INITIALIZED, GOE_CORRUPTED.
  * Cost: at most 1640 instructions, 64 bytes of stack. */
 goe_status_t goe_reset(goe_estimator_t *estimator);

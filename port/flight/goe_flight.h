@@ -210,16 +210,18 @@ typedef enum {
     GOE_FLIGHT_RIGHT = 2,     /* fly to target_ned_m, to the right of the obstacle */
     GOE_FLIGHT_CLIMB = 3,     /* fly straight on and climb to target_ned_m, which is above the top at two sigma */
     GOE_FLIGHT_GO_AROUND = 4, /* abort the approach */
-    GOE_FLIGHT_HOLD = 5       /* turn away to target_ned_m before the obstacle and loiter: no time is left to pass it
-                                 at a side or above */
+    GOE_FLIGHT_HOLD = 5       /* turn away to target_ned_m before the obstacle and loiter: no side is clear, and a climb
+                                 comes too late */
 } goe_flight_action_t;
 
 /* The reason of the action. */
 typedef enum {
     GOE_FLIGHT_REASON_NONE = 0,  /* no order is given, and none is withheld */
-    GOE_FLIGHT_REASON_CLEAR = 1, /* the path of the order is clear of all known obstacles. With loiter_m 0 that path goes on
-                                    along the order line: an aircraft that turns elsewhere at the target leaves it */
-    GOE_FLIGHT_REASON_LEAST_BAD = 2, /* no path is clear: the order has the largest distance that was found */
+    GOE_FLIGHT_REASON_CLEAR = 1, /* the path of the order keeps at least 75 % of margin_m (HOLD: 50 %) from every known obstacle, at
+                                    two sigmas. With loiter_m 0 that path goes on along the order line: an aircraft that turns
+                                    elsewhere at the target leaves it */
+    GOE_FLIGHT_REASON_LEAST_BAD = 2, /* no path is clear: the side with the largest distance, or HOLD if its distance is larger by
+                                       more than 0.2 margin_m */
     /* an order is due and withheld, because the aircraft ... */
     GOE_FLIGHT_REASON_LOW = 3,   /* is lower than order_height_m */
     GOE_FLIGHT_REASON_SLOW = 4,  /* is slower than order_speed_m_s */
@@ -287,7 +289,7 @@ typedef struct {
     goe_hazard_t hazard;     /* from the time of the latest goe_flight_assess() on */
 } goe_flight_obstacle_t;
 
-#define GOE_FLIGHT_SECTOR_UNKNOWN 65535u /* outside the view of every live camera, or the pose is dead */
+#define GOE_FLIGHT_SECTOR_UNKNOWN 65535u /* not known to be clear: not in view, no pose, or an obstacle may be there */
 
 /* Counted since goe_flight_init(); they saturate. */
 typedef struct {
@@ -460,8 +462,9 @@ void goe_flight_settings_default(goe_flight_settings_t *settings);
 /* Checks the settings of estimator and layer, copies them, and clears all state.
  *   flight_size  sizeof(goe_flight_t) in the caller's compilation
  *   estimator    as for goe_init; width_px and height_px of every camera must be set too. The layer replaces
- *                navigation.height_bias_sd_m by the sigma of the height's source, one of its settings. Set height_white_sd_m
- *                to 0: a track takes one height, and after that only the changes of down
+ *                navigation.height_bias_sd_m by the sigma of the height's source, one of its settings. This sigma
+ *                includes noise: a track takes one height, and after that only the changes of down. height_white_sd_m may thus
+ *                be 0; its default widens the first estimates a little
  *   settings     null: the defaults
  *   bad_field    receives the name of the first bad setting; null if not wanted
  * Returns GOE_FLIGHT_OK, _BAD_ARGUMENT or _BAD_SETTINGS; on failure *flight cannot be used. */

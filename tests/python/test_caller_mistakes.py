@@ -89,6 +89,7 @@ def held(column: str, k: int = 0) -> Callable[[goe.Images], np.ndarray]:
     return lambda images: np.repeat(getattr(images, column)[k : k + 1], IMAGES, axis=0)
 
 
+ALIVE = np.arange(IMAGES) < 50  # while the camera works
 MOTION = ("position_ned_m", "attitude", "height_m", "box_px")
 MISTAKES: dict[str, Mistake] = {
     "quaternion as x, y, z, w": changed(attitude=lambda images: images.attitude[:, [1, 2, 3, 0]]),
@@ -106,6 +107,7 @@ MISTAKES: dict[str, Mistake] = {
     "velocity of the intent never set": changed(velocity_ned_m_s=lambda images: 0.0 * images.velocity_ned_m_s),
     "pose and box frozen, time running": changed(**{column: held(column) for column in MOTION}),
     "box frozen, the pose moves": changed(box_px=held("box_px", 20)),
+    "camera dead, empty images passed": changed(box_px=lambda i: np.where(ALIVE[:, None], i.box_px, np.nan)),
 }
 
 
@@ -190,3 +192,5 @@ def test_a_mistake_that_nothing_shows(seed: int) -> None:
     assert not never.reasons and never.decision[-1] == "CLEAR" and "ACT" not in never.decision
     frozen = shown("pose and box frozen, time running", seed)
     assert not frozen.reasons and set(frozen.status[10:]) == {"STALE"}
+    dead = shown("camera dead, empty images passed", seed)
+    assert set(dead.status[50:]) == {"NO_DETECTION"} and set(dead.decision[50:]) == {"ACT"}
