@@ -52,7 +52,8 @@ static bool covariance_of_filter(const goe_estimator_t *estimator, bool for_haza
     }
     goe_quantities_covariance(&estimator->filter, &estimator->settings, &estimator->motion, for_hazard, ahead_s,
                               covariance);
-    keep_valid(estimator->estimate.valid, covariance);
+    /* An unknown width also moves the far end of what the border cuts: a hazard counts it. */
+    keep_valid(estimator->estimate.valid | (for_hazard ? GOE_HAS_WIDTH : 0u), covariance);
     if (!for_hazard && !goe_is_set(&estimator->estimate.fresh)) {
         keep_at_least(estimator, covariance);
     }

@@ -24,7 +24,8 @@
 #define SURE_SIGMA 2.0f
 #define REFUSED_MAX_US 1000000000u /* 1000 s, the range of goe_intent_t.since_image_s */
 #define ASIDE_MIN 1.7320508f       /* tangent of 60 degrees */
-#define UNANSWERED_IMAGES 16u      /* without a detection, after which one that gave no estimate no longer counts */
+#define STEP_US 131072             /* 1/8 s, in which goe_motion_t.detected counts time: a power of two */
+#define UNANSWERED_STEPS 12        /* without a detection, after which one that gave no estimate no longer counts */
 
 /* ------------------------------------------------------------------------------------------------------- the estimate -- */
 
@@ -108,6 +109,23 @@ static void grow_old(goe_estimator_t *estimator) {
     estimate->z_m += motion->heading_cos * north_m + motion->heading_sin * east_m;
     estimate->sigma.x_m = sqrtf(goe_square(estimate->sigma.x0_m) + grown_m2);
     estimate->sigma.z_m = sqrtf(goe_square(estimate->sigma.z0_m) + grown_m2);
+}
+
+/* The center of a moving obstacle moves on until the next estimate. */
+static void move_center(goe_estimator_t *estimator, int64_t now_us) {
+    goe_estimate_t *estimate = &estimator->estimate;
+    goe_sigma_t *sigma = &estimate->sigma;
+    if (!(estimate->valid & GOE_HAS_VELOCITY) || !(estimate->valid & GOE_HAS_CENTER)) {
+        return;
+    }
+    const float since_s = goe_time_between_s(estimator->motion.time_us, now_us, GOE_TIME_MAX_US);
+    const float before_s = goe_latest_since_s(estimator, estimator->motion.time_us);
+    const float more_s2 = since_s * (since_s + 2.0f * before_s); /* growth of the squared time since the estimate */
+    estimate->center_north_m += estimate->velocity_north_m_s * since_s;
+    estimate->center_east_m += estimate->velocity_east_m_s * since_s;
+    sigma->center_north_m =
+        sqrtf(goe_square(sigma->center_north_m) + goe_square(sigma->velocity_north_m_s) * more_s2);
+    sigma->center_east_m = sqrtf(goe_square(sigma->center_east_m) + goe_square(sigma->velocity_east_m_s) * more_s2);
 }
 
 /* Drops an old estimate whose whole extent lies behind the camera, while the image shows the obstacle ahead: it is wrong. */
@@ -254,16 +272,17 @@ static void open_view(goe_estimator_t *estimator, const goe_image_t *image, cons
     }
 }
 
-/* Remembers for some images that a detection gave no new estimate although the latest one is old. The next estimate ends this. */
-static void note_detection(goe_estimator_t *estimator, bool detected) {
-    unsigned count = estimator->motion.detected;
+/* Remembers for some time that a detection gave no new estimate although the latest one is old. The next estimate ends this. before_us: the
+ * previous image. */
+static void note_detection(goe_estimator_t *estimator, bool detected, int64_t before_us) {
+    goe_motion_t *motion = &estimator->motion;
     if (detected) {
-        const bool old = goe_latest_since_s(estimator, estimator->motion.time_us) > GOE_SUPERSEDED_S;
-        count = old ? 1u + UNANSWERED_IMAGES : 1u;
-    } else if (count > 1u) {
-        count--;
+        const bool old = goe_latest_since_s(estimator, motion->time_us) > GOE_SUPERSEDED_S;
+        motion->detected = old ? 1u + UNANSWERED_STEPS : 1u;
+    } else if (motion->detected > 1u) { /* whole steps since time 0, so that none is lost between images */
+        const int64_t left = motion->detected - (motion->time_us / STEP_US - before_us / STEP_US);
+        motion->detected = (uint8_t)(left > 1 ? left : 1);
     }
-    estimator->motion.detected = (uint8_t)count;
 }
 
 static goe_status_t estimate_view(goe_estimator_t *estimator, const goe_view_t *view, goe_faults_t *faults) {
@@ -287,13 +306,17 @@ static goe_status_t estimate_view(goe_estimator_t *estimator, const goe_view_t *
 static goe_status_t take_image(goe_estimator_t *estimator, const goe_image_t *image, const goe_camera_t *camera) {
     goe_view_t view;
     goe_faults_t faults = {estimator->fault_counts, GOE_OK};
+    const int64_t before_us = estimator->motion.time_us;
     estimator->estimate.age_s = 0.0f;
+#if GOE_AUGMENTED
+    move_center(estimator, image->pose.time_us);
+#endif
     if (goe_motion_reset(&estimator->motion, &image->pose)) {
         follow_reset(estimator, &image->pose);
     }
     open_view(estimator, image, camera, &view, &faults);
     const goe_status_t status = estimate_view(estimator, &view, &faults);
-    note_detection(estimator, view.seen);
+    note_detection(estimator, view.seen, before_us);
     return status;
 }
 

@@ -54,7 +54,7 @@ typedef struct {
     float height_jump_m;            /* sum of those jumps of down that the given height also made */
     float ground_m;                 /* down of the ground, from the latest image's given height */
     uint8_t detected; /* 0: no feature was visible so far. Otherwise T and its origin are fixed, and the value less 1 is
-                                     * the number of images for which a detection without a new estimate still counts */
+                       * the time, 1/8 s, for which a detection without a new estimate still counts */
     uint8_t reset_count;
 #if GOE_AUGMENTED
     uint8_t paced; /* 0: the fields below are invalid; else 1 + images in a row at the predicted place */
@@ -213,9 +213,9 @@ typedef struct {         /* refined/goe_answer.c: data of the latest estimate th
     float reach_m;       /* half of the extent about the reference point, m; prism: across the line of sight */
     goe_place_t nearer;  /* prism: from its center to that of a circle of that reach that is as near, T axes */
     float height_bias_m; /* constant error of the camera's height, removed from the estimate, m */
+    float outgrown_s;    /* time for which a growth beyond that at the state's range still counts; 0: none */
     goe_flag_t outdated; /* the state has changed since the estimate, other than by time */
     goe_flag_t by_kind;  /* the estimate's range is that of the detector's class */
-    goe_flag_t outgrown; /* the latest image shows the obstacle larger than it can be at the state's range */
 } goe_answer_t;
 
 #define GOE_KIND_SIZES 2 /* width, height */

@@ -66,8 +66,8 @@ static bool is_outside(const goe_hazard_t *hazard, const goe_intent_t *intent) {
 }
 
 /* Whether the estimate is in doubt. Detections came for a while without a new one: the old one may belong to another object. The absence
- * of detections does not count. Filter: the range is that of a class, which may be wrong, and no image has tested it yet; or the latest
- * image shows the obstacle larger than it can be at this range. */
+ * of detections does not count. Filter: the range is that of a class, which may be wrong, and no image has tested it yet; or the obstacle
+ * is ahead, and images showed it larger than it can be at this range. If it is nearer than that, it also passes sooner. */
 static bool is_doubted(const goe_estimator_t *estimator) {
     bool superseded = estimator->motion.detected > 1u;
     bool wrong = false;
@@ -75,7 +75,7 @@ static bool is_doubted(const goe_estimator_t *estimator) {
     if (goe_uses_filter(estimator)) {
         const goe_answer_t *answer = &estimator->filter.answer;
         superseded = superseded || answer->outdated != 0u;
-        wrong = answer->by_kind != 0u || answer->outgrown != 0u;
+        wrong = answer->by_kind != 0u || (answer->outgrown_s > 0.0f && estimator->estimate.z_m > 0.0f);
     }
 #endif
     return wrong || (superseded && goe_latest_since_s(estimator, estimator->motion.time_us) > GOE_SUPERSEDED_S);
@@ -120,17 +120,22 @@ static GOE_NOINLINE goe_decision_t judge(const goe_estimator_t *estimator, const
 }
 
 /* Whether the aircraft is too near now, judged as if it were at rest relative to the obstacle. At a creeping speed, the closest approach is
- * far in the future even if it is near. At a higher speed it is not: within the margin, it comes within the rule's time. */
+ * far in the future even if it is near. At a higher speed it is not: within the margin, it comes within the rule's time. The way since the
+ * latest image counts as flown toward the obstacle. */
 static GOE_NOINLINE bool is_too_near(const goe_estimator_t *estimator, const goe_intent_t *intent,
                                      const goe_rule_t *rule, goe_hazard_t *met) {
     const goe_estimate_t *estimate = &estimator->estimate;
     const float north_m_s = intent->velocity_ned_m_s[0] - estimate->velocity_north_m_s; /* 0 unless valid */
     const float east_m_s = intent->velocity_ned_m_s[1] - estimate->velocity_east_m_s;
-    if (sqrtf(north_m_s * north_m_s + east_m_s * east_m_s) * rule->act_within_s > intent->margin_m) {
+    const float speed_m_s = sqrtf(north_m_s * north_m_s + east_m_s * east_m_s);
+    goe_intent_t still = *intent;
+    goe_intent_t wide = *intent;
+    goe_hazard_t now;
+    widen(estimator, rule, &wide);
+    if (speed_m_s * rule->act_within_s > wide.margin_m) {
         return false;
     }
-    goe_intent_t still = *intent;
-    goe_hazard_t now;
+    still.margin_m += speed_m_s * (intent->since_image_s < SILENT_S ? intent->since_image_s : SILENT_S);
     still.velocity_ned_m_s[0] = estimate->velocity_north_m_s;
     still.velocity_ned_m_s[1] = estimate->velocity_east_m_s;
     if (judge(estimator, &still, intent->since_image_s, rule, &now) != GOE_DECISION_ACT) {

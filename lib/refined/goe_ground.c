@@ -50,6 +50,17 @@ static void average(goe_datum_t *datum, const goe_navigation_t *navigation, bool
     }
 }
 
+/* Before the first height of a track. A filter that started without it, and has found no position yet, starts again with it. */
+static void begin_heights(goe_filter_t *filter, float sd_m) {
+    if (filter->datum.readings > 0) {
+        return;
+    }
+    filter->datum.sd_m = sd_m;
+    if (goe_filter_has_started(filter) && (filter->known & GOE_HAS_POSITION) == 0u) {
+        goe_filter_enter(filter, GOE_PHASE_NONE);
+    }
+}
+
 void goe_ground_read(goe_filter_t *filter, const goe_navigation_t *navigation, const goe_view_t *view, float since_s) {
     goe_datum_t *datum = &filter->datum;
     const float down_m = camera_down_m(view);
@@ -57,11 +68,12 @@ void goe_ground_read(goe_filter_t *filter, const goe_navigation_t *navigation, c
     const bool lacks_height = goe_ground_lacks_height(view->image);
     if (!filter->has_datum) {
         datum->ground_m = ground_m;
-        datum->sd_m = lacks_height ? UNKNOWN_SD_M : view->image->noise.height_sd_m;
+        datum->sd_m = UNKNOWN_SD_M;
         datum->scatter_m2 = goe_square(navigation->height_white_sd_m);
         filter->has_datum = true;
     }
     if (!lacks_height) {
+        begin_heights(filter, view->image->noise.height_sd_m);
         average(datum, navigation, goe_filter_has_started(filter), ground_m - datum->ground_m, since_s);
     }
     datum->height_m = datum->ground_m - down_m;

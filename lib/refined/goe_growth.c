@@ -27,7 +27,10 @@ float goe_growth_find(const goe_observation_t *obs, const goe_rows_t *rows) {
             ends++;
         }
     }
-    return ends == 2u && ahead > AHEAD_MIN && excess > 0.0f ? goe_square(excess) / variance : 0.0f;
+    if (ends < 2u) {
+        return GOE_GROWTH_UNSEEN;
+    }
+    return ahead > AHEAD_MIN && excess > 0.0f ? goe_square(excess) / variance : 0.0f;
 }
 
 #endif

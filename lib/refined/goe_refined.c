@@ -28,7 +28,8 @@
 #define TOO_SOON_SHARE 0.08f   /* share of the time constant: sooner, box differences are linearization errors */
 #define LOST_S 0.5f            /* time without rows after which a known range does not count as known */
 #define VAGUE2 4.0f /* limit of (sigma of 1/Z0 times the way along Z)^2, which is below 1 for an obstacle ahead */
-#define DOUBTED_SIGMAS2 4.0f /* squared sigmas of a growth above which nothing is clear */
+#define DOUBTED_SIGMAS2 4.0f /* squared sigmas of a growth above which nothing is clear, for DOUBTED_S */
+#define DOUBTED_S 2.0f       /* as the errors of boxes fade in a second, the next growth may be smaller by chance */
 #define REPLACED_SHARE 0.1f  /* of the time constant: for which a whole box makes a cut one superfluous */
 #define NEVER_S 1.0e6f       /* without a whole box: longer than any correlation time */
 #define FADE_MAX 0.95f /* largest share of a box's error that remains from image to image, where it is not remembered */
@@ -99,14 +100,21 @@ static void doubt(goe_filter_t *filter, const goe_observation_t *obs) {
     goe_observation_age(filter, obs);
 }
 
+/* Notes a growth in the image that contradicts the range. An image that does not show it changes nothing. */
+static void note_growth(goe_answer_t *answer, float grown2, float since_s) {
+    if (grown2 > DOUBTED_SIGMAS2) {
+        answer->outgrown_s = DOUBTED_S;
+    } else if (grown2 >= 0.0f) {
+        answer->outgrown_s = answer->outgrown_s > since_s ? answer->outgrown_s - since_s : 0.0f;
+    }
+}
+
 /* The rows of the image, before the gate. */
 static void find_rows(goe_filter_t *filter, goe_observation_t *obs, goe_rows_t *rows) {
     rows->white_rad = obs->white_rad;
     goe_model_rows(filter, obs, rows);
     obs->grown2 = goe_growth_find(obs, rows);
-    if (rows->count > 0) {
-        filter->answer.outgrown = obs->grown2 > DOUBTED_SIGMAS2;
-    }
+    note_growth(&filter->answer, obs->grown2, obs->since_s);
     goe_rows_end(rows, obs);
 #if GOE_AUGMENTED
     goe_mover_columns(obs, rows);

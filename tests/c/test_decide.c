@@ -142,6 +142,36 @@ static void a_violation_at_a_creeping_speed_is_one_of_now(void) {
     TEST_ASSERT_EQUAL_INT(GOE_DECISION_CLEAR, decide());
 }
 
+/* GIVEN a wall ahead that is nearer than the margin which a suspect or an old estimate has widened, or than the margin after the flight
+ * since the latest image, WHEN the aircraft flies a little slower or faster THEN the rule acts at every speed: more doubt and more way never
+ * end an order. */
+static void a_widened_margin_counts_at_every_speed(void) {
+    for (int k = 2; k <= 400; k++) {
+        const float speed_m_s = 0.05f * (float)k;
+        const stated_t mast = {0.0f, 26.0f, 6.0f, 40.0f, 0.5f, 0.5f, 20.0f}; /* 23 m to its face */
+        stated_answer(&estimator, &mast);
+        intent.velocity_ned_m_s[0] = speed_m_s;
+        intent.margin_m = 15.0f;
+        intent.since_image_s = 0.0f;
+        TEST_ASSERT_EQUAL_INT(speed_m_s < 1.0f ? GOE_DECISION_CLEAR : decide(),
+                              decide()); /* 8 m and more, in 8 s or more */
+        estimator.estimate.fresh = false;
+        estimator.motion.time_us = estimator.estimate_time_us + 12000000;
+        TEST_ASSERT_EQUAL_INT(GOE_DECISION_ACT, decide());
+        stated_answer(&estimator, &mast);
+        estimator.estimate.suspect = true;
+        intent.margin_m = 17.0f;
+        TEST_ASSERT_EQUAL_INT(GOE_DECISION_ACT, decide());
+        stated_answer(&estimator, &mast);
+        estimator.estimate.suspect = false;
+        intent.margin_m = 21.5f;
+        intent.since_image_s = 2.0f;
+        rule.stale_growth_m_s = 0.0f;
+        TEST_ASSERT_TRUE(speed_m_s < 1.0f || decide() == GOE_DECISION_ACT);
+        rule.stale_growth_m_s = 1.0f;
+    }
+}
+
 /* GIVEN an obstacle that is passed far aside WHEN the camera is silent THEN it is clear for two seconds after the latest image, and not
  * known after that; one ahead is still acted on. */
 static void a_silent_camera_clears_nothing(void) {
@@ -319,6 +349,7 @@ int main(void) {
     RUN_TEST(a_wrong_position_clears_nothing);
     RUN_TEST(a_silent_camera_clears_nothing);
     RUN_TEST(a_violation_at_a_creeping_speed_is_one_of_now);
+    RUN_TEST(a_widened_margin_counts_at_every_speed);
     RUN_TEST(doubt_and_age_widen);
     RUN_TEST(a_refused_image_moves_the_aircraft_on);
     RUN_TEST(without_a_position_nothing_is_known);

@@ -416,6 +416,125 @@ static void detections_without_an_estimate_clear_nothing(void) {
     }
 }
 
+/* [GOE_DECISION_UNKNOWN]
+ * GIVEN an obstacle that is passed at a distance WHEN detections without a new estimate come for over two seconds, one in half a second,
+ * among images without a detection at any rate, THEN nothing is clear in between; after two silent seconds it is. */
+static void rare_detections_without_an_estimate_clear_nothing(void) {
+    static const int every[] = {1, 5, 25, 50}; /* of 1000 images a second */
+    for (size_t i = 0; i < sizeof every / sizeof every[0]; i++) {
+        scene_default(&scene);
+        scene_make_cylinder(&scene);
+        scene.x0_m = 70.0;
+        scene.z0_m = 300.0;
+        scene.image_rate_hz = 1000.0;
+        scene.boxes = true;
+        start();
+        const goe_intent_t intent = intent_of(0.0);
+        for (int ms = 0; ms < 10500; ms += every[i]) {
+            scene_image(&scene, ms, &image, NULL);
+            if (ms % 500 == 0 && ms >= 3000 && ms <= 8000) {
+                spoil();
+            } else if (ms % 100 != 0 || ms >= 3000) {
+                hide_all();
+            }
+            (void)goe_update(&estimator, &image, &estimate);
+            const goe_decision_t decision = goe_decide(&estimator, &intent, NULL, NULL);
+            TEST_ASSERT_TRUE(ms < 1000 || ms > 4000 || decision == GOE_DECISION_CLEAR);
+            TEST_ASSERT_TRUE(ms < 5500 || ms > 8000 || decision == GOE_DECISION_UNKNOWN);
+            TEST_ASSERT_TRUE(ms < 10000 || decision == GOE_DECISION_CLEAR);
+        }
+    }
+}
+
+/* [GOE_DECISION_UNKNOWN]
+ * GIVEN images in which the obstacle grows faster than it can at the estimated range WHEN the next images show one end of it, or the range
+ * seems right again, THEN nothing is clear for two more seconds of images that can tell. */
+static void a_doubt_about_the_range_lasts(void) {
+    scene_make_cylinder(&scene);
+    scene.x0_m = 70.0;
+    scene.z0_m = 300.0;
+    scene.image_rate_hz = 10.0;
+    scene.speed_mps = 8.0;
+    scene.boxes = true;
+    start();
+    const goe_intent_t intent = intent_of(0.0);
+    int doubted = 0;
+    int partial = 0;
+    int after = 0;
+    for (int k = 0; k < 130 && after < 40; k++) {
+        scene_image(&scene, k, &image, NULL);
+        if (k == 60 || k == 61) { /* twice as large */
+            const float half_px = 0.5f * (image.box.bottom_px - image.box.top_px);
+            image.box.top_px -= half_px;
+            image.box.bottom_px += half_px;
+        } else if (k > 61 && k < 100) {
+            image.box.sides = GOE_SIDE_LEFT | GOE_SIDE_TOP;
+        }
+        (void)goe_update(&estimator, &image, &estimate);
+        const bool clear = goe_decide(&estimator, &intent, NULL, NULL) == GOE_DECISION_CLEAR;
+        TEST_ASSERT_TRUE(k < 20 || k >= 60 || clear);
+        doubted += k == 61 && !clear ? 1 : 0;
+        partial += k > 61 && k < 100 && clear ? 1 : 0;
+        after += k >= 100 && clear ? 1 : 0;
+        TEST_ASSERT_TRUE(k < 100 || k >= 118 || !clear);
+    }
+    TEST_ASSERT_EQUAL_INT(1, doubted);
+    TEST_ASSERT_EQUAL_INT(0, partial);
+    TEST_ASSERT_TRUE(after > 0);
+}
+
+/* [goe_pose_t.height_m] GIVEN a track whose first images have a box and no height WHEN the heights come THEN they give the range as if
+ * the track had begun then. */
+static void a_late_height_gives_the_range(void) {
+    for (int first = 1; first <= 5; first++) {
+        scene_make_cylinder(&scene);
+        scene.z0_m = 200.0;
+        scene.image_rate_hz = 10.0;
+        scene.boxes = true;
+        start();
+        for (int k = 0; k < first + 2; k++) {
+            scene_image(&scene, k, &image, NULL);
+            image.pose.height_m = k < first ? 0.0f : image.pose.height_m;
+            (void)goe_update(&estimator, &image, &estimate);
+        }
+        TEST_ASSERT_TRUE((estimate.valid & GOE_HAS_POSITION) != 0u && estimate.fresh);
+    }
+}
+
+/* [center_north_m] GIVEN an obstacle with a velocity WHEN no image shows it any more THEN its center moves on as x and z do, and its sigma
+ * grows with that of the velocity. */
+static void the_center_of_a_moving_obstacle_moves_on(void) {
+    scene_make_cylinder(&scene);
+    scene.image_rate_hz = 10.0;
+    scene.boxes = true;
+    start();
+    for (int k = 0; k < 60; k++) {
+        scene_image(&scene, k, &image, NULL);
+        if (k == 20) { /* as if it had been estimated */
+            TEST_ASSERT_TRUE((estimate.valid & GOE_HAS_CENTER) != 0u);
+            estimator.estimate.valid |= GOE_HAS_VELOCITY;
+            estimator.estimate.velocity_north_m_s = -3.0f;
+            estimator.estimate.velocity_east_m_s = 6.0f;
+            estimator.estimate.sigma.velocity_north_m_s = 0.5f;
+            estimator.estimate.sigma.velocity_east_m_s = 2.0f;
+            estimate = estimator.estimate;
+        }
+        if (k >= 20) {
+            goe_estimate_t now;
+            hide_all();
+            (void)goe_update(&estimator, &image, &now);
+            const double since_s = 0.1 * (k - 19);
+            CHECK_CLOSE(1.0e-3, (double)estimate.center_north_m - 3.0 * since_s, now.center_north_m);
+            CHECK_CLOSE(1.0e-3, (double)estimate.center_east_m + 6.0 * since_s, now.center_east_m);
+            CHECK_CLOSE(1.0e-3, hypot((double)estimate.sigma.center_north_m, 0.5 * since_s), now.sigma.center_north_m);
+            CHECK_CLOSE(1.0e-3, hypot((double)estimate.sigma.center_east_m, 2.0 * since_s), now.sigma.center_east_m);
+            CHECK_CLOSE(1.0e-2, (double)(image.pose.position_ned_m[1] + now.x_m), now.center_east_m);
+        } else {
+            (void)goe_update(&estimator, &image, &estimate);
+        }
+    }
+}
+
 /* GIVEN an obstacle that is passed at a distance, whose last box comes too soon after another one, WHEN the detector is silent from then on,
  * THEN it stays clear. */
 static void a_box_too_soon_does_not_end_clear(void) {
@@ -452,5 +571,9 @@ int main(void) {
     RUN_TEST(images_without_a_detection_leave_every_box);
     RUN_TEST(detections_without_an_estimate_clear_nothing);
     RUN_TEST(a_box_too_soon_does_not_end_clear);
+    RUN_TEST(rare_detections_without_an_estimate_clear_nothing);
+    RUN_TEST(a_doubt_about_the_range_lasts);
+    RUN_TEST(a_late_height_gives_the_range);
+    RUN_TEST(the_center_of_a_moving_obstacle_moves_on);
     return UNITY_END();
 }
