@@ -144,7 +144,8 @@ typedef enum {
  * counter and, if known, the jump: new minus old position, summed since the last image that was taken. A jump of unknown size,
  * also of attitude, starts a new track. height_m may jump or not. The filter compensates large, horizontal, unannounced jumps. */
 typedef struct {
-    int64_t time_us;         /* any origin; strictly increasing; GOE_TIME_UNKNOWN is refused */
+    int64_t time_us;         /* any origin; GOE_TIME_UNKNOWN is refused. Strictly increasing; images of one time: in the order of
+                              * their cameras */
     float position_ned_m[3]; /* the vehicle's reference point, each +-1e6; choose an origin within 10 km */
     float height_m;          /* camera above the ground at the obstacle, +-1e5. Exactly 0 with a box means "not set". goe
                               * averages the readings and moves the height by the changes of down; window: each reading

@@ -123,8 +123,7 @@ static void move_center(goe_estimator_t *estimator, int64_t now_us) {
     const float more_s2 = since_s * (since_s + 2.0f * before_s); /* growth of the squared time since the estimate */
     estimate->center_north_m += estimate->velocity_north_m_s * since_s;
     estimate->center_east_m += estimate->velocity_east_m_s * since_s;
-    sigma->center_north_m =
-        sqrtf(goe_square(sigma->center_north_m) + goe_square(sigma->velocity_north_m_s) * more_s2);
+    sigma->center_north_m = sqrtf(goe_square(sigma->center_north_m) + goe_square(sigma->velocity_north_m_s) * more_s2);
     sigma->center_east_m = sqrtf(goe_square(sigma->center_east_m) + goe_square(sigma->velocity_east_m_s) * more_s2);
 }
 

@@ -75,7 +75,7 @@ typedef struct {
     float shape_error_rel;        /* model error of a disc or prism by points, as a fraction of its width; 0 to 1; default 0 */
     float box_noise_px;           /* error of a box's side, new in each image; 0.05 to 100 px; default 1 */
     float box_noise_rel;          /* slow error of a side, as a fraction of the box's width or height; 0 to 1; default 0.07 */
-    float box_correlation_time_s; /* correlation time of box_noise_rel; 0 to 100 s; default 1.2 */
+    float box_correlation_time_s; /* correlation time of box_noise_rel; 0 to 10 s; default 1.2 */
     float truncation_noise_rel;   /* error of a cut box's sides, as a fraction of its width or height; 0 to 10; default 1 */
 } goe_detector_t;
 

@@ -56,7 +56,7 @@
     X(detector.shape_error_rel, REAL, "", 0.0f, 1.0f, 0.0f, "model error of a disc or prism by points, as a fraction of its width") \
     X(detector.box_noise_px, REAL, "px", 0.05f, 100.0f, 1.0f, "error of a box's side, new in each image") \
     X(detector.box_noise_rel, REAL, "", 0.0f, 1.0f, 0.07f, "slow error of a side, as a fraction of the box's width or height") \
-    X(detector.box_correlation_time_s, REAL, "s", 0.0f, 100.0f, 1.2f, "correlation time of box_noise_rel") \
+    X(detector.box_correlation_time_s, REAL, "s", 0.0f, 10.0f, 1.2f, "correlation time of box_noise_rel") \
     X(detector.truncation_noise_rel, REAL, "", 0.0f, 10.0f, 1.0f, "error of a cut box's sides, as a fraction of its width or height") \
     X(filter.prior_width_m, REAL, "m", 0.1f, 1.0e3f, 6.0f, "assumed width where the ground gives no range; sigma: a factor of 5") \
     X(filter.gate_sigma, REAL, "sigma", 1.0f, 100.0f, 5.0f, "a point with a larger innovation is rejected") \

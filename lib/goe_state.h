@@ -56,6 +56,9 @@ typedef struct {
     uint8_t detected; /* 0: no feature was visible so far. Otherwise T and its origin are fixed, and the value less 1 is
                        * the time, 1/8 s, for which a detection without a new estimate still counts */
     uint8_t reset_count;
+#if GOE_CAMERAS_MAX > 1
+    uint8_t camera; /* of the latest image */
+#endif
 #if GOE_AUGMENTED
     uint8_t paced; /* 0: the fields below are invalid; else 1 + images in a row at the predicted place */
     uint8_t leaps; /* images in a row far from the predicted place */
@@ -169,6 +172,9 @@ typedef struct {
     float variance; /* not positive: the side was not measured yet, and the magnitude is the configured variance */
 } goe_side_memory_t;
 
+/* Four sides of the boxes of each camera, which err independently, and two of a shape that is no ellipse. */
+#define GOE_SIDE_MEMORIES (4 * GOE_CAMERAS_MAX + 2)
+
 /* refined/goe_scatter.c: products of each residual with that of the previous image. A series: a coordinate of a feature. */
 #define GOE_SERIES (2 * GOE_FEATURES)
 typedef struct {
@@ -240,7 +246,6 @@ typedef struct {
     goe_flag_t paced; /* the velocity in axes is valid */
 #endif
     goe_naming_t naming;
-    uint8_t camera;       /* camera of the latest image with a detection */
     goe_flag_t has_datum; /* the datum is set, by the track's first image */
     float ground_scale;   /* 1/Z0 at which the sigma of GOE_GROUND was set, over the present 1/Z0 */
     float flown_m;        /* length of the path over ground since the filter's start */
@@ -249,7 +254,8 @@ typedef struct {
     float walk_s[2];      /* time since the random walk of the own position was last added along X, and along Z */
     float due_s;          /* time since process noise was last added; the next image that gives rows adds it */
 #if GOE_CAMERAS_MAX > 1
-    float whole_s; /* time since the latest rows of a box that no border cuts */
+    float faded_s[GOE_CAMERAS_MAX]; /* by camera: time since the errors of its boxes were last faded */
+    float used_s[GOE_CAMERAS_MAX];  /* by camera: time since its latest image that gave rows */
 #endif
     goe_kind_use_t kind;
     goe_candidate_t candidate;
@@ -261,9 +267,9 @@ typedef struct {
 #if GOE_AUGMENTED
     goe_mover_t mover;
 #endif
-    goe_side_memory_t side[6]; /* by goe_box_side_t; then points left and right */
-    float state[GOE_STATES];   /* by goe_state_index_t */
-    goe_triangle_t root;       /* R: R'R is the information of the state, as of the latest image that gave rows */
+    goe_side_memory_t side[GOE_SIDE_MEMORIES]; /* of each camera by goe_box_side_t; then points left and right */
+    float state[GOE_STATES];                   /* by goe_state_index_t */
+    goe_triangle_t root; /* R: R'R is the information of the state, as of the latest image that gave rows */
 } goe_filter_t;
 
 /* ------------------------------------------------------------------------------------------------------- estimator -- */

@@ -240,6 +240,9 @@ bool goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe
     camera_position(view->camera, pose, body_to_ned, position);
     motion->reset_count = pose->reset_count;
     motion->time_us = pose->time_us;
+#if GOE_CAMERAS_MAX > 1
+    motion->camera = view->image->camera;
+#endif
     place_origin(motion, settings, body_to_ned, position, jump_m);
     follow_height(motion, pose, position[2], jump_m[2]);
     place_camera(motion, position);

@@ -70,6 +70,17 @@ static bool is_unit(const float q[4], uint32_t largest) {
     return norm2 >= NORM2_MIN && norm2 <= NORM2_MAX;
 }
 
+/* Whether an image comes after the latest one: later, or at the same time from a camera with a higher number. */
+static bool is_next(const goe_motion_t *motion, const goe_image_t *image) {
+    const int64_t time_us = image->pose.time_us;
+#if GOE_CAMERAS_MAX > 1
+    if (time_us == motion->time_us && time_us != GOE_TIME_UNKNOWN) {
+        return image->camera > motion->camera;
+    }
+#endif
+    return time_us > motion->time_us; /* GOE_TIME_UNKNOWN is the smallest of all times */
+}
+
 goe_status_t goe_intake_check(const goe_motion_t *motion, const goe_image_t *image) {
     const float *q = image->pose.attitude;
     const uint32_t attitude = goe_larger_bits(goe_largest_of_three(q), goe_magnitude(q[3]));
@@ -77,7 +88,7 @@ goe_status_t goe_intake_check(const goe_motion_t *motion, const goe_image_t *ima
     if (status != GOE_OK) {
         return status;
     }
-    if (image->pose.time_us <= motion->time_us) { /* GOE_TIME_UNKNOWN is the smallest of all times */
+    if (!is_next(motion, image)) {
         return GOE_BAD_TIME;
     }
     return is_unit(q, attitude) ? GOE_OK : GOE_BAD_ATTITUDE;

@@ -78,7 +78,10 @@ void goe_filter_wait(goe_filter_t *filter, float since_s) {
     filter->walk_s[1] += since_s;
     filter->due_s += since_s;
 #if GOE_CAMERAS_MAX > 1
-    filter->whole_s += since_s;
+    for (size_t i = 0; i < GOE_CAMERAS_MAX; i++) {
+        filter->faded_s[i] += since_s;
+        filter->used_s[i] += since_s;
+    }
 #endif
 }
 

@@ -22,8 +22,8 @@
 #define CORNER_SHAPE 0.1f /* addition to shape_error_rel where base corners show that the obstacle is no ellipse */
 #define BASE_NOISE 2.0f   /* factor on the variance of a base corner's y, where it gives the range of the middle */
 
-/* Indices of the memories: sides of a box by goe_box_side_t, then left and right as points. */
-enum { SHAPE_LEFT = GOE_BOX_SIDES, SHAPE_RIGHT, MEMORIES };
+/* Indices of the memories: sides of each camera's boxes by goe_box_side_t, then left and right as points. */
+enum { SHAPE_LEFT = GOE_CAMERAS_MAX * GOE_BOX_SIDES, SHAPE_RIGHT, MEMORIES };
 
 GOE_STATIC_ASSERT(sizeof(((goe_filter_t *)0)->side) == MEMORIES * sizeof(goe_side_memory_t), every_side_has_a_memory);
 
@@ -66,6 +66,17 @@ static void set_place(const goe_observation_t *obs, const goe_solid_t *o, const 
     by[GOE_LOG_DEPTH] = slope.depth;
 }
 
+/* Memory of a side of the boxes of the image's camera. */
+/*@ requires \valid_read(obs) && side < GOE_BOX_SIDES; */
+static size_t memory_of(const goe_observation_t *obs, size_t side) {
+#if GOE_CAMERAS_MAX > 1
+    return obs->number * (size_t)GOE_BOX_SIDES + side;
+#else
+    (void)obs;
+    return side;
+#endif
+}
+
 /* Notes that the error of the last row is remembered, in the memory `side`. */
 /*@ requires goe_rows_hold(rows) && rows->count > 0 && side < MEMORIES; */
 static void remember(goe_rows_t *rows, size_t side) {
@@ -87,7 +98,7 @@ static void add_side(const goe_observation_t *obs, const goe_solid_t *o, size_t 
     set_place(obs, o, &t.contact, &g, by);
     by[GOE_INVERSE_RANGE] += g.y * obs->height_m;
     *goe_rows_last_variance(rows) += 2.0f * goe_square(obs->shift * g.z); /* opposite sides share this error */
-    remember(rows, side);
+    remember(rows, memory_of(obs, side));
 }
 
 /* (R5): the row of left or right as a point: the upright plane through it and the camera touches the footprint. outward: 1 on the right, -1
@@ -200,7 +211,7 @@ static void fade(goe_filter_t *filter, const goe_observation_t *obs, const goe_r
     const float shape2 = obs->is_round ? 0.0f : goe_square(SIDE_SHAPE * size_of(obs, GOE_BOX_LEFT));
     for (size_t side = 0; side < GOE_BOX_SIDES; side++) {
         const float share = obs->settings->detector.box_noise_rel;
-        goe_side_memory_fade(&filter->side[side], obs->fade, goe_square(share * size_of(obs, side)));
+        goe_side_memory_fade(&filter->side[memory_of(obs, side)], obs->fade, goe_square(share * size_of(obs, side)));
     }
     if (rows->count > 0) { /* otherwise the next image includes this turn */
         goe_side_memory_fade(&filter->side[SHAPE_LEFT], kept, shape2);

@@ -7,7 +7,7 @@
 
 #include "refined/goe_observation.h"
 
-#define GOE_GROWN_SIGMAS2 9.0f /* squared sigmas above which it contradicts a static obstacle */
+#define GOE_GROWN_SIGMAS2 9.0f    /* squared sigmas above which it contradicts a static obstacle */
 #define GOE_GROWTH_UNSEEN (-1.0f) /* the image does not show both ends */
 
 /* (R34): by how much the width or height exceeds the predicted one, in squared sigmas. 0 if it does not, or if the line of sight may have

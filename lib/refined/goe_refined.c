@@ -29,9 +29,8 @@
 #define LOST_S 0.5f            /* time without rows after which a known range does not count as known */
 #define VAGUE2 4.0f /* limit of (sigma of 1/Z0 times the way along Z)^2, which is below 1 for an obstacle ahead */
 #define DOUBTED_SIGMAS2 4.0f /* squared sigmas of a growth above which nothing is clear, for DOUBTED_S */
-#define DOUBTED_S 2.0f       /* as the errors of boxes fade in a second, the next growth may be smaller by chance */
-#define REPLACED_SHARE 0.1f  /* of the time constant: for which a whole box makes a cut one superfluous */
-#define NEVER_S 1.0e6f       /* without a whole box: longer than any correlation time */
+#define DOUBTED_S 2.0f       /* s: as the errors of boxes fade in a second, the next growth may be smaller by chance */
+#define NEVER_S 1.0e6f       /* longer than any correlation time */
 #define FADE_MAX 0.95f /* largest share of a box's error that remains from image to image, where it is not remembered */
 
 /* --------------------------------------------------------------------------------------------------------------- time -- */
@@ -48,38 +47,32 @@ static void fly_on(goe_filter_t *filter, const goe_motion_t *motion) {
 #endif
 }
 
+/* Seconds to the latest image of a camera that gave rows, as of the previous image. */
+static float used_s(const goe_filter_t *filter, unsigned camera) {
 #if GOE_CAMERAS_MAX > 1
-/* Whether all sides of a box are the obstacle's own. */
-static bool is_whole(const goe_sides_t *sides) {
-    return sides->usable == GOE_SIDES_ALL && sides->doubtful == 0u && !sides->cut;
-}
-
-/* Whether a box of another camera replaces one that came just before, and is never too soon: it is whole, that one was not. */
-static bool replaces(const goe_filter_t *filter, const goe_view_t *view) {
-    return is_whole(&view->sides) && filter->whole_s > filter->due_s;
-}
-
-/* Whether a whole box of another camera makes that of this one superfluous: it is cut, and says less. */
-static bool is_replaced(const goe_filter_t *filter, const goe_detector_t *detector, const goe_view_t *view,
-                        float since_s) {
-    return view->sides.usable != 0u && !is_whole(&view->sides) &&
-           filter->whole_s + since_s < REPLACED_SHARE * detector->box_correlation_time_s;
-}
+    return filter->used_s[camera];
+#else
+    (void)camera;
+    return filter->due_s;
 #endif
+}
 
-/* Whether an image comes so soon after the latest one with rows that the errors of its box are the same: it is not used. Images without
- * rows in between, of this camera or of another one, do not count. */
+/* Notes that an image gave rows. */
+static void note_use(goe_filter_t *filter, unsigned camera) {
+#if GOE_CAMERAS_MAX > 1
+    filter->used_s[camera] = 0.0f;
+#else
+    (void)filter;
+    (void)camera;
+#endif
+}
+
+/* Whether an image comes so soon after the latest one with rows of the same camera that the errors of its box are the same: it is not used.
+ * Images without rows in between do not count. */
 static bool comes_too_soon(const goe_filter_t *filter, const goe_detector_t *detector, const goe_view_t *view,
                            float since_s) {
-    bool soon = filter->due_s + since_s < TOO_SOON_SHARE * detector->box_correlation_time_s;
-#if GOE_CAMERAS_MAX > 1
-    if (view->image->camera != filter->camera) {
-        soon = is_replaced(filter, detector, view, since_s) || (soon && !replaces(filter, view));
-    }
-#else
-    (void)view;
-#endif
-    return soon && goe_filter_by_boxes(filter);
+    const float after_s = used_s(filter, view->image->camera) + since_s;
+    return after_s < TOO_SOON_SHARE * detector->box_correlation_time_s && goe_filter_by_boxes(filter);
 }
 
 /* ------------------------------------------------------------------------------------------------------------- update -- */
@@ -135,9 +128,7 @@ static bool measure(goe_filter_t *filter, const goe_observation_t *obs, goe_rows
     filter->answer.outdated = true;
     filter->measured.dx_m = obs->camera_m.x;
     filter->measured.dz_m = obs->camera_m.z;
-#if GOE_CAMERAS_MAX > 1
-    filter->whole_s = is_whole(obs->sides) ? 0.0f : filter->whole_s;
-#endif
+    note_use(filter, obs->number);
     doubt(filter, obs);
     verdict->rows += goe_ground_row(filter, obs, rows);
     const float nis = goe_model_update(filter, 1.0f / rows->white_rad, rows, change);
@@ -157,22 +148,44 @@ static float outline_share(const goe_detector_t *detector, float fade) {
     return detector->box_noise_rel * sqrtf((1.0f + kept) / (1.0f - kept));
 }
 
-/* Sets how much of a box's error remains from the previous image, and the effect of this image's position noise, including the second order
+/* Seconds over which the errors of the boxes of the image's camera fade with this image. */
+static float fade_time(goe_filter_t *filter, const goe_observation_t *obs) {
+#if GOE_CAMERAS_MAX > 1
+    const float since_s = filter->faded_s[obs->number];
+    filter->faded_s[obs->number] = 0.0f;
+    return since_s;
+#else
+    (void)filter;
+    return obs->since_s;
+#endif
+}
+
+/* Sets how much of a box's error remains from the camera's previous image, and the effect of this image's position noise, including the second order
  * by the uncertain range. */
-static void note_time(goe_filter_t *filter, goe_observation_t *obs, bool detected) {
+static void note_time(goe_filter_t *filter, goe_observation_t *obs) {
     const goe_detector_t *detector = &obs->settings->detector;
     obs->range_variance = goe_filter_variance(filter, GOE_INVERSE_RANGE);
     const float relative2 = obs->range_variance / goe_square(filter->state[GOE_INVERSE_RANGE]);
-    const bool same = !detected || filter->camera == obs->number; /* boxes of two cameras have independent errors */
-    const bool fades = same && detector->box_correlation_time_s > 0.0f;
-    obs->fade = fades ? goe_exp(-obs->since_s / detector->box_correlation_time_s) : 0.0f;
-    filter->camera = detected ? obs->number : filter->camera;
+    const float faded_s = fade_time(filter, obs);
+    obs->fade = detector->box_correlation_time_s > 0.0f ? goe_exp(-faded_s / detector->box_correlation_time_s) : 0.0f;
     if (obs->sides->usable != 0) {
         obs->outline_share = outline_share(detector, obs->fade);
     }
     obs->shift =
         obs->settings->navigation.position_white_sd_m * obs->state[GOE_INVERSE_RANGE] * sqrtf(1.0f + relative2);
     obs->white_rad = sqrtf(goe_square(obs->white_rad) + goe_square(obs->shift / goe_observation_ahead(obs)));
+}
+
+/* At the filter's start, by an image of one camera: it has used nothing of the others. */
+static void meet_cameras(goe_filter_t *filter, unsigned camera) {
+#if GOE_CAMERAS_MAX > 1
+    for (size_t i = 0; i < GOE_CAMERAS_MAX; i++) {
+        filter->used_s[i] = NEVER_S;
+        filter->faded_s[i] = NEVER_S;
+    }
+    filter->faded_s[camera] = 0.0f;
+#endif
+    note_use(filter, camera);
 }
 
 /* Starts the filter if necessary. False if the image does not start it. */
@@ -190,9 +203,7 @@ static bool open_image(goe_filter_t *filter, const goe_settings_t *settings, con
         filter->time_us = view->motion->time_us;
         filter->last.dx_m = view->motion->dx_m;
         filter->last.dz_m = view->motion->dz_m;
-#if GOE_CAMERAS_MAX > 1
-        filter->whole_s = is_whole(&view->sides) ? 0.0f : NEVER_S;
-#endif
+        meet_cameras(filter, obs->number);
     }
     return true;
 }
@@ -269,12 +280,13 @@ bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, co
     }
     obs.since_s = goe_time_between_s(filter->time_us, view->motion->time_us, GAP_MAX_US);
     fly_on(filter, view->motion);
-    note_time(filter, &obs, view->seen);
     goe_filter_wait(filter, obs.since_s);
+    note_time(filter, &obs);
     filter->time_us = view->motion->time_us;
     goe_observation_linearise(&obs);
     if (view->seen && goe_model_change(filter, &obs)) { /* an image without a feature changes nothing but the time */
         filter->answer.outdated = true;
+        note_use(filter, obs.number);
         return false;
     }
     const bool used = use_image(filter, &obs);

@@ -404,7 +404,7 @@ static void any_noise(goe_settings_t *s) {
     s->filter.range_sd_rel_max = any_from(0.01f, 10.0f);
     s->detector.box_noise_px = any_from(0.05f, 100.0f);
     s->detector.box_noise_rel = any_from(0.0f, 1.0f);
-    s->detector.box_correlation_time_s = any_from(0.0f, 100.0f);
+    s->detector.box_correlation_time_s = any_from(0.0f, 10.0f);
     s->detector.truncation_noise_rel = any_from(0.0f, 10.0f);
     s->navigation.position_white_sd_m = any_from(0.0f, 100.0f);
     s->navigation.terrain_height_sd_m = any_from(0.0f, 1.0e3f);

@@ -67,7 +67,7 @@ static const number_t numbers[] = {
     NUMBER(detector.shape_error_rel, 0.0f, 1.0f, 0.0f),
     NUMBER(detector.box_noise_px, 0.05f, 100.0f, 1.0f),
     NUMBER(detector.box_noise_rel, 0.0f, 1.0f, 0.07f),
-    NUMBER(detector.box_correlation_time_s, 0.0f, 100.0f, 1.2f),
+    NUMBER(detector.box_correlation_time_s, 0.0f, 10.0f, 1.2f),
     NUMBER(detector.truncation_noise_rel, 0.0f, 10.0f, 1.0f),
     NUMBER(navigation.attitude_bias_sd_deg, 1.0e-3f, 30.0f, 0.5f),
     NUMBER(navigation.attitude_white_sd_deg, 1.0e-4f, 30.0f, 0.1f),
