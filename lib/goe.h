@@ -1,7 +1,7 @@
 /*
  * goe - Ground Obstacle Estimator
  *
- * A camera views a building, a truck or a chimney, which stands still or moves straight. From the features in its images and the
+ * A camera views a building, truck or chimney, which stands still or moves straight. From its features in the images and the
  * motion of the aircraft, goe estimates the obstacle's position, size and orientation, each with a 1-sigma uncertainty. [A1] It
  * also predicts the closest approach and decides when to act.
  *
@@ -144,8 +144,7 @@ typedef enum {
  * counter and, if known, the jump: new minus old position, summed since the last image that was taken. A jump of unknown size,
  * also of attitude, starts a new track. height_m may jump or not. The filter compensates large, horizontal, unannounced jumps. */
 typedef struct {
-    int64_t time_us;         /* any origin; GOE_TIME_UNKNOWN is refused. Strictly increasing; images of one time: in the order of
-                              * their cameras */
+    int64_t time_us;         /* any origin; increases (equal: by camera number); not GOE_TIME_UNKNOWN */
     float position_ned_m[3]; /* the vehicle's reference point, each +-1e6; choose an origin within 10 km */
     float height_m;          /* camera above the ground at the obstacle, +-1e5. Exactly 0 with a box means "not set". goe
                               * averages the readings and moves the height by the changes of down; window: each reading
@@ -265,7 +264,7 @@ typedef struct {
 
 /* ------------------------------------------------------------------------------------------------------- functions -- */
 
-/* Sets the defaults for a small aircraft's sensors. The caller must set fx_px, fy_px, cx_px, cy_px, width_px, height_px. settings may be null.
+/* Sets the defaults for a small aircraft's sensors. Set fx_px, fy_px, cx_px, cy_px, width_px, height_px yourself. settings may be null.
  * Cost: at most 1010 instructions, 40 bytes of stack. */
 void goe_settings_default(goe_settings_t *settings);
 
@@ -282,11 +281,10 @@ GOE_NODISCARD goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator
  *             GOE_NOT_INITIALIZED and GOE_CORRUPTED. With any other negative status it is the last estimate, marked stale
  * Returns GOE_OK, a positive status, GOE_BEHIND_CAMERA to GOE_NO_HEIGHT (except GOE_BAD_HEIGHT), GOE_BAD_ARGUMENT,
  * GOE_NOT_INITIALIZED, GOE_CORRUPTED. Faults of images are counted. The solution's status has priority over a feature's.
- * Cost: at most 58000 instructions, 2048 bytes of stack; 81000 with lens distortion; window: 5700.
- * The window method's figure excludes lens distortion. */
+ * Cost: at most 58000 instructions, 2048 bytes of stack; 81000 with lens distortion; window without it: 5700. */
 goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, goe_estimate_t *estimate);
 
-/* Ends the track; keeps settings and counters. Call it before another obstacle, after a teleport, and after a turn of over 60 degrees.
+/* Ends the track; keeps settings and counters. Call it before another obstacle, after a teleport, after a turn of over 60 degrees.
  * Returns GOE_OK, GOE_BAD_ARGUMENT, GOE_NOT_INITIALIZED, GOE_CORRUPTED.
  * Cost: at most 1640 instructions, 64 bytes of stack. */
 goe_status_t goe_reset(goe_estimator_t *estimator);

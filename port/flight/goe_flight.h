@@ -220,7 +220,7 @@ typedef enum {
     GOE_FLIGHT_REASON_CLEAR = 1, /* the path of the order keeps at least 75 % of margin_m (HOLD: 50 %) from every known obstacle, at
                                     two sigmas. With loiter_m 0 that path goes on along the order line: an aircraft that turns
                                     elsewhere at the target leaves it */
-    GOE_FLIGHT_REASON_LEAST_BAD = 2, /* no path is clear: the side with the largest distance, or HOLD if its distance is larger by
+    GOE_FLIGHT_REASON_LEAST_BAD = 2, /* no path is clear: the side with the largest distance, or HOLD, whose distance is then larger by
                                        more than 0.2 margin_m */
     /* an order is due and withheld, because the aircraft ... */
     GOE_FLIGHT_REASON_LOW = 3,   /* is lower than order_height_m */

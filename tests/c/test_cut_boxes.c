@@ -235,7 +235,7 @@ static void fly_at_wall(double yaw_deg, int count[4]) {
 }
 
 /* [GOE_DECISION_CLEAR]
- * GIVEN a wall across the course, of which a camera that looks aside shows only the part beside the course, WHEN the wall's width is not
+ * GIVEN a wall across the course, of which a camera that looks aside shows only the part next to the course, WHEN the wall's width is not
  * known THEN its far end may be anywhere, and the wall is not cleared. */
 static void a_wall_that_goes_on_beyond_the_border_is_not_cleared(void) {
     static const double yaw_deg[] = {-46.0, -48.0};

@@ -448,7 +448,7 @@ static void rare_detections_without_an_estimate_clear_nothing(void) {
 
 /* [GOE_DECISION_UNKNOWN]
  * GIVEN images in which the obstacle grows faster than it can at the estimated range WHEN the next images show one end of it, or the range
- * seems right again, THEN nothing is clear for two more seconds of images that can tell. */
+ * seems right again, THEN nothing is clear for two more seconds of images that show both ends. */
 static void a_doubt_about_the_range_lasts(void) {
     scene_make_cylinder(&scene);
     scene.x0_m = 70.0;
@@ -501,7 +501,7 @@ static void a_late_height_gives_the_range(void) {
     }
 }
 
-/* [center_north_m] GIVEN an obstacle with a velocity WHEN no image shows it any more THEN its center moves on as x and z do, and its sigma
+/* [goe_estimate_t.center_north_m] GIVEN an obstacle with a velocity WHEN no image shows it any more THEN its center moves on as x and z do, and its sigma
  * grows with that of the velocity. */
 static void the_center_of_a_moving_obstacle_moves_on(void) {
     scene_make_cylinder(&scene);
