@@ -24,7 +24,7 @@
 #define SURE_SIGMA 2.0f
 #define REFUSED_MAX_US 1000000000u /* 1000 s, the range of goe_intent_t.since_image_s */
 #define ASIDE_MIN 1.7320508f       /* tangent of 60 degrees */
-#define STEP_US 131072             /* 1/8 s, in which goe_motion_t.detected counts time: a power of two */
+#define STEP_BITS 17u              /* 2^17 us, 1/8 s, in which goe_motion_t.detected counts time */
 #define UNANSWERED_STEPS 12        /* without a detection, after which one that gave no estimate no longer counts */
 
 /* ------------------------------------------------------------------------------------------------------- the estimate -- */
@@ -55,7 +55,7 @@ static inline void copy_estimate(goe_estimate_t *to, const goe_estimate_t *from)
 /* The estimate also ages while images are refused. Their times count only if they are later than the latest image. */
 static void set_age(const goe_estimator_t *estimator, int64_t image_us, goe_estimate_t *estimate) {
     estimate->age_s = 0.0f;
-    if (goe_is_set(&estimate->fresh) || !(estimate->valid & GOE_HAS_POSITION)) {
+    if (!(estimate->valid & GOE_HAS_POSITION)) {
         return;
     }
     const int64_t latest_us = estimator->motion.time_us;
@@ -109,22 +109,6 @@ static void grow_old(goe_estimator_t *estimator) {
     estimate->z_m += motion->heading_cos * north_m + motion->heading_sin * east_m;
     estimate->sigma.x_m = sqrtf(goe_square(estimate->sigma.x0_m) + grown_m2);
     estimate->sigma.z_m = sqrtf(goe_square(estimate->sigma.z0_m) + grown_m2);
-}
-
-/* The center of a moving obstacle moves on until the next estimate. */
-static void move_center(goe_estimator_t *estimator, int64_t now_us) {
-    goe_estimate_t *estimate = &estimator->estimate;
-    goe_sigma_t *sigma = &estimate->sigma;
-    if (!(estimate->valid & GOE_HAS_VELOCITY) || !(estimate->valid & GOE_HAS_CENTER)) {
-        return;
-    }
-    const float since_s = goe_time_between_s(estimator->motion.time_us, now_us, GOE_TIME_MAX_US);
-    const float before_s = goe_latest_since_s(estimator, estimator->motion.time_us);
-    const float more_s2 = since_s * (since_s + 2.0f * before_s); /* growth of the squared time since the estimate */
-    estimate->center_north_m += estimate->velocity_north_m_s * since_s;
-    estimate->center_east_m += estimate->velocity_east_m_s * since_s;
-    sigma->center_north_m = sqrtf(goe_square(sigma->center_north_m) + goe_square(sigma->velocity_north_m_s) * more_s2);
-    sigma->center_east_m = sqrtf(goe_square(sigma->center_east_m) + goe_square(sigma->velocity_east_m_s) * more_s2);
 }
 
 /* Drops an old estimate whose whole extent lies behind the camera, while the image shows the obstacle ahead: it is wrong. */
@@ -199,17 +183,21 @@ static void follow_reset(goe_estimator_t *estimator, const goe_pose_t *pose) {
 #endif
 }
 
-/* North and east of an older estimate move with T's origin. */
+/* North and east of an older estimate move with T's origin, and on with a moving obstacle. Their errors may all add up. */
 static void follow_motion(goe_estimator_t *estimator, goe_view_t *view) {
     goe_estimate_t *estimate = &estimator->estimate;
+    const int64_t before_us = estimator->motion.time_us;
     const float north_m = estimator->motion.origin_ne_m[0];
     const float east_m = estimator->motion.origin_ne_m[1];
     if (goe_motion_follow(&estimator->motion, &estimator->settings, view)) {
         goe_count_cause(estimator->fault_counts, RESETS);
     }
     if (estimate->valid & GOE_HAS_CENTER) {
-        estimate->center_north_m += estimator->motion.origin_ne_m[0] - north_m;
-        estimate->center_east_m += estimator->motion.origin_ne_m[1] - east_m;
+        const float s = goe_time_between_s(before_us, estimator->motion.time_us, GOE_TIME_MAX_US);
+        estimate->center_north_m += estimator->motion.origin_ne_m[0] - north_m + estimate->velocity_north_m_s * s;
+        estimate->center_east_m += estimator->motion.origin_ne_m[1] - east_m + estimate->velocity_east_m_s * s;
+        estimate->sigma.center_north_m += estimate->sigma.velocity_north_m_s * s; /* 0 for a static obstacle */
+        estimate->sigma.center_east_m += estimate->sigma.velocity_east_m_s * s;
     }
 }
 
@@ -271,6 +259,8 @@ static void open_view(goe_estimator_t *estimator, const goe_image_t *image, cons
     }
 }
 
+static uint32_t step_of(int64_t time_us) { return (uint32_t)((uint64_t)time_us >> STEP_BITS); }
+
 /* Remembers for some time that a detection gave no new estimate although the latest one is old. The next estimate ends this. before_us: the
  * previous image. */
 static void note_detection(goe_estimator_t *estimator, bool detected, int64_t before_us) {
@@ -279,8 +269,8 @@ static void note_detection(goe_estimator_t *estimator, bool detected, int64_t be
         const bool old = goe_latest_since_s(estimator, motion->time_us) > GOE_SUPERSEDED_S;
         motion->detected = old ? 1u + UNANSWERED_STEPS : 1u;
     } else if (motion->detected > 1u) { /* whole steps since time 0, so that none is lost between images */
-        const int64_t left = motion->detected - (motion->time_us / STEP_US - before_us / STEP_US);
-        motion->detected = (uint8_t)(left > 1 ? left : 1);
+        const uint32_t steps = step_of(motion->time_us) - step_of(before_us);
+        motion->detected = steps < motion->detected ? (uint8_t)(motion->detected - steps) : 1u;
     }
 }
 
@@ -307,9 +297,6 @@ static goe_status_t take_image(goe_estimator_t *estimator, const goe_image_t *im
     goe_faults_t faults = {estimator->fault_counts, GOE_OK};
     const int64_t before_us = estimator->motion.time_us;
     estimator->estimate.age_s = 0.0f;
-#if GOE_AUGMENTED
-    move_center(estimator, image->pose.time_us);
-#endif
     if (goe_motion_reset(&estimator->motion, &image->pose)) {
         follow_reset(estimator, &image->pose);
     }

@@ -41,20 +41,27 @@ static bool is_rule(const goe_rule_t *rule) {
            is_between(rule->suspect_factor, 1.0f, DOUBT_MAX) && is_between(rule->stale_growth_m_s, 0.0f, DRIFT_MAX_M_S);
 }
 
-/* Enlarges both distances: an estimate that is suspect, or was not updated for a while, may be wrong toward the obstacle. An intent that is
- * not finite stays so, and is refused. */
-static void widen(const goe_estimator_t *estimator, const goe_rule_t *rule, goe_intent_t *intent) {
+/* A distance that is not one of an intent stays so. */
+static float enlarged(float distance_m, float factor, float more_m) {
+    const float wide_m = factor * distance_m + more_m;
+    return is_between(distance_m, 0.0f, DISTANCE_MAX_M) ? (wide_m < DISTANCE_MAX_M ? wide_m : DISTANCE_MAX_M)
+                                                        : distance_m;
+}
+
+/* The intent, a time after the latest image, with both distances enlarged: an estimate that is suspect, or was not updated for a while, may be
+ * wrong toward the obstacle. An intent that is not finite stays so, and is refused. */
+static GOE_NOINLINE void widen(const goe_estimator_t *estimator, const goe_intent_t *intent, float since_s,
+                               const goe_rule_t *rule, goe_intent_t *wide) {
     const goe_estimate_t *estimate = &estimator->estimate;
     const bool suspect = goe_is_set(&estimate->suspect);
-    const float age_s = goe_is_set(&estimate->fresh) ? 0.0f : goe_latest_since_s(estimator, estimator->motion.time_us);
+    const float age_s = goe_latest_since_s(estimator, estimator->motion.time_us);
     const float factor = suspect ? rule->suspect_factor : 1.0f;
-    const float drift_m = rule->stale_growth_m_s * (age_s + intent->since_image_s);
-    float *const distances[2] = {&intent->margin_m, &intent->clearance_m};
-    for (int i = 0; i < 2; i++) {
-        if (is_between(*distances[i], 0.0f, DISTANCE_MAX_M)) {
-            const float wide_m = factor * *distances[i] + drift_m;
-            *distances[i] = wide_m < DISTANCE_MAX_M ? wide_m : DISTANCE_MAX_M;
-        }
+    const float drift_m = rule->stale_growth_m_s * (age_s + since_s);
+    *wide = *intent;
+    wide->since_image_s = since_s;
+    if (goe_within(since_s, TIME_MAX_S)) {
+        wide->margin_m = enlarged(intent->margin_m, factor, drift_m);
+        wide->clearance_m = enlarged(intent->clearance_m, factor, drift_m);
     }
 }
 
@@ -97,48 +104,38 @@ static goe_decision_t decision_of(const goe_hazard_t *met, const goe_intent_t *i
     return met->tcpa_s - SURE_SIGMA * met->tcpa_sd_s > rule->act_within_s ? GOE_DECISION_CLEAR : GOE_DECISION_UNKNOWN;
 }
 
-/*@ requires estimator == \null || \valid_read(estimator);
-    requires intent == \null || \valid_read(intent);
-    requires \valid_read(rule) && \valid(met); */
-static GOE_NOINLINE goe_decision_t judge(const goe_estimator_t *estimator, const goe_intent_t *intent, float since_s,
+/* The decision for a widened intent. */
+/*@ requires \valid_read(estimator) && \valid_read(wide) && \valid_read(rule) && \valid(met); */
+static GOE_NOINLINE goe_decision_t judge(const goe_estimator_t *estimator, const goe_intent_t *wide,
                                          const goe_rule_t *rule, goe_hazard_t *met) {
-    if (!intent || !is_rule(rule) || goe_guard_check(estimator) != GOE_OK) {
-        return GOE_DECISION_KEEP;
-    }
-    goe_intent_t wide = *intent;
-    wide.since_image_s = since_s;
-    if (goe_within(wide.since_image_s, TIME_MAX_S)) {
-        widen(estimator, rule, &wide);
-    }
-    const goe_status_t status = goe_hazard(estimator, &wide, met);
+    const goe_status_t status = goe_hazard(estimator, wide, met);
     if (status != GOE_OK) {
         return status == GOE_CONVERGING ? GOE_DECISION_UNKNOWN : GOE_DECISION_KEEP;
     }
-    const goe_decision_t decision = decision_of(met, &wide, rule);
-    const bool clears = since_s <= SILENT_S && !is_doubted(estimator) && !is_misplaced(&estimator->estimate);
+    const goe_decision_t decision = decision_of(met, wide, rule);
+    const bool clears =
+        wide->since_image_s <= SILENT_S && !is_doubted(estimator) && !is_misplaced(&estimator->estimate);
     return decision == GOE_DECISION_CLEAR && !clears ? GOE_DECISION_UNKNOWN : decision;
 }
 
 /* Whether the aircraft is too near now, judged as if it were at rest relative to the obstacle. At a creeping speed, the closest approach is
  * far in the future even if it is near. At a higher speed it is not: within the margin, it comes within the rule's time. The way since the
  * latest image counts as flown toward the obstacle. */
-static GOE_NOINLINE bool is_too_near(const goe_estimator_t *estimator, const goe_intent_t *intent,
-                                     const goe_rule_t *rule, goe_hazard_t *met) {
+static GOE_NOINLINE bool is_too_near(const goe_estimator_t *estimator, const goe_intent_t *wide, const goe_rule_t *rule,
+                                     goe_hazard_t *met) {
     const goe_estimate_t *estimate = &estimator->estimate;
-    const float north_m_s = intent->velocity_ned_m_s[0] - estimate->velocity_north_m_s; /* 0 unless valid */
-    const float east_m_s = intent->velocity_ned_m_s[1] - estimate->velocity_east_m_s;
+    const float north_m_s = wide->velocity_ned_m_s[0] - estimate->velocity_north_m_s; /* 0 unless valid */
+    const float east_m_s = wide->velocity_ned_m_s[1] - estimate->velocity_east_m_s;
     const float speed_m_s = sqrtf(north_m_s * north_m_s + east_m_s * east_m_s);
-    goe_intent_t still = *intent;
-    goe_intent_t wide = *intent;
-    goe_hazard_t now;
-    widen(estimator, rule, &wide);
-    if (speed_m_s * rule->act_within_s > wide.margin_m) {
+    if (speed_m_s * rule->act_within_s > wide->margin_m) {
         return false;
     }
-    still.margin_m += speed_m_s * (intent->since_image_s < SILENT_S ? intent->since_image_s : SILENT_S);
+    goe_intent_t still = *wide;
+    goe_hazard_t now;
+    still.margin_m += speed_m_s * wide->since_image_s;
     still.velocity_ned_m_s[0] = estimate->velocity_north_m_s;
     still.velocity_ned_m_s[1] = estimate->velocity_east_m_s;
-    if (judge(estimator, &still, intent->since_image_s, rule, &now) != GOE_DECISION_ACT) {
+    if (judge(estimator, &still, rule, &now) != GOE_DECISION_ACT) {
         return false;
     }
     *met = now;
@@ -153,8 +150,10 @@ static goe_decision_t judge_refused(const goe_estimator_t *estimator, const goe_
     if (!(since_s > intent->since_image_s)) {
         return now;
     }
-    goe_hazard_t then = *met;
-    const goe_decision_t decision = judge(estimator, intent, since_s, rule, &then);
+    goe_hazard_t then;
+    goe_intent_t wide;
+    widen(estimator, intent, since_s, rule, &wide);
+    const goe_decision_t decision = judge(estimator, &wide, rule, &then);
     if (decision == GOE_DECISION_CLEAR || (decision != GOE_DECISION_ACT && now != GOE_DECISION_CLEAR)) {
         return now;
     }
@@ -165,13 +164,18 @@ static goe_decision_t judge_refused(const goe_estimator_t *estimator, const goe_
 goe_decision_t goe_decide(const goe_estimator_t *estimator, const goe_intent_t *intent, const goe_rule_t *rule,
                           goe_hazard_t *hazard) {
     goe_hazard_t met;
+    goe_decision_t decision = GOE_DECISION_KEEP;
     memset(&met, 0, sizeof met);
     const goe_rule_t *const used = rule ? rule : &by_default;
-    goe_decision_t decision = judge(estimator, intent, intent ? intent->since_image_s : 0.0f, used, &met);
-    if (decision == GOE_DECISION_CLEAR || decision == GOE_DECISION_UNKNOWN) {
-        decision = judge_refused(estimator, intent, used, decision, &met);
-        if (decision != GOE_DECISION_ACT && is_too_near(estimator, intent, used, &met)) {
-            decision = GOE_DECISION_ACT;
+    if (estimator && intent && is_rule(used)) {
+        goe_intent_t wide;
+        widen(estimator, intent, intent->since_image_s, used, &wide);
+        decision = judge(estimator, &wide, used, &met);
+        if (decision == GOE_DECISION_CLEAR || decision == GOE_DECISION_UNKNOWN) {
+            decision = judge_refused(estimator, intent, used, decision, &met);
+            if (decision != GOE_DECISION_ACT && is_too_near(estimator, &wide, used, &met)) {
+                decision = GOE_DECISION_ACT;
+            }
         }
     }
     if (hazard) {

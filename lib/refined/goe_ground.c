@@ -56,7 +56,7 @@ static void begin_heights(goe_filter_t *filter, float sd_m) {
         return;
     }
     filter->datum.sd_m = sd_m;
-    if (goe_filter_has_started(filter) && (filter->known & GOE_HAS_POSITION) == 0u) {
+    if ((filter->known & GOE_HAS_POSITION) == 0u) {
         goe_filter_enter(filter, GOE_PHASE_NONE);
     }
 }

@@ -98,7 +98,7 @@ static void note_growth(goe_answer_t *answer, float grown2, float since_s) {
     if (grown2 > DOUBTED_SIGMAS2) {
         answer->outgrown_s = DOUBTED_S;
     } else if (grown2 >= 0.0f) {
-        answer->outgrown_s = answer->outgrown_s > since_s ? answer->outgrown_s - since_s : 0.0f;
+        answer->outgrown_s = goe_larger(answer->outgrown_s - since_s, 0.0f);
     }
 }
 
