@@ -23,12 +23,14 @@ void Px4Flight::begin(uint64_t clock_us, bool set_camera) {
         standin::set("GOE_CAM_H", CAMERA_PX);
         standin::set("GOE_CAM_FX", flown.scene.camera.fx_px);
     }
-    sends_pose = sends_images = in_step = true;
+    sends_pose = sends_images = in_step = sends_position = true;
     follows = set_camera;
     position = vehicle_local_position_s{};
     quat_reset_counter = 0;
     compared = 0;
     _statuses = _obstacles = 0;
+    _assessment = goe_flight_assessment_t{};
+    _assessment.worst = -1;
     standin::set_other("NAV_LOITER_RAD", 80.f);
     standin::set_other("FW_AIRSPD_TRIM", 15.f);
     set_mode(false, vehicle_status_s::NAVIGATION_STATE_AUTO_LOITER);
@@ -69,7 +71,9 @@ void Px4Flight::publish_pose() {
     position.vz = sample.velocity_ned_m_s[2];
     position.dist_bottom_valid = true;
     position.dist_bottom = sample.height_m[GOE_FLIGHT_TERRAIN];
-    standin::publish(ORB_ID(vehicle_local_position), &position);
+    if (sends_position) {
+        standin::publish(ORB_ID(vehicle_local_position), &position);
+    }
     standin::publish(ORB_ID(vehicle_attitude), &topic);
     if (follows) {
         sample.reset_horizontal = position.xy_reset_counter;
@@ -222,8 +226,11 @@ void Px4Flight::follow_status() {
         goe_flight_assessment_t assessment;
         uint16_t sector_cm[GOE_FLIGHT_SECTORS];
         obstacle_distance_s distances{};
-        (void)goe_flight_assess(&reference, goe_px4::time_us(topic.timestamp), false, &assessment);
-        compare(assessment, topic);
+        const bool is_assessed =
+            goe_flight_assess(&reference, goe_px4::time_us(topic.timestamp), false, &assessment) == GOE_FLIGHT_OK;
+        _assessment = is_assessed ? assessment : _assessment;
+        _assessment.pose_alive = is_assessed && assessment.pose_alive;
+        compare(_assessment, topic);
         if (standin::latest(ORB_ID(obstacle_distance), 0, &distances) && distances.timestamp == topic.timestamp &&
             goe_flight_sectors(&reference, 20000u, sector_cm) == GOE_FLIGHT_OK) {
             TEST_ASSERT_EQUAL_MEMORY(sector_cm, distances.distances, sizeof sector_cm);

@@ -50,7 +50,8 @@ class Px4Flight {
     flown_t flown;
     goe_flight_t reference; /* false: the test publishes this itself */
     bool sends_pose{true}, sends_images{true}, in_step{true};
-    bool follows{true}; /* the reference runs, and is compared at each status */
+    bool sends_position{true}; /* false: attitudes alone */
+    bool follows{true};        /* the reference runs, and is compared at each status */
     vehicle_local_position_s position{};
     uint8_t quat_reset_counter{0};
     unsigned compared{0}; /* obstacles */
@@ -61,4 +62,5 @@ class Px4Flight {
 
     uint64_t _start_us;
     unsigned _statuses, _obstacles;
+    goe_flight_assessment_t _assessment; /* the reference's latest one that did not fail */
 };

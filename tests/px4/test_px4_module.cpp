@@ -294,6 +294,17 @@ static void a_dead_detector_is_not_clear() {
     TEST_ASSERT_TRUE(says(standin::console(), "NOT KNOWN, 0 of 4"));
 }
 
+/* GIVEN no pose yet THEN the module says that, and not that the velocity contradicts a position. */
+static void a_pose_that_has_not_come_contradicts_nothing() {
+    flight.follows = flight.sends_pose = false;
+    flight.fly(0.5);
+    TEST_ASSERT_FALSE(flight.status().pose_alive);
+    TEST_ASSERT_EQUAL(-1, flight.status().worst);
+    TEST_ASSERT_EQUAL(-1, flight.status().avoided);
+    TEST_ASSERT_TRUE(says(status_text(), "pose       DEAD, corrected"));
+    TEST_ASSERT_TRUE(says(standin::console(), "NOT KNOWN, 0 of 4"));
+}
+
 static void without_an_attitude_the_status_still_comes() {
     flight.fly(1.0);
     flight.follows = flight.sends_images = flight.sends_pose = false;
@@ -542,6 +553,7 @@ int main() {
     RUN_TEST(a_distance_sensor_gives_the_ground);
     RUN_TEST(a_distance_sensor_that_has_fallen_silent_is_ignored);
     RUN_TEST(a_dead_detector_is_not_clear);
+    RUN_TEST(a_pose_that_has_not_come_contradicts_nothing);
     RUN_TEST(without_an_attitude_the_status_still_comes);
     RUN_TEST(a_clock_that_jumps_ends_nothing_for_long);
     RUN_TEST(statuses_go_on_while_the_clock_is_set_back);

@@ -567,6 +567,32 @@ static void an_order_outlives_its_track() {
     flight.end();
 }
 
+/* Without a position after a reset of the heading nothing can be assessed. That ends no order: a pilot who has overruled it is not
+ * overridden later, and parameters go on waiting. */
+static void what_cannot_be_assessed_ends_no_order() {
+    start_towards_one(MISSION, false, ALL);
+    flight.follows = false;
+    for (int i = 0; i < 130 && fly_on(0.1) == 0; i++) {
+    }
+    (void)fly_on(0.3);
+    flight.set_mode(true, MISSION);
+    standin::set("GOE_CLEAR", 12.f);
+    (void)fly_on(1.2);
+    const uint8_t action = flight.status().action;
+    TEST_ASSERT_TRUE(action != GOE_FLIGHT_NONE && flight.status().overruled && flight.status().settings_waiting);
+    for (const bool has_position : {false, true}) {
+        flight.sends_position = has_position;
+        flight.quat_reset_counter = static_cast<uint8_t>(flight.quat_reset_counter + (has_position ? 0 : 1));
+        TEST_ASSERT_EQUAL(0, fly_on(0.3));
+        TEST_ASSERT_EQUAL(has_position, flight.status().pose_alive);
+        TEST_ASSERT_TRUE(flight.status().pose_agrees);
+        TEST_ASSERT_EQUAL(action, flight.status().action);
+        TEST_ASSERT_TRUE(flight.status().overruled && flight.status().settings_waiting);
+    }
+    TEST_ASSERT_TRUE(standin::mavlink_texts().find("the order ends") == std::string::npos);
+    flight.end();
+}
+
 static void the_status_reports_a_pilot_and_refusals() {
     start_towards_one(MISSION, false, ALL);
     TEST_ASSERT_GREATER_THAN(0, fly_on(10.0, GROUND_STATION));
@@ -704,6 +730,7 @@ int main() {
     RUN_TEST(it_flies_on_in_its_mission_past_the_mast);
     RUN_TEST(the_answer_to_a_ground_station_is_none_to_the_module);
     RUN_TEST(an_order_outlives_its_track);
+    RUN_TEST(what_cannot_be_assessed_ends_no_order);
     RUN_TEST(the_status_reports_a_pilot_and_refusals);
     RUN_TEST(an_order_that_nobody_flies_is_reported_as_such);
     RUN_TEST(an_approach_is_broken_off);

@@ -21,13 +21,21 @@ constexpr uint32_t TARGET_DELAY_SD_US = 20000; /* one sigma of GOE_LT_DELAY */
 
 uint32_t whole_us(float s) { return static_cast<uint32_t>(US_PER_S * s); }
 
+/* Before the first assessment: no pose, which contradicts nothing. */
+goe_flight_assessment_t nothing_known() {
+    goe_flight_assessment_t nothing{};
+    nothing.worst = nothing.avoided = -1;
+    nothing.pose_agrees = true;
+    return nothing;
+}
+
 } // namespace
 
 #ifdef GOE_MODULE_DESCRIPTOR
 ModuleBase::Descriptor Goe::desc{task_spawn, custom_command, print_usage};
 #endif
 
-Goe::Goe() : ScheduledWorkItem(MODULE_NAME, work_queue) {
+Goe::Goe() : ScheduledWorkItem(MODULE_NAME, work_queue), _assessment(nothing_known()) {
     pthread_mutex_init(&_overview_lock, nullptr);
     _self_check = static_cast<uint8_t>(goe_self_check());
 }
@@ -97,8 +105,7 @@ void Goe::follow_parameters() {
             _bad_field = _waiting ? _bad_field : nullptr;
         }
     }
-    const goe_status_s &status = _overview.status;
-    const bool idle = status.obstacles == 0 && status.unplaced == 0 && status.action == goe_status_s::ACTION_NONE;
+    const bool idle = _assessment.obstacles == 0 && _assessment.unplaced == 0 && _assessment.action == GOE_FLIGHT_NONE;
     if (_waiting && (!is_armed() || !_in_use || idle)) {
         use_parameters();
     }
@@ -203,21 +210,21 @@ void Goe::take_vehicle() {
     }
 }
 
-void Goe::publish_obstacles(const goe_flight_assessment_t &assessment, uint64_t now_us) {
+void Goe::publish_obstacles(uint64_t now_us) {
     uint8_t count = 0;
     for (int slot = 0; slot < GOE_FLIGHT_SLOTS; slot++) {
         goe_flight_obstacle_t found;
         if (goe_flight_obstacle(&_flight, slot, &found) != GOE_FLIGHT_OK || (found.valid & GOE_HAS_POSITION) == 0u) {
             continue;
         }
-        const goe_obstacle_s topic = goe_px4::obstacle(_flight, found, slot, assessment, now_us);
+        const goe_obstacle_s topic = goe_px4::obstacle(_flight, found, slot, _assessment, now_us);
         (void)_obstacle_pub.publish(topic);
         _overview.obstacle[count++] = topic;
 #ifdef GOE_HAS_DETECT_AND_AVOID
         if ((_parameters.outputs & GOE_OUT_DETECT_AND_AVOID) != 0) {
             const float own_ned_m[3] = {_position.x, _position.y, _position.z};
             (void)_detect_and_avoid_pub.publish(goe_px4::detect_and_avoid(
-                found, slot, assessment, own_ned_m, _used.flight.conflict_probability_max, now_us));
+                found, slot, _assessment, own_ned_m, _used.flight.conflict_probability_max, now_us));
         }
 #endif
     }
@@ -231,16 +238,16 @@ void Goe::publish_distances(uint64_t now_us) {
     }
 }
 
-void Goe::publish_status(const goe_flight_assessment_t &assessment, uint64_t now_us) {
+void Goe::publish_status(uint64_t now_us) {
     goe_status_s topic{};
     const GoeImages::Delays delays = _images.delays(goe_px4::time_us(now_us));
-    goe_px4::status(_flight, assessment, topic);
+    goe_px4::status(_flight, _assessment, topic);
     topic.timestamp = now_us;
     topic.self_check = _self_check;
     topic.settings_in_use = _in_use;
     topic.settings_waiting = _waiting;
     topic.dead_reckoning = _dead_reckoning;
-    topic.flown = assessment.action != GOE_FLIGHT_NONE && _orders.flown();
+    topic.flown = _assessment.action != GOE_FLIGHT_NONE && _orders.flown();
     topic.overruled = _orders.overruled();
     topic.overdue = _images.overdue();
     topic.commands_refused = _orders.refused();
@@ -263,7 +270,7 @@ bool Goe::is_followed(int slot) const {
     return goe_flight_obstacle(&_flight, slot, &obstacle) == GOE_FLIGHT_OK && (obstacle.valid & GOE_HAS_POSITION) != 0u;
 }
 
-void Goe::follow_orders(const goe_flight_assessment_t &assessment, uint64_t now_us) {
+void Goe::follow_orders(uint64_t now_us) {
     vehicle_command_s command;
     GoeOrders::Vehicle vehicle{};
     vehicle.armed = is_armed();
@@ -276,7 +283,7 @@ void Goe::follow_orders(const goe_flight_assessment_t &assessment, uint64_t now_
     vehicle.altitude_known = _position.z_global;
     vehicle.origin_alt_m = _position.ref_alt;
     vehicle.now_us = now_us;
-    if (_orders.follow(assessment, vehicle, _parameters.react, _parameters.resume != 0, command)) {
+    if (_orders.follow(_assessment, vehicle, _parameters.react, _parameters.resume != 0, command)) {
         command.target_system = command.source_system = _vehicle_status.system_id;
         command.target_component = _vehicle_status.component_id;
         command.source_component = _vehicle_status.component_id;
@@ -285,17 +292,17 @@ void Goe::follow_orders(const goe_flight_assessment_t &assessment, uint64_t now_
 }
 
 /* Orders, once each; at most 50 characters go to a ground station. */
-void Goe::report_operator(const goe_flight_assessment_t &assessment) {
-    if (assessment.action == static_cast<goe_flight_action_t>(_reported_action)) {
+void Goe::report_operator() {
+    if (_assessment.action == static_cast<goe_flight_action_t>(_reported_action)) {
         return;
     }
-    _reported_action = static_cast<uint8_t>(assessment.action);
-    if (assessment.action == GOE_FLIGHT_NONE) {
+    _reported_action = static_cast<uint8_t>(_assessment.action);
+    if (_assessment.action == GOE_FLIGHT_NONE) {
         mavlink_log_info(&_mavlink_log_pub, "goe: the order ends");
     } else {
         const char *const who = _orders.overruled() ? " (overruled)" : _orders.flown() ? "" : " (reported only)";
         mavlink_log_critical(&_mavlink_log_pub, "goe: obstacle in %.0f s, %s%s",
-                             static_cast<double>(assessment.hazard.tcpa_s), goe_flight_action_text(assessment.action),
+                             static_cast<double>(_assessment.hazard.tcpa_s), goe_flight_action_text(_assessment.action),
                              who);
     }
 }
@@ -316,20 +323,32 @@ void Goe::report_dead_reckoning(uint64_t now_us) {
     }
 }
 
+/* A layer that cannot assess, as without a position after a reset of the heading, has not ended its order. The order stays,
+ * and nothing is clear. */
+void Goe::take_assessment(const goe_flight_assessment_t &assessment, goe_flight_status_t status, uint64_t now_us) {
+    if (status != GOE_FLIGHT_OK) {
+        _assessment.pose_alive = false;
+        return;
+    }
+    _assessment = assessment;
+    follow_orders(now_us);
+    report_operator();
+}
+
 void Goe::assess(uint64_t now_us) {
     goe_flight_assessment_t assessment;
     _assessed_us = now_us;
     _phase = goe_px4::phase(_setpoint, _ground, _landing, now_us);
-    if (goe_flight_assess(&_flight, goe_px4::time_us(now_us), _phase, &assessment) == GOE_FLIGHT_CORRUPTED) {
+    const goe_flight_status_t status = goe_flight_assess(&_flight, goe_px4::time_us(now_us), _phase, &assessment);
+    if (status == GOE_FLIGHT_CORRUPTED) {
         mavlink_log_critical(&_mavlink_log_pub, "goe: memory was corrupted, restarted");
         _in_use = goe_flight_init(&_flight, sizeof _flight, &_used.estimator, &_used.flight, nullptr) == GOE_FLIGHT_OK;
     }
-    follow_orders(assessment, now_us);
-    report_operator(assessment);
+    take_assessment(assessment, status, now_us);
     report_dead_reckoning(now_us);
     pthread_mutex_lock(&_overview_lock);
-    publish_obstacles(assessment, now_us);
-    publish_status(assessment, now_us);
+    publish_obstacles(now_us);
+    publish_status(now_us);
     pthread_mutex_unlock(&_overview_lock);
     publish_distances(now_us);
 }

@@ -72,11 +72,12 @@ class Goe final : public GoeModuleBase, public px4::ScheduledWorkItem {
     void take_landing_target(uint32_t now_us);
     void take_vehicle();
     void assess(uint64_t now_us);
-    void publish_obstacles(const goe_flight_assessment_t &assessment, uint64_t now_us);
+    void take_assessment(const goe_flight_assessment_t &assessment, goe_flight_status_t status, uint64_t now_us);
+    void publish_obstacles(uint64_t now_us);
     void publish_distances(uint64_t now_us);
-    void publish_status(const goe_flight_assessment_t &assessment, uint64_t now_us);
-    void follow_orders(const goe_flight_assessment_t &assessment, uint64_t now_us);
-    void report_operator(const goe_flight_assessment_t &assessment);
+    void publish_status(uint64_t now_us);
+    void follow_orders(uint64_t now_us);
+    void report_operator();
     void report_dead_reckoning(uint64_t now_us);
 
     uORB::SubscriptionCallbackWorkItem _attitude_sub{this, ORB_ID(vehicle_attitude)};
@@ -113,6 +114,7 @@ class Goe final : public GoeModuleBase, public px4::ScheduledWorkItem {
     const char *_bad_field{nullptr}; /* of the parameters that were refused */
 
     goe_flight_t _flight{};
+    goe_flight_assessment_t _assessment; /* the latest one that did not fail; pose_alive is false since one did */
     GoeImages _images;
     GoeOrders _orders;
     goe_px4::Heights _heights{};
