@@ -315,18 +315,29 @@ static bool begin_flight(companion_t *c, const char **bad) {
     return goe_flight_init(&c->flight, sizeof c->flight, &c->config.estimator, &c->config.flight, bad) == GOE_FLIGHT_OK;
 }
 
+/* A layer that cannot assess, as without a pose, has not ended its order: the assessment before stays, and nothing is clear. */
+static void keep_assessment(companion_t *c, const goe_flight_assessment_t *assessment, goe_flight_status_t status) {
+    if (status == GOE_FLIGHT_OK) {
+        c->assessment = *assessment;
+    } else {
+        c->assessment.pose_alive = false;
+    }
+    send_alive(c);
+}
+
 static void assess(companion_t *c, int64_t now_us) {
+    goe_flight_assessment_t assessment;
     const uint32_t autopilot_us = (uint32_t)autopilot_clock_us(&c->autopilot, now_us);
     const goe_mavlink_own_t own = reports_own(&c->autopilot, now_us, clock_us(CLOCK_REALTIME));
     const uint8_t phase = autopilot_phase(&c->autopilot);
-    const goe_flight_status_t status = goe_flight_assess(&c->flight, autopilot_us, phase, &c->assessment);
-    send_alive(c);
+    const goe_flight_status_t status = goe_flight_assess(&c->flight, autopilot_us, phase, &assessment);
+    keep_assessment(c, &assessment, status);
     if (status == GOE_FLIGHT_CORRUPTED) {
         event("its memory was corrupted: the search for obstacles starts again");
         (void)begin_flight(c, NULL);
         (void)margins_set(&c->flight, &c->config, c->health.doubts != 0);
     }
-    if (status == GOE_FLIGHT_OK) { /* without a pose nothing is known, and the active order stays */
+    if (status == GOE_FLIGHT_OK) {
         orders_follow(&c->orders, &c->assessment, &own, now_us);
         show_advice(c);
     }
@@ -467,6 +478,8 @@ companion_t *companion_new(const companion_config_t *config, char *fault, size_t
         event("%s is open to every network: who reaches it can send obstacles", config->detections_from);
     }
     c->self_check = goe_self_check();
+    c->assessment.worst = c->assessment.avoided = -1;
+    c->assessment.pose_agrees = true; /* a pose that has not come contradicts nothing */
     c->assessed_us = c->reported_us = c->second_us = c->begun_us = now_us;
     c->clock_difference_us = clock_us(CLOCK_REALTIME) - now_us;
     autopilot_init(&c->autopilot, &c->config, &c->flight, &c->wire);

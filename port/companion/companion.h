@@ -47,7 +47,7 @@ typedef struct {
 typedef struct {
     companion_config_t config;
     goe_flight_t flight;
-    goe_flight_assessment_t assessment;
+    goe_flight_assessment_t assessment;       /* the latest one that did not fail; pose_alive is false since one did */
     link_t *autopilot_link, *detections_link; /* detections_link is null if detections come over MAVLink only */
     wire_t wire;
     signing_t signing;

@@ -200,6 +200,7 @@ class Autopilot:
         self.ignored, self.landing = Counter(ignored or {}), landing
         self.silent = False  # neither sends nor receives
         self.posing = True
+        self.positioning = True  # False: of the pose the attitude alone is sent
         self.shift = (0.0, 0.0, 0.0)  # of the local frame: a reset of the filter
         self.yaw_shift = 0.0
         self.reset_counter: int | None = None  # a number: ODOMETRY is sent, too
@@ -241,7 +242,7 @@ class Autopilot:
         q = quaternion(pose.angles[0], pose.angles[1], pose.angles[2] + self.yaw_shift)
         if self._is_due(ATTITUDE):
             self.send(self.dialect.MAVLink_attitude_quaternion_message(ms, *q, *pose.rates))
-        if self._is_due(POSITION):
+        if self.positioning and self._is_due(POSITION):
             self.send(self.dialect.MAVLink_local_position_ned_message(ms, *position, *pose.velocity))
         if self.reset_counter is not None:
             self._odometry(ms * 1000, position, q, pose)

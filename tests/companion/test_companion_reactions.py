@@ -30,6 +30,7 @@ TO_PX4 = {"reaction": {"mode": "px4"}, "flight": STOPS}
 TO_ARDUPLANE = {"reaction": {"mode": "arduplane"}}
 AVOIDS, STAYS, PAST = "px4", "px4 without resume", "px4, mast aside"
 OVERRULED, AT_ONCE = "px4 and its pilot", "px4 and its pilot, at once"
+BLANK = "px4, no position after a reset of the heading"
 KILLED, FORGETFUL = "px4, companion killed", "px4, companion killed without a log"
 LANDING, LANDING_PLANE = "px4 on approach", "arduplane on approach"
 TRAFFIC, LOW_TRAFFIC, NO_TRAFFIC = "arduplane", "arduplane, low mast", "arduplane, mast aside"
@@ -41,6 +42,7 @@ PLANS = [
     Plan(STAYS, settings={"reaction": {"mode": "px4", "resume": 0}, "flight": STOPS}),
     Plan(OVERRULED, settings=TO_PX4),
     Plan(AT_ONCE, settings=TO_PX4),
+    Plan(BLANK, settings=TO_PX4),
     Plan(KILLED, settings=TO_PX4, recorded=True),
     Plan(FORGETFUL, settings=TO_PX4),
     Plan(PAST, settings=TO_PX4, obstacles=ASIDE),
@@ -70,6 +72,30 @@ class Pilot:
     def _take_over(self) -> None:
         self.autopilot.set_mode(POSITION)
         self.since_s = self.loop.now_s
+
+
+class Blank:
+    """After the order, the heading jumps and no position comes for some time: nothing can be assessed."""
+
+    FOR_S = 2.5
+
+    def __init__(self, flight: Flight) -> None:
+        self.autopilot, self.loop = flight.autopilot, flight.loop
+        self.since_s = math.inf
+        self.loop.every(0.05, self._look)
+
+    def _look(self) -> None:
+        if self.autopilot.mode == LOITER and math.isinf(self.since_s):
+            self.since_s = self.loop.now_s
+            self._switch(0.2)
+            self.loop.after(0.1, lambda: self._switch(0.0))
+            self.loop.after(self.FOR_S, self._end)
+
+    def _switch(self, yaw: float) -> None:
+        self.autopilot.positioning, self.autopilot.yaw_shift = False, yaw
+
+    def _end(self) -> None:
+        self.autopilot.positioning = True
 
 
 class Avoidance:
@@ -119,15 +145,23 @@ def all_pilots() -> dict[str, Pilot]:
     return {}
 
 
+@pytest.fixture(scope="module", name="blanks")
+def all_blanks() -> list[Blank]:
+    return []
+
+
 @pytest.fixture(scope="module", name="avoidances")
 def all_avoidances() -> dict[str, Avoidance]:
     return {}
 
 
 @pytest.fixture(scope="module", name="fleet")
-def flown(make_fleet: MakeFleet, pilots: dict[str, Pilot], avoidances: dict[str, Avoidance]) -> Iterator[Fleet]:
+def flown(
+    make_fleet: MakeFleet, pilots: dict[str, Pilot], avoidances: dict[str, Avoidance], blanks: list[Blank]
+) -> Iterator[Fleet]:
     fleet = make_fleet(PLANS)
     fleet.start()
+    blanks.append(Blank(fleet[BLANK]))
     pilots.update({name: Pilot(fleet[name], after_s) for name, after_s in ((OVERRULED, 2.0), (AT_ONCE, 0.01))})
     avoidances.update({name: Avoidance(fleet[name], name == BY_ITSELF) for name in (PILOT_OUT, BY_ITSELF)})
     killers = [Killer(fleet[name], 1.5) for name in (KILLED, FORGETFUL)]
@@ -228,6 +262,16 @@ def test_a_mode_that_the_pilot_chose_is_not_overridden(fleet: Fleet, pilots: dic
     since_s = pilots[name].since_s + 1.2
     assert [heard.time_s - since_s for heard in orders(fleet[name]) if heard.time_s > since_s] == []
     assert fleet[name].autopilot.modes == [MODES[PX4], LOITER, POSITION]
+
+
+def test_what_cannot_be_assessed_ends_no_order(fleet: Fleet, blanks: list[Blank]) -> None:
+    """It is reported as a pose that does not come: neither the detector nor the velocity is at fault."""
+    autopilot, since_s = fleet[BLANK].autopilot, blanks[0].since_s
+    during = [h for h in autopilot.heard if since_s + 0.2 < h.time_s < since_s + Blank.FOR_S]
+    statuses = [h.message for h in during if h.message.get_type() == "GOE_STATUS"]
+    assert statuses and all(status.action and status.alive == 1 | 4 for status in statuses)
+    texts = [h.message.text for h in during if h.message.get_type() == "STATUSTEXT"]
+    assert "GOE: no poses come" in texts and not [text for text in texts if "silent" in text or "contradicts" in text]
 
 
 def test_after_a_restart_in_an_order_the_mode_comes_back(fleet: Fleet) -> None:
