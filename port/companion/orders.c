@@ -470,7 +470,9 @@ void orders_follow(orders_t *orders, const goe_flight_assessment_t *assessment, 
     }
     forget_after_restart(orders);
     const bool is_new = assessment->action != orders->action;
-    orders->slot = assessment->avoided >= 0 ? assessment->avoided : orders->slot;
+    if (assessment->action != GOE_FLIGHT_NONE) {
+        orders->slot = assessment->avoided; /* without one, another obstacle may take the slot */
+    }
     orders->assessment = *assessment;
     orders->unix_us = (int64_t)own->unix_usec;
     orders->boot_us = (int64_t)own->time_usec;

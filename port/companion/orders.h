@@ -26,7 +26,7 @@ typedef struct {
     const goe_flight_t *flight;
 
     goe_flight_action_t action;           /* active order */
-    int slot;                             /* latest known slot of its obstacle; -1: none */
+    int slot;                             /* of its obstacle, or that of the latest order; -1: none, or given up */
     bool overruled;                       /* a pilot chose another mode: nothing is sent until all orders have ended */
     bool denied;                          /* the autopilot denied or does not support a command of this order */
     const char *hindrance;                /* condition that prevents commands now; null: none */

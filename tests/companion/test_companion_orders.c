@@ -270,6 +270,18 @@ static void the_aircraft_stays_where_the_obstacle_is_not_known_to_be_passed(void
     TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_SET_MODE));
 }
 
+/* GIVEN an order whose obstacle the layer has given up WHEN another obstacle takes its slot and is located, and the order ends, THEN the mode
+ * before is not requested. */
+static void another_obstacle_in_the_slot_is_not_the_one_that_was_avoided(void) {
+    know_obstacle(true);
+    ordered();
+    assessment.avoided = -1;
+    go_on(20, LOITER);
+    decide(GOE_FLIGHT_NONE);
+    go_on(30, LOITER);
+    TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_SET_MODE));
+}
+
 /* With one heartbeat a second the mode is known late: the loiter of the previous order is not the mode before the new one, and the
  * mission that returns is not a pilot's choice. */
 static void a_second_order_within_a_heartbeat_of_the_first(void) {
@@ -741,6 +753,7 @@ int main(void) {
     RUN_TEST(a_pilot_is_not_fought);
     RUN_TEST(the_mode_before_comes_back_once_the_obstacle_is_passed);
     RUN_TEST(the_aircraft_stays_where_the_obstacle_is_not_known_to_be_passed);
+    RUN_TEST(another_obstacle_in_the_slot_is_not_the_one_that_was_avoided);
     RUN_TEST(a_second_order_within_a_heartbeat_of_the_first);
     RUN_TEST(a_restarted_autopilot_knows_of_no_order);
     RUN_TEST(nothing_at_all_goes_out_while_reactions_are_off);
