@@ -170,7 +170,10 @@ void FlownVehicle::step_layer() {
     waiting = left;
     if (AP_HAL::millis() - assessed_ms >= ASSESS_MS) {
         assessed_ms = AP_HAL::millis();
-        (void)goe_flight_assess(&layer, AP_HAL::micros(), scripted.landing, &assessment);
+        goe_flight_assessment_t now;
+        const bool is_assessed = goe_flight_assess(&layer, AP_HAL::micros(), scripted.landing, &now) == GOE_FLIGHT_OK;
+        assessment = is_assessed ? now : assessment;
+        assessment.pose_alive = is_assessed && now.pose_alive;
     }
 }
 
@@ -189,6 +192,7 @@ FlownVehicle::FlownVehicle()
     set_parameter(*goe, "HEIGHT", SIZE_PX);
     set_parameter(*goe, "FX", flown.scene.camera.fx_px);
     memset(&assessment, 0, sizeof assessment);
+    assessment.worst = -1;
     restart_layer();
 }
 

@@ -55,7 +55,7 @@ class FlownVehicle {
 
     AP_GOE *goe;
     goe_flight_t layer;
-    goe_flight_assessment_t assessment;
+    goe_flight_assessment_t assessment; // the layer's latest one that did not fail
     flown_t flown;
     bool compares;
     bool steps_database{true};

@@ -165,6 +165,49 @@ static void test_without_a_pose_it_is_not_healthy(void) {
     TEST_ASSERT_TRUE(vehicle.goe->healthy());
 }
 
+/* Without a position after a reset of the heading nothing can be assessed: the order, the obstacles and the
+ * parameters that wait stay as they are. */
+static void test_what_cannot_be_assessed_ends_no_order(void) {
+    FlownVehicle vehicle;
+    vehicle.compares = false;
+    scene_make_cylinder(&vehicle.flown.scene);
+    vehicle.flown.scene.x0_m = 0.5;
+    vehicle.flown.scene.z0_m = 260.0;
+    do {
+        vehicle.step();
+    } while (vehicle.seen().action == GOE_FLIGHT_NONE && vehicle.flown.sample < 13 * FLOWN_POSE_HZ);
+    const goe_flight_action_t action = vehicle.seen().action;
+    TEST_ASSERT_NOT_EQUAL(GOE_FLIGHT_NONE, action);
+    scripted.armed = true;
+    set_parameter(*vehicle.goe, "MARGIN", 25);
+    scripted.texts.clear();
+    scripted.yaw_reset_ms = AP_HAL::millis();
+    vehicle.jump = Vector3f(2e6f, 0.0f, 0.0f); // out of range: such a position is refused
+    vehicle.fly(1.3);
+    TEST_ASSERT_EQUAL(action, vehicle.seen().action);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NO_POSE, vehicle.goe->_state->shown.state[0]);
+    TEST_ASSERT_FALSE(may_arm(vehicle, "GOE: no pose"));
+    TEST_ASSERT_TRUE(scripted.has_said("GOE: no pose"));
+    TEST_ASSERT_FALSE(scripted.has_said("action ended"));
+    TEST_ASSERT_TRUE(scripted.has_said("parameters wait"));
+    CHECK_CLOSE(0.0, 15.0, vehicle.flight().settings.margin_m);
+    goe_mavlink_status_t status;
+    TEST_ASSERT_EQUAL(42703, scripted.sent.back().msgid);
+    goe_mavlink_read_status(scripted.sent.back().payload.data(), scripted.sent.back().payload.size(), &status);
+    TEST_ASSERT_EQUAL(action, status.action);
+    TEST_ASSERT_EQUAL(1 | 4, status.alive);
+}
+
+static void test_before_the_first_pose_none_contradicts(void) {
+    FlownVehicle vehicle;
+    vehicle.compares = false;
+    scripted.has_nav = false;
+    vehicle.step();
+    TEST_ASSERT_FALSE(may_arm(vehicle, "GOE: no pose"));
+    vehicle.fly(1.0);
+    TEST_ASSERT_FALSE(may_arm(vehicle, "GOE: no pose"));
+}
+
 // ---------------------------------------------------------------------------------------------------------------- health
 
 static void test_healthy_means_alive_and_not_that_something_is_there(void) {
@@ -805,6 +848,8 @@ int main(void) {
     RUN_TEST(test_another_filter_ends_all);
     RUN_TEST(test_time_jumps);
     RUN_TEST(test_without_a_pose_it_is_not_healthy);
+    RUN_TEST(test_what_cannot_be_assessed_ends_no_order);
+    RUN_TEST(test_before_the_first_pose_none_contradicts);
     RUN_TEST(test_healthy_means_alive_and_not_that_something_is_there);
     RUN_TEST(test_disabled_it_takes_no_memory_and_keeps_nobody_from_arming);
     RUN_TEST(test_switched_off_it_is_not_healthy_and_keeps_nobody_from_arming);

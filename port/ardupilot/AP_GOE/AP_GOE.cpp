@@ -56,6 +56,9 @@ bool AP_GOE::start()
         return false;
     }
     memset(state, 0, sizeof(*state));
+    state->next.assessment.worst = state->next.assessment.avoided = -1;
+    state->next.assessment.pose_agrees = true; // a pose that has not come contradicts nothing
+    state->shown.assessment = state->next.assessment;
     // the thread waits until update() wakes it
     if (!hal.scheduler->thread_create(FUNCTOR_BIND_MEMBER(&AP_GOE::thread_main, void), "goe", AP_GOE_STACK,
                                       AP_HAL::Scheduler::PRIORITY_IO, -1)) {
@@ -72,8 +75,8 @@ bool AP_GOE::start()
 // any slot in use, with a position or not
 bool AP_GOE::follows_something() const
 {
-    for (const goe_flight_status_t &state : _state->shown.state) {
-        if (state == GOE_FLIGHT_OK) {
+    for (const bool used : _state->shown.used) {
+        if (used) {
             return true;
         }
     }

@@ -103,7 +103,8 @@ class AP_GOE
     struct Found { // by the thread; _found_sem
         goe_flight_obstacle_t obstacle[GOE_FLIGHT_SLOTS];
         goe_flight_status_t state[GOE_FLIGHT_SLOTS]; // of each slot
-        goe_flight_assessment_t assessment;
+        goe_flight_assessment_t assessment; // the latest one that did not fail; pose_alive is false since one did
+        bool used[GOE_FLIGHT_SLOTS];        // each slot, then
         goe_flight_counters_t counters;
         const char *bad_field;         // of the settings that were given last; null: none is bad
         uint32_t assessed;             // assessments
@@ -157,6 +158,7 @@ class AP_GOE
     void take_images();
     bool take_image(const Waiting &waiting);
     void assess();
+    void take_assessment(const goe_flight_assessment_t &assessment);
     void publish();
 
     // AP_GOE_Input.cpp: main thread

@@ -142,6 +142,16 @@ void AP_GOE::take_images()
 
 // ------------------------------------------------------------------------------------------------------------ result
 
+void AP_GOE::take_assessment(const goe_flight_assessment_t &assessment)
+{
+    _state->next.assessment = assessment;
+    for (int slot = 0; slot < GOE_FLIGHT_SLOTS; slot++) {
+        _state->next.used[slot] = _state->next.state[slot] == GOE_FLIGHT_OK;
+    }
+}
+
+/* A layer that cannot assess, as without a pose, has not ended its order: the assessment before stays, and nothing is
+ * clear. */
 void AP_GOE::assess()
 {
     bool landing;
@@ -150,13 +160,19 @@ void AP_GOE::assess()
         landing = _state->inbox.landing;
     }
     Found &next = _state->next;
-    const goe_flight_status_t status = goe_flight_assess(&_state->flight, AP_HAL::micros(), landing, &next.assessment);
+    goe_flight_assessment_t assessment;
+    const goe_flight_status_t status = goe_flight_assess(&_state->flight, AP_HAL::micros(), landing, &assessment);
     if (status == GOE_FLIGHT_CORRUPTED && _state->has_good) {
         next.corruptions++;
         (void)init_flight(_state->good, nullptr);
     }
     for (int slot = 0; slot < GOE_FLIGHT_SLOTS; slot++) {
         next.state[slot] = goe_flight_obstacle(&_state->flight, slot, &next.obstacle[slot]);
+    }
+    if (status == GOE_FLIGHT_OK) {
+        take_assessment(assessment);
+    } else {
+        next.assessment.pose_alive = false;
     }
     next.counters = _state->flight.counters;
     next.assessed++;
