@@ -95,7 +95,7 @@ static void test_a_full_table(void) {
     std::set<uint32_t> ids;
     for (const auto &item : scripted.database()) {
         TEST_ASSERT_GREATER_OR_EQUAL(ID, item.first);
-        TEST_ASSERT_LESS_THAN(ID + GOE_FLIGHT_SLOTS, item.first);
+        TEST_ASSERT_LESS_THAN(ID + GOE_FLIGHT_SLOTS * (1u + vehicle.flight().counters.evicted), item.first);
         ids.insert(item.first);
     }
     TEST_ASSERT_GREATER_THAN(1, ids.size());
@@ -716,6 +716,56 @@ static void test_an_obstacle_that_is_given_up_is_left_to_the_database(void) {
     TEST_ASSERT_LESS_THAN(AP_HAL::millis() - 1000, scripted.database().at(ID).timestamp_ms);
 }
 
+/* As the layer does it: the slot's next track is another one, after an eviction or after a time in which the slot was
+ * free. */
+static void begin_another_track(FlownVehicle &vehicle, bool evicts) {
+    goe_flight_t &flight = vehicle.goe->_state->flight;
+    if (evicts) {
+        flight.counters.evicted++;
+    } else {
+        flight.slot[0].used = false;
+        vehicle.fly(0.2);
+        flight.slot[0].used = true;
+    }
+    flight.slot[0].id += flight.slot[0].id != 0 ? 1 : 0;
+}
+
+static void test_an_obstacle_whose_slot_is_taken_is_left_to_the_database(void) {
+    for (const uint32_t id : {7u, 0u}) {
+        for (const bool evicts : {true, false}) {
+            FlownVehicle vehicle;
+            vehicle.compares = false;
+            vehicle.flown.id = id;
+            vehicle.fly(6.0);
+            TEST_ASSERT_EQUAL(1, scripted.database().size());
+            vehicle.sends = false;
+            begin_another_track(vehicle, evicts);
+            vehicle.fly(1.2);
+            TEST_ASSERT_EQUAL(2, scripted.database().size());
+            TEST_ASSERT_LESS_THAN(AP_HAL::millis() - 1000, scripted.database().at(ID).timestamp_ms);
+            TEST_ASSERT_EQUAL(AP_HAL::millis(), scripted.database().at(ID + GOE_FLIGHT_SLOTS).timestamp_ms);
+        }
+    }
+}
+
+/* A detector that numbers its obstacle anew, or a pose that is lost for a moment, makes no second item. */
+static void test_a_track_is_one_item(void) {
+    FlownVehicle vehicle;
+    vehicle.compares = false;
+    vehicle.fly(4.0);
+    vehicle.flown.id += 100;
+    vehicle.fly(1.0);
+    scripted.yaw_reset_ms = AP_HAL::millis();
+    vehicle.jump = Vector3f(2e6f, 0.0f, 0.0f); // out of range: such a position is refused
+    vehicle.fly(0.3);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NO_POSE, vehicle.goe->_state->shown.state[0]);
+    vehicle.jump = Vector3f();
+    vehicle.fly(0.3);
+    TEST_ASSERT_EQUAL(107, obstacle_of(vehicle, 0).id);
+    TEST_ASSERT_EQUAL(1, scripted.database().size());
+    TEST_ASSERT_EQUAL(AP_HAL::millis(), scripted.database().at(ID).timestamp_ms);
+}
+
 static void test_the_sphere_is_at_the_own_height_between_foot_and_top(void) {
     FlownVehicle vehicle;
     vehicle.fly(6.0);
@@ -881,6 +931,8 @@ int main(void) {
     RUN_TEST(test_an_obstacle_that_the_database_forgot_comes_back);
     RUN_TEST(test_the_database_keeps_its_limits);
     RUN_TEST(test_an_obstacle_that_is_given_up_is_left_to_the_database);
+    RUN_TEST(test_an_obstacle_whose_slot_is_taken_is_left_to_the_database);
+    RUN_TEST(test_a_track_is_one_item);
     RUN_TEST(test_the_sphere_is_at_the_own_height_between_foot_and_top);
     RUN_TEST(test_sigmas_widen_the_sphere);
     RUN_TEST(test_without_a_database_it_flies_on);

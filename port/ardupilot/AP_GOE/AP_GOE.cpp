@@ -75,8 +75,8 @@ bool AP_GOE::start()
 // any slot in use, with a position or not
 bool AP_GOE::follows_something() const
 {
-    for (const bool used : _state->shown.used) {
-        if (used) {
+    for (const Track &track : _state->shown.track) {
+        if (track.used) {
             return true;
         }
     }

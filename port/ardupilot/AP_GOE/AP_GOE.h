@@ -100,11 +100,17 @@ class AP_GOE
         bool landing;
     };
 
+    struct Track {       // of a slot, at the latest assessment that did not fail
+        bool used;       // the slot is
+        uint32_t id;     // the detector's
+        uint32_t number; // of the slot's tracks so far
+    };
+
     struct Found { // by the thread; _found_sem
         goe_flight_obstacle_t obstacle[GOE_FLIGHT_SLOTS];
         goe_flight_status_t state[GOE_FLIGHT_SLOTS]; // of each slot
         goe_flight_assessment_t assessment; // the latest one that did not fail; pose_alive is false since one did
-        bool used[GOE_FLIGHT_SLOTS];        // each slot, then
+        Track track[GOE_FLIGHT_SLOTS];
         goe_flight_counters_t counters;
         const char *bad_field;         // of the settings that were given last; null: none is bad
         uint32_t assessed;             // assessments
@@ -126,6 +132,7 @@ class AP_GOE
         Waiting waiting[WAITING_MAX];
         uint8_t waiting_count;
         bool has_good;
+        uint16_t evicted; // counted at the latest assessment that did not fail
         uint32_t assessed_ms, delay_max_us;
     };
 
@@ -158,7 +165,7 @@ class AP_GOE
     void take_images();
     bool take_image(const Waiting &waiting);
     void assess();
-    void take_assessment(const goe_flight_assessment_t &assessment);
+    void number_tracks();
     void publish();
 
     // AP_GOE_Input.cpp: main thread

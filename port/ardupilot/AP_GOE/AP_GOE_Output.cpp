@@ -9,7 +9,7 @@
 #include <AP_HAL/AP_HAL.h>
 #include <GCS_MAVLink/GCS.h>
 
-#define DATABASE_ID 0x474F4500U // of slot 0; above every ship's nine digits
+#define DATABASE_ID 0x474F4500U // of slot 0's first track; above every ship's nine digits
 #define TOP_SIGMAS 2.0f
 #define RESEND_MS 500 // the ground station sees a database item twice a second
 
@@ -41,8 +41,8 @@ static float place_sd_m(const goe_flight_obstacle_t &obstacle)
 }
 #endif
 
-/* The item of a slot keeps its id while the slot is followed, and each call moves it. After the end of the track
- * the database forgets it OA_DB_EXPIRE later: the obstacle may still be there. */
+/* A track has one item, and each call moves it. The database forgets the item OA_DB_EXPIRE after the end of the track,
+ * because the obstacle may still be there. The slot's next track has another item. */
 void AP_GOE::refresh_database(AP_OADatabase &database)
 {
 #if AP_OADATABASE_ENABLED
@@ -78,7 +78,7 @@ void AP_GOE::put_into_database(AP_OADatabase &database, int slot, const goe_flig
     if (is_positive(database._dist_max) && distance_m > database._dist_max) {
         return;
     }
-    const uint32_t id = DATABASE_ID + uint32_t(slot);
+    const uint32_t id = DATABASE_ID + GOE_FLIGHT_SLOTS * (_state->found.track[slot].number - 1U) + uint32_t(slot);
     uint16_t index = 0;
     while (index < database._database.count &&
            (database._database.items[index].id != id ||

@@ -142,11 +142,21 @@ void AP_GOE::take_images()
 
 // ------------------------------------------------------------------------------------------------------------ result
 
-void AP_GOE::take_assessment(const goe_flight_assessment_t &assessment)
+/* A slot in use gets another track by an eviction alone. The layer counts evictions, and the new track has another id;
+ * without ids it may be in any slot. Without an eviction another id is a new one of the same track. */
+void AP_GOE::number_tracks()
 {
-    _state->next.assessment = assessment;
+    Found &next = _state->next;
+    const bool evicted = _state->flight.counters.evicted != _state->evicted;
+    _state->evicted = _state->flight.counters.evicted;
     for (int slot = 0; slot < GOE_FLIGHT_SLOTS; slot++) {
-        _state->next.used[slot] = _state->next.state[slot] == GOE_FLIGHT_OK;
+        Track &track = next.track[slot];
+        const bool used = next.state[slot] == GOE_FLIGHT_OK;
+        const uint32_t id = next.obstacle[slot].id;
+        const bool is_another = !track.used || (evicted && (id == 0 || id != track.id));
+        track.number += used && is_another ? 1 : 0;
+        track.used = used;
+        track.id = id;
     }
 }
 
@@ -170,7 +180,8 @@ void AP_GOE::assess()
         next.state[slot] = goe_flight_obstacle(&_state->flight, slot, &next.obstacle[slot]);
     }
     if (status == GOE_FLIGHT_OK) {
-        take_assessment(assessment);
+        next.assessment = assessment;
+        number_tracks();
     } else {
         next.assessment.pose_alive = false;
     }
