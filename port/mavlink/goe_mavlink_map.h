@@ -44,7 +44,9 @@ typedef struct {
  * goe_flight_frame() in all three cases.
  *   arrival_us  time of arrival by the autopilot's clock */
 
-/* The frame is empty if number is 0 (nothing in the image) or if no bit of visible is set. */
+/* The frame is empty if number is 0: nothing is in the image. A message with another number and no bit of visible makes a detection
+ * without sides and points: an obstacle that cannot be located, so nothing is clear. A score of 0 counts as not known, because a
+ * field that nobody set must not hide an obstacle. */
 bool goe_mavlink_from_features(const goe_mavlink_features_t *message, uint32_t arrival_us,
                                goe_mavlink_sighting_t *sighting);
 

@@ -80,19 +80,18 @@ static void read_kind(const goe_mavlink_features_t *message, goe_kind_t *kind) {
 }
 
 static float read_score(uint8_t score) {
-    return score < SCORE_MAX ? 0.01f * (float)score : 1.0f; /* also SCORE_UNKNOWN */
+    return score < SCORE_MAX ? 0.01f * (float)score : 1.0f; /* also SCORE_UNKNOWN; the flight layer takes 0 for none */
 }
 
 bool goe_mavlink_from_features(const goe_mavlink_features_t *message, uint32_t arrival_us,
                                goe_mavlink_sighting_t *sighting) {
-    const unsigned anything = GOE_MAVLINK_FEATURE_BOX | 0x3Fu * GOE_MAVLINK_FEATURE_POINT;
     begin(sighting, message->camera_id, arrival_us);
     if (message->time_base > GOE_FLIGHT_AGE || message->camera_id >= GOE_CAMERAS_MAX) {
         return not_understood(sighting);
     }
     read_time(message, &sighting->frame);
     sighting->frame.number = message->number;
-    if (message->number == 0u || (message->visible & anything) == 0u) {
+    if (message->number == 0u) {
         return false;
     }
     if (message->image_width == 0u || message->image_height == 0u) {

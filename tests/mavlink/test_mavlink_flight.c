@@ -118,8 +118,49 @@ static void rounding_costs_less_than_a_sigma(void) {
     TEST_ASSERT_TRUE(hypot(north_m, east_m) < 0.2 * sigma_m);
 }
 
+/* One sample and the message of an obstacle of which nothing is visible. */
+static void step_blindly(uint32_t id) {
+    goe_flight_attitude_t attitude;
+    goe_flight_position_t position;
+    goe_mavlink_features_t features;
+    goe_mavlink_sighting_t sighting;
+    flown_samples(&by_message, by_message.sample, &attitude, &position);
+    by_message.sample++;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_attitude(&by_message.flight, &attitude));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_position(&by_message.flight, &position));
+    memset(&features, 0, sizeof features);
+    features.time_base = GOE_FLIGHT_AGE;
+    features.obstacle_id = id;
+    features.image_width = features.image_height = (uint16_t)(2.0f * HALF_PX);
+    features.number = 1u;
+    (void)goe_mavlink_from_features(&features, flown_now_us(&by_message), &sighting);
+    (void)goe_flight_frame(&by_message.flight, &sighting.frame);
+}
+
+/* The detector is alive, and nothing is clear. */
+static void an_obstacle_that_shows_nothing_clears_nothing(void) {
+    goe_flight_assessment_t assessment;
+    uint16_t sector_cm[GOE_FLIGHT_SECTORS];
+    for (uint32_t id = 0u; id < 2u; id++) {
+        setUp();
+        for (int k = 0; k < SECONDS * FLOWN_POSE_HZ; k++) {
+            step_blindly(id);
+        }
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK,
+                          goe_flight_assess(&by_message.flight, flown_now_us(&by_message), false, &assessment));
+        TEST_ASSERT_TRUE(assessment.detector_alive);
+        TEST_ASSERT_EQUAL(0, assessment.obstacles);
+        TEST_ASSERT_TRUE(assessment.unplaced > 0);
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_sectors(&by_message.flight, 20000u, sector_cm));
+        for (int i = 0; i < GOE_FLIGHT_SECTORS; i++) {
+            TEST_ASSERT_EQUAL_UINT16(GOE_FLIGHT_SECTOR_UNKNOWN, sector_cm[i]);
+        }
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(an_obstacle_that_shows_nothing_clears_nothing);
     RUN_TEST(a_box_of_whole_tenths_arrives_to_the_last_bit);
     RUN_TEST(rounding_costs_less_than_a_sigma);
     return UNITY_END();

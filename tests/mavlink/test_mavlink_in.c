@@ -160,11 +160,17 @@ static void an_image_without_detections_shows_that_the_detector_is_alive(void) {
     TEST_ASSERT_EQUAL_UINT32(1900000u, sighting.frame.capture_us);
 }
 
-/* One of several obstacles is not visible: this must not count as an image without detections. */
-static void a_message_that_sees_nothing_is_no_empty_image(void) {
-    features.visible = 0xFC00u; /* bits without a meaning yet */
-    TEST_ASSERT_FALSE(goe_mavlink_from_features(&features, ARRIVAL_US, &sighting));
-    check_empty(2u);
+/* An obstacle of which nothing is visible is no image without obstacles: it is one that cannot be located. */
+static void an_obstacle_that_shows_nothing_is_one_nevertheless(void) {
+    for (uint8_t number = 1; number <= 2; number++) {
+        features.number = number;
+        features.visible = 0xFC00u; /* bits without a meaning yet */
+        TEST_ASSERT_TRUE(goe_mavlink_from_features(&features, ARRIVAL_US, &sighting));
+        TEST_ASSERT_EQUAL_UINT8(number, sighting.frame.number);
+        TEST_ASSERT_EQUAL_UINT8(1u, sighting.frame.count);
+        TEST_ASSERT_EQUAL_HEX8(0u, sighting.detection.box.sides);
+        TEST_ASSERT_FALSE(sighting.detection.left.visible || sighting.detection.base_right.visible);
+    }
 }
 
 static void what_cannot_be_understood_has_no_camera(void) {
@@ -330,7 +336,7 @@ int main(void) {
     RUN_TEST(times_are_of_their_clock);
     RUN_TEST(a_score_that_is_not_known_is_whole);
     RUN_TEST(an_image_without_detections_shows_that_the_detector_is_alive);
-    RUN_TEST(a_message_that_sees_nothing_is_no_empty_image);
+    RUN_TEST(an_obstacle_that_shows_nothing_is_one_nevertheless);
     RUN_TEST(what_cannot_be_understood_has_no_camera);
     RUN_TEST(angles_become_pixels_by_their_tangents);
     RUN_TEST(a_time_counts_only_by_a_shared_clock);
