@@ -11,7 +11,7 @@
 #endif
 #endif
 
-// Stack of the thread, bytes. The layer's deepest call takes 2,136, by the compiler's call graph for a Cortex-M7; the rest is for the
+// Stack of the thread, bytes. The layer's deepest call takes 3,130, by gcc's call graph for a Cortex-M7; the rest is for the
 // thread's own frames, for interrupts, and a reserve.
 #ifndef AP_GOE_STACK
 #define AP_GOE_STACK 5120
