@@ -64,8 +64,8 @@ local own_system = param:get("MAV_SYSID") or param:get("SYSID_THISMAV") or 1
 local mode_before -- while this script has changed the mode
 local from_landing = false -- it was landing then
 local overruled = false
-local standing -- the order: whose, action, lat, lon, down; is_past: that one is reported without an order; over_ms: since then
--- the companion gives none
+local standing -- the order: named, action, lat, lon, down; over_ms: since then the companion gives none.
+-- named: by its place in the table, each obstacle that the order was about: number; is_past: it is reported without an order
 local received_ms = uint32_t(0)
 local sent_ms = uint32_t(0)
 local silence_reported = false
@@ -200,10 +200,11 @@ local key = read_key()
 local function take_hazard(payload)
     local lat, lon, _, _, down = string.unpack("<i4i4fff", payload, 13)
     local action, flags = string.unpack("<BB", payload, 66)
-    local whose = payload:sub(9, 12) .. payload:sub(65, 65) -- number and place in the table
+    local number, place = payload:sub(9, 12), payload:byte(65)
     if flags & ORDER_FLAG == 0 or action == 0 then
-        if standing and standing.whose == whose then
-            standing.is_past = true
+        local one = standing and standing.named[place]
+        if one and one.number == number then
+            one.is_past = true
         end
         return
     end
@@ -213,7 +214,9 @@ local function take_hazard(payload)
     if action ~= GO_AROUND and (lat == NOTHING_KNOWN or lon == NOTHING_KNOWN or not (math.abs(down) < DOWN_FAR_M)) then
         return
     end
-    standing = { whose = whose, action = action, lat = lat, lon = lon, down = down }
+    local named = standing and standing.named or {}
+    named[place] = { number = number, is_past = false }
+    standing = { named = named, action = action, lat = lat, lon = lon, down = down }
 end
 
 local function take_status(payload)
@@ -489,9 +492,19 @@ local function follow_order()
     end
 end
 
+-- One that was given up is reported no more; then the worst other one carries the order.
+local function are_all_past()
+    for _, one in pairs(standing.named) do
+        if not one.is_past then
+            return false
+        end
+    end
+    return true
+end
+
 local function is_passed()
     local action = standing.action
-    return standing.is_past and not from_landing and (action == LEFT or action == RIGHT or action == CLIMB)
+    return are_all_past() and not from_landing and (action == LEFT or action == RIGHT or action == CLIMB)
 end
 
 local function end_order()
@@ -511,7 +524,7 @@ end
 -- Its report without an order may come after the word that there is none.
 local function is_over()
     return standing.over_ms and
-        (standing.is_past or not mode_before or millis() - standing.over_ms > SILENCE_MS)
+        (are_all_past() or not mode_before or millis() - standing.over_ms > SILENCE_MS)
 end
 
 -- An order stays active, at its target, while no message arrives.

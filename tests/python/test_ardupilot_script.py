@@ -225,10 +225,10 @@ class Plane:
         return minimal.MAVLink_heartbeat_message(18, 8, 0, 0, 4, 3)
 
     def hazard(self, action: int = LEFT, flags: int = ORDER, down: float = -35.5, **rest: Any) -> Any:
-        values: dict[str, Any] = {"id": 7, "lat": 474000000, "lon": 85460000} | rest
+        values: dict[str, Any] = {"id": 7, "slot": 0, "lat": 474000000, "lon": 85460000} | rest
         return self.goe.MAVLink_goe_hazard_message(
             5000000, values["id"], values["lat"], values["lon"], [1.0, 2.0, down], 8.0, 1.0, 2.0, 1.0,
-            math.nan, math.nan, 0.6, 5.0, 0, action, flags,
+            math.nan, math.nan, 0.6, 5.0, values["slot"], action, flags,
         )  # fmt: skip
 
     def status(self, action: int) -> Any:
@@ -354,6 +354,22 @@ def test_an_obstacle_that_was_given_up_is_not_flown_back_to(plane: Plane, action
     plane.run(5.0, status=0)
     assert plane.modes == [GUIDED]
     assert sum("circling" in text for text in plane.texts) == 1
+
+
+@pytest.mark.parametrize("given_up", [True, False])
+def test_the_order_is_past_with_each_obstacle_that_it_was_about(plane: Plane, given_up: bool) -> None:
+    """The worst other obstacle carries the order whose obstacle was given up, or that turns to that other one."""
+    other = {"id": 8, "slot": 1}
+    plane.send(plane.hazard())
+    plane.run(2.0, status=LEFT)
+    plane.send(plane.hazard(**other))
+    if not given_up:
+        plane.send(plane.hazard(action=0, flags=0))
+    plane.run(2.0, status=LEFT)
+    plane.send(plane.hazard(action=0, flags=0, **other))
+    plane.run(7.0, status=0)
+    assert plane.modes == [GUIDED] + ([] if given_up else [AUTO])
+    assert sum("circling" in text for text in plane.texts) == given_up
 
 
 def test_an_order_that_comes_back_goes_on(plane: Plane) -> None:
