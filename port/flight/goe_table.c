@@ -118,8 +118,8 @@ static float worth(const goe_flight_t *flight, int i, uint32_t now_us) {
     if (!slot->used) {
         return -3.0f;
     }
-    if (i == flight->reaction.slot) {
-        return 2.0f;
+    if (i == flight->reaction.slot || i == flight->reaction.edge) {
+        return 2.0f; /* the target moves with both */
     }
     if (undetected && !has_position) {
         return -2.0f;
@@ -146,6 +146,17 @@ static int free_place(goe_flight_t *flight, uint32_t now_us) {
         goe_flight_count(&flight->counters.evicted);
     }
     return least;
+}
+
+/* The next obstacle in this slot is neither that of the order, nor the one whose outline determines its target. */
+static void release(goe_flight_reaction_t *reaction, int i) {
+    if (i == reaction->slot) {
+        reaction->slot = NOBODY;
+    }
+    if (i == reaction->edge) {
+        reaction->edge = NOBODY;
+        reaction->gap = false;
+    }
 }
 
 /* ------------------------------------------------------------------------------------------------------------- frame -- */
@@ -251,6 +262,7 @@ static void give_new(goe_flight_t *flight, const goe_flight_slot_view_t *view, c
         const int i = free_place(flight, view->time_us);
         if (i != NOBODY) {
             wait_again(flight, &flight->slot[i]);
+            release(&flight->reaction, i);
             goe_flight_slot_begin(&flight->slot[i], detection->id, view->time_us);
             give(flight, i, view, detection, taken);
         } else {
@@ -301,11 +313,8 @@ void goe_flight_table_age(goe_flight_t *flight, uint32_t now_us) {
         const float most_s =
             ordered ? goe_flight_larger(ORDERED_S, flight->settings.track_timeout_s) : flight->settings.track_timeout_s;
         slot->used = slot->used && (undetected_s <= most_s || is_ahead(flight, slot));
-        if (!slot->used && i == flight->reaction.slot) {
-            flight->reaction.slot = NOBODY; /* the next obstacle in this slot is not that of the order */
-        }
-        if (!slot->used && i == flight->reaction.edge) {
-            flight->reaction.edge = NOBODY;
+        if (!slot->used) {
+            release(&flight->reaction, i);
         }
     }
 }

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "flown.h"
+#include "goe_table.h"
 
 static flown_t flown;
 
@@ -572,6 +573,66 @@ static void a_false_detection_is_forgotten_for_good(void) {
     }
 }
 
+/* A kept obstacle far behind, which no box of an image fits. The longer its time, the sooner it is evicted. */
+static void keep_behind(int i, float tcpa_s) {
+    goe_flight_slot_t *slot = &flown.flight.slot[i];
+    slot->used = slot->remembered = slot->assessed = true;
+    slot->id = 100u + (uint32_t)i;
+    slot->valid = GOE_HAS_POSITION | GOE_HAS_WIDTH;
+    slot->center_ne_m[0] = -500.0f;
+    slot->hazard.tcpa_s = tcpa_s;
+    slot->taken_us = slot->detected_us = flown_now_us(&flown);
+}
+
+/* GIVEN an order that passes the outline of another obstacle, or the gap to it WHEN a new obstacle needs a slot THEN it gets that of an
+ * obstacle of which the order knows nothing; in a table without one, none. */
+static void the_obstacles_of_an_order_are_not_evicted(void) {
+    for (int spare = 0; spare < 2; spare++) {
+        setUp();
+        flown.detects = false;
+        while (!flown_step(&flown)) {
+        }
+        for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+            keep_behind(i, i == 1 ? 100.0f : i == 2 && spare ? 20.0f : 0.5f);
+        }
+        flown.flight.reaction.action = GOE_FLIGHT_LEFT;
+        flown.flight.reaction.slot = 0;
+        flown.flight.reaction.edge = 1;
+        flown.flight.reaction.gap = true;
+        for (int frames = 0; frames < 4;) {
+            if (flown_step(&flown)) {
+                detect_row(500u, 1);
+                frames++;
+            }
+        }
+        TEST_ASSERT_EQUAL(spare, flown.flight.counters.evicted);
+        TEST_ASSERT_EQUAL(spare, flown.flight.counters.full == 0);
+        TEST_ASSERT_EQUAL_UINT32(100u, flown.flight.slot[0].id);
+        TEST_ASSERT_EQUAL_UINT32(101u, flown.flight.slot[1].id);
+        TEST_ASSERT_EQUAL_UINT32(spare ? 500u : 102u, flown.flight.slot[2].id);
+        TEST_ASSERT_EQUAL(1, flown.flight.reaction.edge);
+        TEST_ASSERT_TRUE(flown.flight.reaction.gap);
+    }
+}
+
+/* GIVEN an order through a gap WHEN the obstacle on its other side is given up THEN the order knows of no gap any more. */
+static void an_obstacle_that_is_given_up_leaves_no_gap(void) {
+    (void)flown_fly(&flown, 3.04);
+    keep_behind(1, 0.5f);
+    flown.flight.slot[1].detected_us -= 31000000u;
+    flown.flight.slot[1].hazard.tcpa_s = 0.0f;
+    flown.flight.reaction.action = GOE_FLIGHT_LEFT;
+    flown.flight.reaction.slot = 0;
+    flown.flight.reaction.side = -1;
+    flown.flight.reaction.edge = 1;
+    flown.flight.reaction.gap = true;
+    goe_flight_table_age(&flown.flight, flown_now_us(&flown));
+    TEST_ASSERT_FALSE(flown.flight.slot[1].used);
+    TEST_ASSERT_EQUAL(0, flown.flight.reaction.slot);
+    TEST_ASSERT_EQUAL(-1, flown.flight.reaction.edge);
+    TEST_ASSERT_FALSE(flown.flight.reaction.gap);
+}
+
 /* GIVEN an obstacle WHEN the own attitude or position is no longer known THEN it cannot be reported. */
 static void without_a_pose_no_obstacle_is_reported(void) {
     goe_flight_obstacle_t obstacle;
@@ -688,6 +749,8 @@ int main(void) {
     RUN_TEST(a_full_table_is_not_a_clear_sky);
     RUN_TEST(a_detection_that_cannot_be_used_is_not_a_clear_sky);
     RUN_TEST(a_false_detection_is_forgotten_for_good);
+    RUN_TEST(the_obstacles_of_an_order_are_not_evicted);
+    RUN_TEST(an_obstacle_that_is_given_up_leaves_no_gap);
     RUN_TEST(without_a_pose_no_obstacle_is_reported);
     RUN_TEST(early_frames_are_kept_by_the_caller);
     RUN_TEST(an_image_may_come_in_parts);
