@@ -219,9 +219,10 @@ typedef enum {
     GOE_FLIGHT_REASON_NONE = 0,  /* no order is given, and none is withheld */
     GOE_FLIGHT_REASON_CLEAR = 1, /* the path of the order keeps at least 75 % of margin_m (HOLD: 50 %) from every known obstacle, at
                                     two sigmas. With loiter_m 0 that path goes on along the order line: an aircraft that turns
-                                    elsewhere at the target leaves it */
+                                    elsewhere at the target leaves it. CLIMB, GO_AROUND: all tops that the climb leads over are
+                                    known, and it clears them in time */
     GOE_FLIGHT_REASON_LEAST_BAD = 2, /* no path is clear: the side with the largest distance, or HOLD, whose distance is then larger by
-                                       more than 0.2 margin_m */
+                                       more than 0.2 margin_m; on approach also GO_AROUND over a top that is not known */
     /* an order is due and withheld, because the aircraft ... */
     GOE_FLIGHT_REASON_LOW = 3,   /* is lower than order_height_m */
     GOE_FLIGHT_REASON_SLOW = 4,  /* is slower than order_speed_m_s */
@@ -231,7 +232,7 @@ typedef enum {
 /* The phase of flight, for goe_flight_assess(). Any other number counts as GOE_FLIGHT_FLYING. */
 enum {
     GOE_FLIGHT_FLYING = 0,
-    GOE_FLIGHT_APPROACH = 1, /* the aircraft is landing: the layer prefers a go-around */
+    GOE_FLIGHT_APPROACH = 1, /* the aircraft is landing: the layer prefers a go-around over known tops */
     GOE_FLIGHT_FLARE = 2,    /* no order is given, and an active one ends */
     GOE_FLIGHT_LANDED = 3    /* the aircraft has touched down: no order, as in the flare. Obstacles beyond the runway
                                 are not on its course */

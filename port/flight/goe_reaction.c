@@ -66,7 +66,7 @@ typedef struct {
 typedef struct {
     goe_flight_action_t action;
     float needed_s, cost_s;
-    float share;                /* least clear fraction of the path */
+    float share;                /* least clear fraction of the path; of a climb 1, or 0 over a top that is not known */
     goe_flight_clear_way_t way; /* path to a side, or of HOLD */
     float down_m;               /* of the target */
     int8_t edge, side;
@@ -195,12 +195,14 @@ static bool is_on_course(const encounter_t *e) {
     return e->ahead_m > 0.0f && goe_flight_absolute(e->aside_m) < e->keep_m;
 }
 
-/* Tries a climb straight on. It must clear everything in the way: up to the highest top, and each top in time. */
+/* Tries a climb straight on. It must clear everything in the way: up to the highest top, and each top in time. On approach it may also
+ * lead over a top that is not known; nothing then shows that it clears this top. */
 static void try_climb(const look_t *look, int about, const encounter_t *e, option_t *best) {
     option_t option;
     const bool approach = look->own->approach;
     float rise_m = rise_of(look, e);
     bool possible = (e->has_top || approach) && climb_time_s(look, rise_m) <= e->earliest_tcpa_s;
+    bool blind = !e->has_top;
     for (int i = 0; i < GOE_FLIGHT_SLOTS && possible; i++) {
         encounter_t other;
         if (i == about || !look->slot[i].counts) {
@@ -217,13 +219,14 @@ static void try_climb(const look_t *look, int about, const encounter_t *e, optio
             const float there_s = goe_flight_larger(other.ahead_m - look->slot[i].radius_m, 0.0f) / look->speed_m_s;
             rise_m = goe_flight_larger(rise_m, rise_of(look, &other));
             possible = (other.has_top || approach) && climb_time_s(look, rise_of(look, &other)) <= there_s;
+            blind = blind || !other.has_top;
         }
     }
     if (possible) {
         memset(&option, 0, sizeof option);
         option.action = approach ? GOE_FLIGHT_GO_AROUND : GOE_FLIGHT_CLIMB;
         option.needed_s = option.cost_s = climb_time_s(look, rise_of(look, e));
-        option.share = 1.0f;
+        option.share = blind ? 0.0f : 1.0f;
         option.down_m = look->own->ned_m[2] - rise_m;
         option.edge = NOBODY;
         prefer(best, &option);
@@ -311,18 +314,19 @@ static void try_hold(const look_t *look, int side, option_t *best) {
     }
 }
 
-/* Chooses the clear side or climb of the lowest cost; otherwise HOLD; otherwise the clearest path. side: the only one that is allowed; 0:
- * both. */
+/* Chooses the clear side or climb of the lowest cost; otherwise HOLD; otherwise the clearest path. On approach, a climb over known tops comes
+ * first, and one over a top that is not known comes before HOLD. side: the only one that is allowed; 0: both. */
 static option_t choose(const look_t *look, int about, const encounter_t *e, int side) {
     option_t best;
     option_t hold;
+    option_t climb;
     memset(&best, 0, sizeof best);
-    memset(&hold, 0, sizeof hold);
-    best.share = hold.share = NEVER;
+    best.share = NEVER;
+    hold = climb = best;
     if (look->own->approach) {
-        try_climb(look, about, e, &best);
-        if (best.action != GOE_FLIGHT_NONE) {
-            return best;
+        try_climb(look, about, e, &climb);
+        if (climb.share >= FREE) {
+            return climb;
         }
     }
     if (side != TO_LEFT && e->ahead_m > 0.0f) {
@@ -331,11 +335,14 @@ static option_t choose(const look_t *look, int about, const encounter_t *e, int 
     if (side != TO_RIGHT && e->ahead_m > 0.0f) {
         try_side(look, about, e, TO_LEFT, &best);
     }
-    if (side == 0) {
+    if (side == 0 && !look->own->approach) {
         try_climb(look, about, e, &best);
     }
     if (best.action != GOE_FLIGHT_NONE && best.share >= FREE) {
         return best;
+    }
+    if (side == 0 && climb.action != GOE_FLIGHT_NONE) {
+        return climb;
     }
     const int away = e->aside_m > 0.0f ? TO_LEFT : TO_RIGHT;
     if (side == 0 || side == away) {
@@ -668,8 +675,8 @@ static void rise(goe_flight_t *flight, const look_t *look) {
     }
 }
 
-/* On approach, a go-around replaces an order to a side as soon as a climb is in time. An aircraft that lands next to an obstacle lands
- * next to the runway. */
+/* On approach, a go-around over known tops replaces an order to a side as soon as a climb is in time. An aircraft that lands next to an
+ * obstacle lands next to the runway. */
 static void break_off(goe_flight_t *flight, const look_t *look) {
     const goe_flight_reaction_t *r = &flight->reaction;
     encounter_t e;
@@ -682,7 +689,7 @@ static void break_off(goe_flight_t *flight, const look_t *look) {
     option.share = NEVER;
     meet(look, r->slot, &e);
     try_climb(look, r->slot, &e, &option);
-    if (option.action == GOE_FLIGHT_GO_AROUND) {
+    if (option.share >= FREE) {
         order(flight, r->slot, look, &e, &option);
     }
 }
@@ -812,8 +819,9 @@ static float answer(goe_flight_t *flight, look_t *look, int about, bool *unlikel
         return option.needed_s;
     }
     const bool is_hazard = violation >= most && !is_flying_back(look);
+    const bool clears = r->reason == GOE_FLIGHT_REASON_LEAST_BAD && option.share >= FREE; /* of a blind climb */
     const bool is_new =
-        r->action == GOE_FLIGHT_NONE || (is_up(r->action) && (r->slot != about || is_too_low(look, &e)));
+        r->action == GOE_FLIGHT_NONE || (is_up(r->action) && (r->slot != about || clears || is_too_low(look, &e)));
     if (is_due(r, settings, &e, option.needed_s, is_hazard && is_new, look->own->time_us)) {
         const goe_flight_reason_t why = withheld(flight, look->own, look->speed_m_s);
         if (why == GOE_FLIGHT_REASON_NONE) {

@@ -373,13 +373,79 @@ static void a_go_around_carries_the_height_of_the_highest_top(void) {
     CHECK_CLOSE(0.01, -28.0, flight.reaction.target_ned_m[2]);
 }
 
-/* Of a top that is not known: by the clearance over the present height. */
-static void a_go_around_over_an_unknown_top_climbs(void) {
+/* On the approach: a mast, and 18 m to both sides of it a wide obstacle, so that no side is clear. */
+static void put_unknown_tops(int count) {
+    for (int i = 0; i < 3; i++) {
+        put_wide(i, 130.0f, i == 0 ? 0.5f : i == 1 ? -48.0f : 48.0f, i == 0 ? 6.0f : 60.0f);
+        flight.slot[i].used = i < count;
+        flight.slot[i].valid = GOE_HAS_POSITION | GOE_HAS_WIDTH;
+        flight.slot[i].hazard.conflict_probability = i == 0 ? 1.0f : 0.0f;
+    }
+}
+
+/* GIVEN an approach to an obstacle whose top is not known WHEN a side is clear THEN the side is flown; otherwise the aircraft climbs by the
+ * clearance over the present height, and the reason does not call that clear. */
+static void a_go_around_over_an_unknown_top_is_the_least_bad(void) {
     own.approach = true;
-    put(0, 150.0f, 0.5f, 0.0f);
-    flight.slot[0].valid = GOE_HAS_POSITION | GOE_HAS_WIDTH;
+    put_unknown_tops(1);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_REASON_CLEAR, flight.reaction.reason);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(1.0));
+    start(0.0f);
+    own.approach = true;
+    put_unknown_tops(3);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_GO_AROUND, decide(0.5));
     CHECK_CLOSE(0.01, -30.0, flight.reaction.target_ned_m[2]);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_REASON_LEAST_BAD, flight.reaction.reason);
+}
+
+/* ... WHEN a second obstacle behind the first has no known top, the climb is not called clear either. */
+static void a_go_around_over_any_unknown_top_is_not_clear(void) {
+    own.approach = true;
+    put_unknown_tops(3);
+    flight.slot[0].valid |= GOE_HAS_HEIGHT;
+    flight.slot[0].top_m = 18.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_GO_AROUND, decide(0.5));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_REASON_CLEAR, flight.reaction.reason);
+    start(0.0f);
+    own.approach = true;
+    put_unknown_tops(3);
+    flight.slot[0].valid |= GOE_HAS_HEIGHT;
+    flight.slot[0].top_m = 18.0f;
+    put(3, 160.0f, 0.5f, 0.0f);
+    flight.slot[3].valid = GOE_HAS_POSITION | GOE_HAS_WIDTH;
+    flight.slot[3].hazard.conflict_probability = 0.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_GO_AROUND, decide(0.5));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_REASON_LEAST_BAD, flight.reaction.reason);
+}
+
+/* GIVEN a go-around over an unknown top WHEN a side becomes clear THEN the side is flown; WHEN the top is known and low THEN the same
+ * order is clear. */
+static void a_go_around_over_an_unknown_top_gives_way(void) {
+    for (int known = 0; known < 2; known++) {
+        start(0.0f);
+        own.approach = true;
+        put_unknown_tops(3);
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_GO_AROUND, decide(0.5));
+        if (known) {
+            flight.slot[0].valid |= GOE_HAS_HEIGHT;
+            flight.slot[0].top_m = 18.0f;
+        } else {
+            flight.slot[1].used = false;
+        }
+        TEST_ASSERT_EQUAL(known ? GOE_FLIGHT_GO_AROUND : GOE_FLIGHT_LEFT, decide(0.5));
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_REASON_CLEAR, flight.reaction.reason);
+    }
+}
+
+/* GIVEN an order to a side on approach WHEN a go-around over an unknown top would be in time THEN the side stays. */
+static void no_side_is_left_for_an_unknown_top(void) {
+    own.approach = true;
+    put_unknown_tops(1);
+    flight.slot[0].hazard.tcpa_s = 3.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.0));
+    flight.slot[0].hazard.tcpa_s = 9.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
 }
 
 /* Behind a low one is a high one: a climb over the first leads into the second. */
@@ -643,7 +709,10 @@ int main(void) {
     RUN_TEST(no_order_is_given_in_flare_or_after_touchdown);
     RUN_TEST(phases_reach_the_rule);
     RUN_TEST(a_go_around_carries_the_height_of_the_highest_top);
-    RUN_TEST(a_go_around_over_an_unknown_top_climbs);
+    RUN_TEST(a_go_around_over_an_unknown_top_is_the_least_bad);
+    RUN_TEST(a_go_around_over_any_unknown_top_is_not_clear);
+    RUN_TEST(a_go_around_over_an_unknown_top_gives_way);
+    RUN_TEST(no_side_is_left_for_an_unknown_top);
     RUN_TEST(a_climb_does_not_lead_into_what_is_behind);
     RUN_TEST(clearance_is_that_of_the_nearest_part_of_the_way);
     RUN_TEST(a_target_straight_ahead_takes_no_circle);

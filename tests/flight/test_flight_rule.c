@@ -423,6 +423,7 @@ static void try_climb(double earliest_tcpa_s, choice_t *best) {
     choice_t climb = {own.approach ? GOE_FLIGHT_GO_AROUND : GOE_FLIGHT_CLIMB, 1.0, 0.0, 0.0, {0.0, 0.0}, 0.0};
     double rise_m = about.rise_m;
     bool possible = (about.has_top || own.approach) && is_more(earliest_tcpa_s, climb_s(about.rise_m), NEAR_TIE);
+    bool is_blind = !about.has_top;
     for (int i = 1; i < GOE_FLIGHT_SLOTS; i++) {
         const met_t other = meet(i);
         if (!flight.slot[i].used || !other.counts || !other.is_on_course) {
@@ -433,7 +434,9 @@ static void try_climb(double earliest_tcpa_s, choice_t *best) {
         rise_m = other.has_top || is_soon ? fmax(rise_m, other.rise_m) : rise_m;
         possible = possible &&
                    (!is_soon || ((other.has_top || own.approach) && is_more(there_s, climb_s(other.rise_m), NEAR_TIE)));
+        is_blind = is_blind || (is_soon && !other.has_top);
     }
+    climb.share = is_blind ? 0.0 : 1.0;
     climb.needed_s = climb.cost_s = climb_s(about.rise_m);
     climb.target_m[0] = about.ahead_m;
     climb.down_m = (double)own.ned_m[2] - rise_m;
@@ -517,17 +520,21 @@ static choice_t best_hold(void) {
 
 static choice_t choose(double earliest_tcpa_s) {
     choice_t best = {GOE_FLIGHT_NONE, -100.0, 0.0, 0.0, {0.0, 0.0}, 0.0};
-    if (own.approach) {
-        try_climb(earliest_tcpa_s, &best);
-    }
-    if (best.action != GOE_FLIGHT_NONE) {
-        return best;
+    choice_t climb = best;
+    try_climb(earliest_tcpa_s, &climb);
+    if (climb.action == GOE_FLIGHT_GO_AROUND && climb.share > 0.75) {
+        return climb;
     }
     try_side(1, &best);
     try_side(-1, &best);
-    try_climb(earliest_tcpa_s, &best);
+    if (climb.action == GOE_FLIGHT_CLIMB) {
+        prefer(&best, &climb);
+    }
     if (best.action != GOE_FLIGHT_NONE && is_more(best.share, 0.75, NEAR_TIE)) {
         return best;
+    }
+    if (climb.action == GOE_FLIGHT_GO_AROUND) { /* over a top that is not known */
+        return climb;
     }
     const choice_t hold = best_hold();
     return best.action == GOE_FLIGHT_NONE || is_more(hold.share, 0.5, NEAR_TIE) ||
