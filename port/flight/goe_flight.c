@@ -555,11 +555,12 @@ static void find_own(const goe_flight_t *flight, uint32_t now_us, goe_flight_rea
     }
 }
 
-/* Images older than delay_max_s no longer arrive, so the estimates are predicted up to that time. */
+/* Images older than delay_max_s are refused, so the estimates are predicted up to that time. It counts from the newest sample, as in
+ * find_view(): a prediction beyond it would make the estimator ignore images that are accepted. */
 static void catch_up(goe_flight_t *flight, uint32_t now_us) {
     goe_flight_slot_view_t view;
     const uint32_t delay_us = (uint32_t)(flight->settings.delay_max_s * 1.0e6f);
-    if (look_back(flight, now_us - delay_us, 0u, &view) == GOE_FLIGHT_OK) {
+    if (look_back(flight, (uint32_t)flight->base_us - delay_us, 0u, &view) == GOE_FLIGHT_OK) {
         goe_flight_table_follow(flight, &view);
     }
     goe_flight_table_age(flight, now_us);

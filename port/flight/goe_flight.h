@@ -107,7 +107,7 @@ typedef struct {
     /* time */
     float delay_s;     /* least time from sending to arrival, which one-way messages cannot show; 0 to 0.5; 0.005 */
     float delay_sd_s;  /* one sigma of delay_s, and of a capture time without a sigma; 0 to 0.5; 0.005 */
-    float delay_max_s; /* frames that arrive later than this after their exposure are refused; 0.02 to 0.5; 0.4 */
+    float delay_max_s; /* frames exposed longer than this before the newest sample are refused; 0.02 to 0.5; 0.4 */
     float resets;      /* GOE_FLIGHT_RESETS_...; 0 or 1; 0 */
     /* sources of the height */
     float range_finder_sd_m;  /* one sigma of the range finder's height; 0.001 to 100; 0.3 */

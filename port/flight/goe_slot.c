@@ -217,6 +217,21 @@ static void note_located(goe_flight_slot_t *slot, const goe_flight_camera_t *cam
     slot->unlocated = old || elsewhere;
 }
 
+/* A detection in an image that the estimator cannot use, because a newer one without a detection came before. It still shows where the
+ * obstacle is, and that the position does not follow its detections. */
+static void note_late(goe_flight_slot_t *slot, const goe_flight_camera_t cameras[GOE_CAMERAS_MAX],
+                      const goe_flight_slot_view_t *view, const goe_flight_detection_t *seen) {
+    if (!seen || goe_flight_between_us(view->time_us, slot->detected_us) <= 0) {
+        return;
+    }
+    slot->detected_us = view->time_us;
+    slot->camera = view->camera;
+    slot->in_view = true;
+    (void)goe_flight_slot_box_of(seen, slot->box_px);
+    goe_flight_slot_bearings_of(seen, &cameras[view->camera], view->pose.q, &slot->bearings);
+    slot->unlocated = true;
+}
+
 void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t cameras[GOE_CAMERAS_MAX],
                           const goe_flight_slot_view_t *view, const float jumps_ned_m[3],
                           const goe_flight_detection_t *seen) {
@@ -225,6 +240,7 @@ void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t cam
     float body_to_ned[9];
     float camera_ned_m[3];
     if (!slot->fresh_track && goe_flight_between_us(view->time_us, slot->taken_us) <= 0) {
+        note_late(slot, cameras, view, seen);
         return;
     }
     const uint8_t last = slot->camera < GOE_CAMERAS_MAX ? slot->camera : 0u;

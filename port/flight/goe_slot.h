@@ -38,7 +38,7 @@ void goe_flight_slot_shift(goe_flight_slot_t *slot, const float jump_ned_m[3]);
 
 /* Passes an image to the estimator, which the caller has reset if the image starts the slot's track. `seen` is the detection; null: the
  * image does not show the obstacle, and counts as one of the camera that detected it last. An image that is not newer than the slot's
- * latest image is ignored. */
+ * latest image does not reach the estimator. Its detection is noted if it is newer than the slot's latest detection. */
 void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t cameras[GOE_CAMERAS_MAX],
                           const goe_flight_slot_view_t *view, const float jumps_ned_m[3],
                           const goe_flight_detection_t *seen);

@@ -265,6 +265,61 @@ static void an_obstacle_that_is_not_visible_is_moved_on(void) {
     TEST_ASSERT_TRUE(flight->slot[0].detected_us != flight->slot[0].taken_us);
 }
 
+/* Samples without frames. */
+static void fly_blind(int samples) {
+    for (int k = 0; k < samples; k++) {
+        flown_samples(&flown, flown.sample++, &attitude, &position);
+        give();
+    }
+}
+
+/* A frame of the image so many samples before the newest one. */
+static void give_frame(int back, int count) {
+    const goe_flight_detection_t detection = flown_detection(&flown, flown.sample - 1 - back);
+    const goe_flight_frame_t frame = flown_frame(&flown, flown.sample - 1 - back, &detection, count);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(flight, &frame));
+}
+
+/* [flight.delay_max_s] GIVEN samples that come late WHEN an assessment has moved an obstacle on, and an accepted frame shows it THEN the
+ * frame is used. */
+static void an_accepted_frame_is_used(void) {
+    for (int lag = 0; lag < 4; lag++) {
+        setUp();
+        flown_start(&flown, NULL);
+        (void)flown_fly(&flown, 3.0);
+        fly_blind(25);
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_assess(flight, flown_now_us(&flown) + (uint32_t)lag * STEP_US,
+                                                           GOE_FLIGHT_FLYING, &now));
+        TEST_ASSERT_FALSE(flight->slot[0].in_view);
+        give_frame(19, 1);
+        TEST_ASSERT_TRUE(flight->slot[0].in_view);
+        TEST_ASSERT_EQUAL_UINT32(flown_now_us(&flown) - 19u * STEP_US, flight->slot[0].taken_us);
+        TEST_ASSERT_EQUAL_UINT32(flight->slot[0].taken_us, flight->slot[0].detected_us);
+    }
+}
+
+/* [F6] GIVEN images that arrive in another order than that of their exposures WHEN an empty one comes before an older one with a detection
+ * THEN the estimator cannot use the older one, but the detection counts: where it was, and that it has no new position. An image older than the
+ * latest detection changes nothing. */
+static void a_detection_in_an_older_image_counts(void) {
+    flown_start(&flown, NULL);
+    (void)flown_fly(&flown, 3.0);
+    fly_blind(15);
+    give_frame(1, 0);
+    const goe_flight_slot_t before = flight->slot[0];
+    TEST_ASSERT_FALSE(before.in_view || before.unlocated);
+    give_frame(3, 1);
+    TEST_ASSERT_TRUE(flight->slot[0].in_view && flight->slot[0].unlocated);
+    TEST_ASSERT_EQUAL_UINT32(flown_now_us(&flown) - 3u * STEP_US, flight->slot[0].detected_us);
+    TEST_ASSERT_EQUAL_UINT32(before.taken_us, flight->slot[0].taken_us);
+    TEST_ASSERT_TRUE(flight->slot[0].box_px[3] > before.box_px[3]);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, assess(15u * STEP_US, GOE_FLIGHT_FLYING));
+    TEST_ASSERT_EQUAL(1, now.unplaced);
+    const goe_flight_slot_t after = flight->slot[0];
+    give_frame(5, 1);
+    TEST_ASSERT_EQUAL_MEMORY(&after, &flight->slot[0], sizeof after);
+}
+
 /* ---------------------------------------------------------------------------------------------------------- obstacles -- */
 
 /* [goe_flight_obstacle_t.age_s, goe_flight_obstacle_t.lat_e7, goe_flight_obstacle_t.lon_e7] */
@@ -434,6 +489,8 @@ int main(void) {
     RUN_TEST(a_dead_pose_is_not_moved_on);
     RUN_TEST(an_assessment_that_fails_knows_nothing);
     RUN_TEST(an_obstacle_that_is_not_visible_is_moved_on);
+    RUN_TEST(an_accepted_frame_is_used);
+    RUN_TEST(a_detection_in_an_older_image_counts);
     RUN_TEST(an_obstacle_reports_its_age_and_place);
     RUN_TEST(an_unknown_top_is_not_taken_for_a_low_one);
     RUN_TEST(an_obstacle_of_no_numbers_is_corrupted);
