@@ -213,6 +213,17 @@ static bool is_outdone(const goe_flight_t *flight, const goe_flight_slot_view_t 
     return false;
 }
 
+/* The slot takes the id of its latest detection. A late image of another camera shows the obstacle, but is not the latest. */
+static void renumber(goe_flight_t *flight, goe_flight_slot_t *slot, const goe_flight_slot_view_t *view, uint32_t id) {
+    if (slot->detected_us != view->time_us || slot->camera != view->camera) {
+        return;
+    }
+    if (id != slot->id) {
+        goe_flight_count(&flight->counters.renumbered);
+    }
+    slot->id = id;
+}
+
 static void give_renumbered(goe_flight_t *flight, const goe_flight_slot_view_t *view, const goe_flight_frame_t *frame,
                             bool complete, uint32_t *waiting, uint32_t *taken) {
     for (int k = 0; k < frame->count; k++) {
@@ -224,12 +235,9 @@ static void give_renumbered(goe_flight_t *flight, const goe_flight_slot_view_t *
         }
         const int i = claimant(flight, view, lost_slots(flight, view, *taken, complete), box_px, &claim);
         if (i != NOBODY && !is_outdone(flight, view, frame, *waiting, i, claim)) {
-            if (detection->id != flight->slot[i].id) {
-                goe_flight_count(&flight->counters.renumbered);
-            }
-            flight->slot[i].id = detection->id;
             *waiting &= ~(1u << k);
             give(flight, i, view, detection, taken);
+            renumber(flight, &flight->slot[i], view, detection->id);
         }
     }
 }

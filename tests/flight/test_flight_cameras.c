@@ -16,9 +16,8 @@ static goe_camera_t mounted[CAMERAS];
 static bool alive[CAMERAS];
 static uint32_t id[CAMERAS];
 
-/* The pictures of the second are taken later and come earlier. */
 static const int phase[CAMERAS] = {0, 2};
-static const int delay[CAMERAS] = {6, 2};
+static int delay[CAMERAS];
 
 void setUp(void) {
     flown_start(&flown, NULL);
@@ -30,6 +29,8 @@ void setUp(void) {
     }
     id[0] = 7u;
     id[1] = 3u;
+    delay[0] = 6; /* the pictures of the second are taken later and come earlier */
+    delay[1] = 2;
     mounted[0].mount_yaw_deg = -25.0f;
     mounted[1].mount_yaw_deg = -75.0f;
     mounted[1].fx_px *= 0.8f;
@@ -132,6 +133,49 @@ static void an_obstacle_flies_from_one_camera_into_the_other(void) {
     }
 }
 
+/* GIVEN two cameras that see the obstacle at once WHEN the images of one come later than newer ones of the other THEN the track keeps the
+ * id of the camera of its latest detection, and is not renumbered. */
+static void a_late_image_takes_no_id_over(void) {
+    for (int late = 0; late < CAMERAS; late++) {
+        setUp();
+        mounted[1] = mounted[0];
+        goe_settings_t estimator = scene_settings(&flown.scene);
+        estimator.camera = estimator.more_cameras[0] = mounted[0];
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_init(&flown.flight, sizeof flown.flight, &estimator, NULL, NULL));
+        delay[late] = 12;
+        delay[1 - late] = 2;
+        alive[late] = false;
+        for (int k = 0; k < 100; k++) {
+            step(NULL);
+        }
+        alive[late] = true;
+        for (int k = 0; k < 100; k++) {
+            step(NULL);
+            TEST_ASSERT_EQUAL(1 - late, flown.flight.slot[0].camera);
+            TEST_ASSERT_EQUAL_UINT32(id[1 - late], flown.flight.slot[0].id);
+        }
+        TEST_ASSERT_EQUAL(1, slots_used());
+        TEST_ASSERT_EQUAL(0, flown.flight.counters.renumbered);
+    }
+}
+
+/* GIVEN an obstacle that leaves the view of one camera WHEN the images of the other one come later THEN that one takes it over all the same. */
+static void a_late_camera_takes_an_obstacle_over(void) {
+    delay[0] = 2;
+    delay[1] = 12;
+    int points = 0;
+    for (int k = 0; k < 350; k++) {
+        goe_flight_obstacle_t obstacle;
+        step(NULL);
+        const bool seen = goe_flight_obstacle(&flown.flight, 0, &obstacle) == GOE_FLIGHT_OK && obstacle.in_view;
+        points += seen && obstacle.age_s < 0.3f && flown.flight.slot[0].camera == 1 ? 1 : 0;
+    }
+    TEST_ASSERT_EQUAL(1, slots_used());
+    TEST_ASSERT_EQUAL_UINT32(id[1], flown.flight.slot[0].id);
+    TEST_ASSERT_EQUAL(1, flown.flight.slot[0].camera);
+    TEST_ASSERT_TRUE(points > 30);
+}
+
 static goe_flight_detection_t something(uint32_t number) {
     goe_flight_detection_t detection;
     memset(&detection, 0, sizeof detection);
@@ -220,6 +264,8 @@ static void each_camera_needs_its_size(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(an_obstacle_flies_from_one_camera_into_the_other);
+    RUN_TEST(a_late_image_takes_no_id_over);
+    RUN_TEST(a_late_camera_takes_an_obstacle_over);
     RUN_TEST(one_id_of_two_cameras_is_two_obstacles);
     RUN_TEST(each_camera_confirms_its_own);
     RUN_TEST(the_view_of_a_dead_detector_is_unknown);
