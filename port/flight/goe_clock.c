@@ -12,7 +12,10 @@
 #define BUCKET_US 10000000
 #define STRANGE_US 1000000 /* an arrival so far from the least is of another clock, or a stuck message */
 #define STRANGE_MAX 3
-#define SETTLED 8           /* number of messages after which the least is close to its final value */
+#define ALIKE_US 20000 /* largest difference of the offsets of another clock, and least time between its messages */
+#define FORGOTTEN_US                                                                                                   \
+    100000000     /* of a clock that drifts by 50 ppm, an offset of so long ago is off by 5 ms, as much as delay_sd_s */
+#define SETTLED 8 /* number of messages after which the least is close to its final value */
 #define SPREAD_MEMORY 16.0f /* number of messages */
 #define DRIFT_SD_US 1000.0f
 #define SD_MAX_US 1.0e6f
@@ -28,13 +31,27 @@ static void begin(goe_flight_clock_t *clock, uint32_t offset_us, uint32_t arriva
     clock->has_before = false;
 }
 
+/* Counts an arrival that is late by more than a second. Those of a clock that was set back are late by the same time. Messages that were stuck
+ * arrive at once, each less late than the one before; so do the parts of one image. before_us is free for the first offset. */
+static bool is_another_clock(goe_flight_clock_t *clock, uint32_t offset_us, uint32_t arrival_us) {
+    const int32_t apart_us = goe_flight_between_us(offset_us, clock->before_us);
+    if (clock->strange == 0 || apart_us > ALIKE_US || apart_us < -ALIKE_US) {
+        clock->before_us = offset_us;
+        clock->has_before = false;
+        clock->strange_us = arrival_us;
+        clock->strange = 1;
+    } else if (goe_flight_between_us(arrival_us, clock->strange_us) >= clock->strange * ALIKE_US) {
+        clock->strange++;
+    }
+    return clock->strange >= STRANGE_MAX;
+}
+
 static void learn(goe_flight_clock_t *clock, uint32_t offset_us, uint32_t arrival_us) {
     const int32_t above_us = goe_flight_between_us(offset_us, clock->offset_us);
     if (clock->count == 0 || above_us < -STRANGE_US) {
         begin(clock, offset_us, arrival_us);
     } else if (above_us > STRANGE_US) {
-        clock->strange++;
-        if (clock->strange >= STRANGE_MAX) {
+        if (is_another_clock(clock, offset_us, arrival_us)) {
             begin(clock, offset_us, arrival_us);
         }
         return;
@@ -104,4 +121,10 @@ void goe_flight_clock_sync(goe_flight_clock_t *clock, uint32_t offset_us, uint32
     clock->synced = sd_us != UINT32_MAX;
     clock->offset_us = offset_us;
     clock->synced_sd_us = goe_flight_smaller((float)sd_us, SD_MAX_US);
+}
+
+void goe_flight_clock_bury(goe_flight_clock_t *clock, uint32_t now_us) {
+    if (!clock->synced && clock->count > 0 && goe_flight_between_us(now_us, clock->bucket_us) > FORGOTTEN_US) {
+        memset(clock, 0, sizeof *clock);
+    }
 }

@@ -8,6 +8,10 @@
 uint32_t goe_flight_clock_capture(goe_flight_clock_t *clock, const goe_flight_frame_t *frame,
                                   const goe_flight_settings_t *settings, uint32_t *sd_us);
 
+/* Forgets the one-way offset if no message has changed it for 100 s. To be called with each sample: times of half an hour ago would look like
+ * future times. */
+void goe_flight_clock_bury(goe_flight_clock_t *clock, uint32_t now_us);
+
 /* Sets the two-way offset; sd_us 0xFFFFFFFF: the offset is no longer known. */
 void goe_flight_clock_sync(goe_flight_clock_t *clock, uint32_t offset_us, uint32_t sd_us);
 

@@ -239,6 +239,7 @@ static void bury(goe_flight_t *flight, uint32_t now_us) {
         }
         flight->parts[i].viewed = view_alive(flight, i, now_us);
     }
+    goe_flight_clock_bury(&flight->clock, now_us);
 }
 
 /* Advances base_us, the newest time, which does not wrap. */
@@ -527,13 +528,15 @@ goe_flight_status_t goe_flight_frame(goe_flight_t *flight, const goe_flight_fram
     if (status != GOE_FLIGHT_OK) {
         return refuse(flight, status);
     }
-    goe_flight_clock_t clock = flight->clock; /* kept only if the frame is accepted, as it may come again */
+    goe_flight_clock_t clock = flight->clock; /* not kept if the frame may come again */
     status = find_view(flight, frame, &clock, &view);
+    if (status == GOE_FLIGHT_OK || status == GOE_FLIGHT_TOO_OLD) {
+        flight->clock = clock; /* all frames look too old after the sender's clock was set back */
+    }
     if (status != GOE_FLIGHT_OK) {
         goe_flight_count(status == GOE_FLIGHT_TOO_NEW ? &flight->counters.early : &flight->counters.late);
         return status;
     }
-    flight->clock = clock;
     flight->capture_us = view.time_us;
     if (goe_flight_table_take(flight, &view, frame)) {
         flight->had_frame = (uint8_t)(flight->had_frame | 1u << frame->camera);

@@ -32,9 +32,10 @@
  *             further one with a position. While there is a hazard or an order, an assessment also examines paths: at most 4 times
  *             (4 + 4 GOE_FLIGHT_SLOTS), each against every obstacle. goe_flight_obstacle() 980; goe_flight_sectors() 12,800 with one
  *             obstacle; goe_flight_init() 12,700 for each slot. No loop runs longer than GOE_FLIGHT_SECTORS.
- * Failure     A call that returns a negative status, or GOE_FLIGHT_TOO_NEW, changes nothing except counters, with two exceptions:
- *             after a failed goe_flight_init() *flight cannot be used, and the 16th GOE_FLIGHT_BAD_TIME in a row calls
- *             goe_flight_restart(). [F5]
+ * Failure     A call that returns a negative status, or GOE_FLIGHT_TOO_NEW, changes nothing except counters, with three exceptions:
+ *             after a failed goe_flight_init() *flight cannot be used; the 16th GOE_FLIGHT_BAD_TIME in a row calls
+ *             goe_flight_restart(); and a GOE_FLIGHT_TOO_OLD frame still counts for the estimate of the sender's clock, because all
+ *             frames look too old after that clock was set back. [F5]
  */
 #ifndef GOE_FLIGHT_H
 #define GOE_FLIGHT_H
@@ -350,11 +351,12 @@ typedef struct { /* goe_travel.c */
 
 typedef struct { /* goe_clock.c: sender's clock to autopilot's */
     uint32_t offset_us;    /* autopilot's minus sender's, by goe_flight_timesync(); or the least in this interval */
-    uint32_t before_us;    /* the least in the previous interval */
+    uint32_t before_us;    /* the least in the previous interval; while strange is not 0, the offset of the first strange arrival */
     uint32_t bucket_us;    /* start of this interval */
+    uint32_t strange_us;   /* time of the first strange arrival */
     float excess_us;       /* running mean of the delays above the least */
     float synced_sd_us;
-    uint8_t count, strange; /* of this filter; arrivals in a row that differ by more than a second */
+    uint8_t count, strange; /* of this filter; arrivals in a row that are late by more than a second, all by the same time */
     goe_flag_t has_before, synced;
 } goe_flight_clock_t;
 
@@ -440,9 +442,9 @@ typedef struct {
     goe_flight_clock_t clock;
     goe_flight_reaction_t reaction;
     goe_flight_counters_t counters; /* public */
+    uint32_t assessed_us;
     int64_t base_us;                /* the newest sample's time, never wrapping */
     uint32_t frame_us[GOE_CAMERAS_MAX]; /* base_us at the latest accepted frame of each camera */
-    uint32_t assessed_us;
     uint32_t capture_us; /* exposure of the latest accepted frame, autopilot's clock; public */
     float velocity_ned_m_s[3];
     float ground_down_m; /* ground by the best source of the newest sample */

@@ -265,6 +265,68 @@ static void an_obstacle_that_is_not_visible_is_moved_on(void) {
     TEST_ASSERT_TRUE(flight->slot[0].detected_us != flight->slot[0].taken_us);
 }
 
+/* An empty frame by the sender's clock, exposed 100 ms ago and sent 95 ms later. */
+static goe_flight_status_t send(uint32_t offset_us, uint32_t late_us) {
+    goe_flight_frame_t frame;
+    memset(&frame, 0, sizeof frame);
+    frame.time_base = GOE_FLIGHT_SENDER_CLOCK;
+    frame.arrival_us = position.time_us;
+    frame.sent_us = frame.arrival_us - 5000u - late_us + offset_us;
+    frame.capture_us = frame.sent_us - 95000u;
+    return goe_flight_frame(flight, &frame);
+}
+
+/* [GOE_FLIGHT_SENDER_CLOCK] GIVEN a sender whose clock was set back, by a restart or by less than a second WHEN its frames look too old THEN they
+ * are accepted again: after three frames, or after two intervals of the least delay. */
+static void a_sender_whose_clock_was_set_back_is_heard_again(void) {
+    static const uint32_t back_us[] = {20000000u, 600000u};
+    for (int n = 0; n < 2; n++) {
+        const uint32_t offset_us = 50000000u;
+        int refused = 0;
+        setUp();
+        for (uint32_t k = 0; k < 1800u; k++) {
+            at((SAMPLES + k) * STEP_US);
+            give();
+            if (k % 5u != 0u) {
+                continue;
+            }
+            const goe_flight_status_t status = send(k < 600u ? offset_us : offset_us - back_us[n], 0u);
+            TEST_ASSERT_TRUE(status == GOE_FLIGHT_OK || (k >= 600u && status == GOE_FLIGHT_TOO_OLD));
+            refused += status == GOE_FLIGHT_OK ? 0 : 1;
+        }
+        check_report("frames refused", (double)refused);
+        TEST_ASSERT_TRUE(refused <= (n == 0 ? 2 : 200));
+        TEST_ASSERT_EQUAL_UINT32(position.time_us - 80000u - 100000u, flight->capture_us);
+    }
+}
+
+/* ... WHEN frames come late because they were stuck THEN they stay too old. */
+static void a_stuck_frame_stays_too_old(void) {
+    for (uint32_t k = 0; k < 100u; k++) {
+        at((SAMPLES + k) * STEP_US);
+        give();
+        TEST_ASSERT_EQUAL(k < 90u ? GOE_FLIGHT_OK : GOE_FLIGHT_TOO_OLD,
+                          send(0u, k < 90u ? 0u : 3000000u - (k - 90u) * 80000u));
+    }
+}
+
+/* [GOE_FLIGHT_SENDER_CLOCK] GIVEN a sender that is silent for 40 minutes, with a clock that drifts THEN its next frame is not late by the drift. */
+static void a_silent_sender_is_met_anew(void) {
+    for (uint32_t k = 0; k < 2u * 60u * 40u; k++) {
+        at((SAMPLES + 25u * k) * STEP_US);
+        give();
+        if (k == 0u) {
+            TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, send(0u, 0u));
+        }
+    }
+    for (uint32_t k = 0; k < 10u; k++) {
+        at((SAMPLES + 25u * 2u * 60u * 40u + k) * STEP_US);
+        give();
+    }
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, send(0u - 120000u, 0u));
+    TEST_ASSERT_EQUAL_UINT32(position.time_us - 100000u, flight->capture_us);
+}
+
 /* Samples without frames. */
 static void fly_blind(int samples) {
     for (int k = 0; k < samples; k++) {
@@ -489,6 +551,9 @@ int main(void) {
     RUN_TEST(a_dead_pose_is_not_moved_on);
     RUN_TEST(an_assessment_that_fails_knows_nothing);
     RUN_TEST(an_obstacle_that_is_not_visible_is_moved_on);
+    RUN_TEST(a_sender_whose_clock_was_set_back_is_heard_again);
+    RUN_TEST(a_stuck_frame_stays_too_old);
+    RUN_TEST(a_silent_sender_is_met_anew);
     RUN_TEST(an_accepted_frame_is_used);
     RUN_TEST(a_detection_in_an_older_image_counts);
     RUN_TEST(an_obstacle_reports_its_age_and_place);

@@ -122,6 +122,52 @@ static void one_stuck_message_is_no_other_clock(void) {
     TEST_ASSERT_INT32_WITHIN(3000, 0, off_us(5100000u, 1000u, &sd_us));
 }
 
+/* GIVEN messages that were stuck for up to three seconds, and come all at once THEN they are of no other clock: their lateness falls. The same
+ * holds for the parts of one image. */
+static void messages_that_come_at_once_are_no_other_clock(void) {
+    for (int parts = 0; parts < 2; parts++) {
+        uint32_t sd_us;
+        memset(&flight_clock, 0, sizeof flight_clock);
+        for (uint32_t k = 0; k < 50u; k++) {
+            (void)off_us(100000u * k, jitter_us(), &sd_us);
+        }
+        for (uint32_t k = 0; k < 30u; k++) {
+            const uint32_t exposed_us = 5000000u + (parts ? 0u : 100000u * k);
+            const int32_t error_us = off_us(exposed_us, 8000000u + 1000u * k - exposed_us, &sd_us);
+            TEST_ASSERT_INT32_WITHIN(3000, 0, error_us);
+        }
+        TEST_ASSERT_INT32_WITHIN(3000, 0, off_us(8100000u, 1000u, &sd_us));
+    }
+}
+
+/* A least delay of before a long silence says nothing, however long the silence: not even where the difference of its times wraps. */
+static void a_clock_is_forgotten_in_a_silence(void) {
+    static const uint32_t silence_s[] = {90u, 110u, 2400u, 4295u};
+    for (int n = 0; n < 4; n++) {
+        uint32_t sd_us;
+        memset(&flight_clock, 0, sizeof flight_clock);
+        for (uint32_t k = 0; k < 30u; k++) {
+            (void)off_us(100000u * k, 0u, &sd_us);
+        }
+        for (uint32_t s = 0; s < silence_s[n]; s++) {
+            goe_flight_clock_bury(&flight_clock, 3000000u + OFFSET_US + DELAY_US + 1000000u * s);
+        }
+        const uint32_t later_us = 3000000u + 1000000u * silence_s[n];
+        TEST_ASSERT_EQUAL_INT32(n == 0 ? 0 : 120000, off_us(later_us, 120000u, &sd_us));
+        TEST_ASSERT_EQUAL_INT32(n == 0 ? 0 : 120000, off_us(later_us + 100000u, 120000u, &sd_us));
+    }
+}
+
+/* A two-way offset is not forgotten. */
+static void a_two_way_offset_outlasts_a_silence(void) {
+    uint32_t sd_us;
+    goe_flight_clock_sync(&flight_clock, OFFSET_US, 200u);
+    for (uint32_t s = 0; s < 200u; s++) {
+        goe_flight_clock_bury(&flight_clock, 1000000u * s);
+    }
+    TEST_ASSERT_EQUAL_INT32(0, off_us(77u, 90000u, &sd_us));
+}
+
 static void a_two_way_offset_replaces_the_estimate(void) {
     uint32_t sd_us;
     goe_flight_clock_sync(&flight_clock, OFFSET_US, 200u);
@@ -189,6 +235,9 @@ int main(void) {
     RUN_TEST(a_drift_is_followed);
     RUN_TEST(another_clock_is_noticed);
     RUN_TEST(one_stuck_message_is_no_other_clock);
+    RUN_TEST(messages_that_come_at_once_are_no_other_clock);
+    RUN_TEST(a_clock_is_forgotten_in_a_silence);
+    RUN_TEST(a_two_way_offset_outlasts_a_silence);
     RUN_TEST(a_two_way_offset_replaces_the_estimate);
     return UNITY_END();
 }
