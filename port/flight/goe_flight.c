@@ -335,12 +335,21 @@ static goe_flight_status_t check_delta(const goe_flight_t *flight, const goe_fli
     return goe_flight_all_within(p->reset_delta_ned_m, 3, POSITION_MAX_M) ? GOE_FLIGHT_OK : GOE_FLIGHT_OUT_OF_RANGE;
 }
 
-/* Estimates an unknown jump as well as possible: the position minus its prediction by the velocity. The kept obstacles move along. */
+/* Estimates an unknown jump as well as possible: the position minus its prediction by the velocity. The kept obstacles move along. After a
+ * reset of the attitude, the history is empty. */
 static void guess_jump(const goe_flight_t *flight, const goe_flight_position_t *sample, float jump_ned_m[3]) {
     const goe_flight_history_position_t *newest = goe_flight_history_newest_position(&flight->history);
-    for (int i = 0; newest && i < 3; i++) {
-        const float s = goe_flight_between_s(sample->time_us, newest->time_us);
-        jump_ned_m[i] = sample->position_ned_m[i] - newest->ned_m[i] - s * flight->velocity_ned_m_s[i];
+    uint32_t from_us;
+    float from_ned_m[3];
+    bool known = goe_flight_travel_end(&flight->travel, from_ned_m, &from_us);
+    if (newest) {
+        known = true;
+        from_us = newest->time_us;
+        memcpy(from_ned_m, newest->ned_m, sizeof from_ned_m);
+    }
+    for (int i = 0; known && i < 3; i++) {
+        const float s = goe_flight_between_s(sample->time_us, from_us);
+        jump_ned_m[i] = sample->position_ned_m[i] - from_ned_m[i] - s * flight->velocity_ned_m_s[i];
     }
 }
 

@@ -93,4 +93,12 @@ void goe_flight_travel_shift(goe_flight_travel_t *travel, const float jump_ned_m
     }
 }
 
+bool goe_flight_travel_end(const goe_flight_travel_t *travel, float ned_m[3], uint32_t *time_us) {
+    for (int i = 0; i < 3; i++) {
+        ned_m[i] = travel->way[0].begun_ned_m[i] + travel->way[0].by_velocity_m[i];
+    }
+    *time_us = travel->newest_us;
+    return travel->begun;
+}
+
 void goe_flight_travel_restart(goe_flight_travel_t *travel) { travel->begun = false; }

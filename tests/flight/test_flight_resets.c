@@ -85,6 +85,39 @@ static void an_unknown_jump_takes_no_warning_back(void) {
     TEST_ASSERT_EQUAL_UINT32(7u, again.id);
 }
 
+/* ... also WHEN a reset of the heading comes in the same sample, and empties the history. */
+static void an_unknown_jump_after_a_reset_of_the_heading_moves_the_places(void) {
+    goe_flight_attitude_t attitude;
+    goe_flight_position_t position;
+    (void)flown_fly(&flown, 3.0);
+    const goe_flight_obstacle_t at = obstacle_of(&flown);
+    flown.flight.reaction.target_ned_m[0] = 90.0f;
+    flown.jump_known = false;
+    jump(&flown, 50.0f, -30.0f);
+    flown_samples(&flown, flown.sample, &attitude, &position);
+    attitude.reset = 1u;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_attitude(&flown.flight, &attitude));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_position(&flown.flight, &position));
+    TEST_ASSERT_EQUAL(2, flown.flight.counters.lost);
+    const goe_flight_slot_t *kept = &flown.flight.slot[0];
+    CHECK_CLOSE(1.0, at.center_ned_m[0] + 50.0f, kept->center_ne_m[0]);
+    CHECK_CLOSE(1.0, at.center_ned_m[1] - 30.0f, kept->center_ne_m[1]);
+    CHECK_CLOSE(1.0, 140.0, flown.flight.reaction.target_ned_m[0]);
+}
+
+/* Without any position before, no jump is known. */
+static void an_unknown_jump_without_a_position_moves_nothing(void) {
+    goe_flight_attitude_t attitude;
+    goe_flight_position_t position;
+    flown_samples(&flown, 0, &attitude, &position);
+    flown.flight.marks.position_known = true;
+    position.reset_horizontal = 5u;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_position(&flown.flight, &position));
+    TEST_ASSERT_EQUAL(1, flown.flight.counters.lost);
+    CHECK_SAME(0.0f, flown.flight.reaction.target_ned_m[0]);
+    CHECK_SAME(0.0f, flown.flight.slot[0].center_ne_m[0]);
+}
+
 /* ------------------------------------------------------------------------------------------------------------- down -- */
 
 static void jump_down(flown_t *of, float down_m, bool height_follows) {
@@ -306,6 +339,8 @@ int main(void) {
     RUN_TEST(a_mark_counts_in_its_own_axes_only);
     RUN_TEST(a_track_after_the_jump_has_the_ground_of_its_own_time);
     RUN_TEST(an_unknown_jump_takes_no_warning_back);
+    RUN_TEST(an_unknown_jump_after_a_reset_of_the_heading_moves_the_places);
+    RUN_TEST(an_unknown_jump_without_a_position_moves_nothing);
     RUN_TEST(a_counter_that_skips_is_an_unknown_jump);
     RUN_TEST(a_time_of_reset_may_change_by_any_step);
     RUN_TEST(a_reset_of_the_heading_ends_the_tracks);
