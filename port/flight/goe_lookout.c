@@ -109,13 +109,17 @@ static void assess(const goe_flight_t *flight, goe_flight_slot_t *slot, const fl
     slot->assessed = true;
 }
 
+float goe_flight_lookout_urgency(const goe_flight_slot_t *slot) {
+    return slot->hazard.conflict_probability / (1.0f + URGENCY_PER_S * slot->hazard.tcpa_s);
+}
+
 int goe_flight_lookout_assess(goe_flight_t *flight, const float own_ned_m[3], uint32_t now_us) {
     int worst = -1;
     float most = -1.0f;
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         goe_flight_slot_t *slot = &flight->slot[i];
         assess(flight, slot, own_ned_m, now_us);
-        const float urgency = slot->hazard.conflict_probability / (1.0f + URGENCY_PER_S * slot->hazard.tcpa_s);
+        const float urgency = goe_flight_lookout_urgency(slot);
         if (slot->assessed && urgency > most) {
             most = urgency;
             worst = i;

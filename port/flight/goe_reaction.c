@@ -732,6 +732,30 @@ static float simplest_s(const look_t *look, const encounter_t *e) {
 /* Time that is left, minus that of the simplest action against this obstacle. */
 static float slack_s(const look_t *look, const encounter_t *e) { return e->earliest_tcpa_s - simplest_s(look, e); }
 
+static bool is_hazard_of(const look_t *look, int i) {
+    const goe_flight_slot_t *slot = &look->flight->slot[i];
+    return slot->used && slot->assessed &&
+           slot->hazard.conflict_probability >= look->flight->settings.conflict_probability_max;
+}
+
+/* The worst obstacle. If it is passed, no order avoids it any more: the worst hazard ahead, if there is one. */
+static int worst_ahead(const look_t *look, int worst) {
+    encounter_t e;
+    int ahead = worst;
+    float most = 0.0f;
+    meet(look, worst, &e);
+    for (int i = 0; i < GOE_FLIGHT_SLOTS && !(e.ahead_m > 0.0f); i++) {
+        encounter_t other;
+        const float urgency = is_hazard_of(look, i) ? goe_flight_lookout_urgency(&look->flight->slot[i]) : 0.0f;
+        meet(look, i, &other);
+        if (other.ahead_m > 0.0f && urgency > most) {
+            most = urgency;
+            ahead = i;
+        }
+    }
+    return ahead;
+}
+
 /* The worst obstacle, or another one that leaves less time. */
 static int most_pressing(const look_t *look, int worst) {
     encounter_t e;
@@ -739,9 +763,7 @@ static int most_pressing(const look_t *look, int worst) {
     meet(look, worst, &e);
     float least_s = slack_s(look, &e);
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
-        const goe_flight_slot_t *slot = &look->flight->slot[i];
-        if (i == worst || !slot->used || !slot->assessed ||
-            !(slot->hazard.conflict_probability >= look->flight->settings.conflict_probability_max)) {
+        if (i == worst || !is_hazard_of(look, i)) {
             continue;
         }
         meet(look, i, &e);
@@ -861,8 +883,9 @@ float goe_flight_reaction_decide(goe_flight_t *flight, int worst, const goe_flig
         r->rising = false;
         return 0.0f;
     }
-    const int pressing = most_pressing(&look, worst);
+    const int ahead = worst_ahead(&look, worst);
+    const int pressing = most_pressing(&look, ahead);
     bool unlikely = false;
-    const float needed_s = answer(flight, &look, pressing, pressing != worst ? &unlikely : NULL);
-    return unlikely ? answer(flight, &look, worst, NULL) : needed_s;
+    const float needed_s = answer(flight, &look, pressing, pressing != ahead ? &unlikely : NULL);
+    return unlikely ? answer(flight, &look, ahead, NULL) : needed_s;
 }

@@ -123,6 +123,27 @@ static void an_unlikely_obstacle_delays_no_order(void) {
     }
 }
 
+/* GIVEN a passed obstacle that is the worst, because it is next to the aircraft WHEN others are ahead THEN the order against the worst of these
+ * comes all the same, and not against one that is no hazard. */
+static void a_passed_obstacle_delays_no_order(void) {
+    for (int kind = 0; kind < 3; kind++) {
+        start(0.0f);
+        put(0, -2.0f, 12.0f, 50.0f);
+        flight.slot[0].hazard.conflict_probability = 1.0f;
+        flight.slot[0].hazard.tcpa_s = 0.0f;
+        put(1, 125.0f, 0.5f, 50.0f);
+        flight.slot[1].hazard.conflict_probability = kind == 2 ? 0.09f : 1.0f;
+        if (kind == 1) { /* it leaves less time, and is unlikely to be in the way */
+            put(2, 60.0f, 5.0f, 50.0f);
+            flight.slot[2].covariance_ne_m2[0] = flight.slot[2].covariance_ne_m2[2] = 900.0f;
+            flight.slot[2].hazard.tcpa_sd_s = 1.5f;
+            flight.slot[2].hazard.conflict_probability = 0.3f;
+        }
+        TEST_ASSERT_EQUAL(kind == 2, decide(0.5) == GOE_FLIGHT_NONE);
+        TEST_ASSERT_EQUAL(kind == 2 ? -1 : 1, flight.reaction.slot);
+    }
+}
+
 /* A circle of 30 m cannot be flown at 20 m/s and 30 degrees of bank: the target keeps the turn's 71 m away. */
 static void a_circle_is_never_smaller_than_the_turn(void) {
     start(30.0f);
@@ -691,6 +712,7 @@ int main(void) {
     RUN_TEST(a_low_one_blocks_no_side);
     RUN_TEST(the_circle_about_the_target_is_kept_clear);
     RUN_TEST(an_unlikely_obstacle_delays_no_order);
+    RUN_TEST(a_passed_obstacle_delays_no_order);
     RUN_TEST(a_circle_is_never_smaller_than_the_turn);
     RUN_TEST(a_wall_of_masts_is_a_reason_to_hold);
     RUN_TEST(a_blocked_aircraft_reports_it);
