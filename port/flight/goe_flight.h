@@ -218,10 +218,11 @@ typedef enum {
 /* The reason of the action. */
 typedef enum {
     GOE_FLIGHT_REASON_NONE = 0,  /* no order is given, and none is withheld */
-    GOE_FLIGHT_REASON_CLEAR = 1, /* the path of the order keeps at least 75 % of margin_m (HOLD: 50 %) from every known obstacle, at
-                                    two sigmas. With loiter_m 0 that path goes on along the order line: an aircraft that turns
-                                    elsewhere at the target leaves it. CLIMB, GO_AROUND: all tops that the climb leads over are
-                                    known, and it clears them in time */
+    GOE_FLIGHT_REASON_CLEAR = 1, /* when it was chosen, the path of the order kept at least 75 % of margin_m (HOLD: 50 %) from every
+                                    known obstacle, at two sigmas. The reason stays until the path leads into an obstacle at one
+                                    sigma (clear_m below 0): clear_m tells how clear it is now. With loiter_m 0 that path goes
+                                    on along the order line: an aircraft that turns elsewhere at the target leaves it. CLIMB,
+                                    GO_AROUND: all tops that the climb leads over are known, and it clears them in time */
     GOE_FLIGHT_REASON_LEAST_BAD = 2, /* no path is clear: the side with the largest distance, or HOLD, whose distance is then larger by
                                        more than 0.2 margin_m; on approach also GO_AROUND over a top that is not known */
     /* an order is due and withheld, because the aircraft ... */
@@ -264,8 +265,11 @@ typedef struct {
                               the course by clearance_m at two sigma; it rises with the estimate and never sinks while
                               the order is active */
     goe_flight_reason_t reason;
-    float clear_m;         /* LEFT, RIGHT, HOLD: least distance of the order's path from any known outline, minus two
-                              sigmas of that obstacle's position; at most 1000. Otherwise 0 */
+    float clear_m;         /* LEFT, RIGHT, HOLD: the clear fraction of the order's path (README.md), times margin_m. That is its
+                              least distance from any known outline, minus two sigmas of that obstacle's position in the
+                              assessment that chooses the path, and minus one sigma in later ones. If that obstacle is suspect,
+                              the distance is larger by suspect_factor. At most 2 margin_m and 1000; negative: the path leads
+                              into an obstacle. Otherwise 0 */
     int32_t target_lat_e7, target_lon_e7; /* 0 if the origin is not known */
     goe_hazard_t hazard;   /* hazard of the worst obstacle from now on; all zero if there is none */
 } goe_flight_assessment_t;
