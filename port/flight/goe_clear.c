@@ -8,6 +8,8 @@
  *            flies through, to the target and to the start of a line parallel to the course
  *   end      the disc around the target, or the line flown beyond it
  *
+ * A turn away has no fan: it is the turns from the earliest to the latest start.
+ *
  * If the aircraft turns away before an obstacle, the obstacle's sigma along the least distance counts. On the way past it, the sigma across
  * the line of sight counts if it is smaller: the range becomes more certain as it shrinks, and the target moves with the obstacle. */
 #include "goe_clear.h"
@@ -174,8 +176,59 @@ static float sure_m(const goe_flight_clear_slot_t *slot, const goe_flight_clear_
     return length_m - within_m - slot->radius_m - way->sigmas * passed_m;
 }
 
+/* Sets the arc of a turn from the course toward the place. A place inside the turn's circle is not reached: the path is then the whole
+ * circle. */
+static void set_arc(leg_t *arc, float begin_m, float turn_m, const float place_m[2]) {
+    const float begin[2] = {begin_m, 0.0f};
+    float d[2];
+    memset(arc, 0, sizeof *arc);
+    arc->right = place_m[1] > 0.0f;
+    arc->minor = place_m[0] > begin_m; /* decides for a very short arc, whatever the rounding */
+    arc->radius_m = turn_m;
+    arc->center_m[0] = begin_m;
+    arc->center_m[1] = arc->right ? turn_m : -turn_m;
+    minus(place_m, arc->center_m, d);
+    const float square = dot(d, d);
+    const float tangent_m2 = square - turn_m * turn_m;
+    memcpy(arc->from_m, begin, sizeof begin);
+    arc->whole = !(tangent_m2 > LENGTH_MIN_M2);
+    if (arc->whole) {
+        memcpy(arc->to_m, begin, sizeof begin);
+        return;
+    }
+    const float along = turn_m * turn_m / square;
+    const float across = (arc->right ? -turn_m : turn_m) * sqrtf(tangent_m2) / square;
+    arc->to_m[0] = arc->center_m[0] + along * d[0] - across * d[1];
+    arc->to_m[1] = arc->center_m[1] + along * d[1] + across * d[0];
+}
+
+/* Whether a turn away that begins between the earliest and the latest start leads over the place. Two circles of the turn's radius touch the
+ * course and contain the place: their starts are half a chord before and behind it. */
+static bool is_between(const goe_flight_clear_own_t *own, const goe_flight_clear_way_t *way, const float at_m[2]) {
+    const float aside_m = way->target_m[1] > 0.0f ? at_m[1] : -at_m[1];
+    const float square = aside_m * (2.0f * own->turn_m - aside_m);
+    if (!way->turns_away || !(square > 0.0f)) {
+        return false;
+    }
+    const float half_m = sqrtf(square);
+    for (int side = -1; side <= 1; side += 2) {
+        const float begin_m = at_m[0] + (float)side * half_m;
+        leg_t arc;
+        float out_m[2];
+        if (begin_m > own->early_m && begin_m < own->late_m) {
+            set_arc(&arc, begin_m, own->turn_m, way->target_m);
+            minus(at_m, arc.center_m, out_m);
+            if (is_abeam(&arc, out_m)) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
 /* Distance of the path to one obstacle's circle, minus the sigmas. */
-static float spare_m(const region_t *region, const goe_flight_clear_way_t *way, const goe_flight_clear_slot_t *slot) {
+static float spare_m(const region_t *region, const goe_flight_clear_own_t *own, const goe_flight_clear_way_t *way,
+                     const goe_flight_clear_slot_t *slot) {
     float nearest[2] = {0.0f, 0.0f};
     float least = DISTANCE_MAX_M * DISTANCE_MAX_M;
     for (int i = 0; i < region->legs; i++) {
@@ -189,7 +242,7 @@ static float spare_m(const region_t *region, const goe_flight_clear_way_t *way, 
         }
     }
     float spare = sure_m(slot, way, nearest, least, 0.0f);
-    if (region->has_fan && is_in_fan(region, slot->at_m)) {
+    if ((region->has_fan && is_in_fan(region, slot->at_m)) || is_between(own, way, slot->at_m)) {
         spare = goe_flight_smaller(spare, -slot->radius_m);
     }
     if (way->circle_m > 0.0f) {
@@ -215,32 +268,27 @@ static void add_straight(region_t *region, const float from_m[2], const float to
     memcpy(leg->to_m, to_m, sizeof leg->to_m);
 }
 
-/* From the start of the turn on the course by an arc toward the place, then straight. A place inside the turn's circle is not reached: the
- * path is then the whole circle. */
+/* From the start of the turn on the course by an arc toward the place, then straight. */
 static void add_turn(region_t *region, float begin_m, float turn_m, const float place_m[2]) {
-    const float begin[2] = {begin_m, 0.0f};
     leg_t *arc = add(region);
-    float d[2];
-    arc->right = place_m[1] > 0.0f;
-    arc->minor = place_m[0] > begin_m; /* decides for a very short arc, whatever the rounding */
-    arc->radius_m = turn_m;
-    arc->center_m[0] = begin_m;
-    arc->center_m[1] = arc->right ? turn_m : -turn_m;
-    minus(place_m, arc->center_m, d);
-    const float square = dot(d, d);
-    const float tangent_m2 = square - turn_m * turn_m;
-    memcpy(arc->from_m, begin, sizeof begin);
-    arc->whole = !(tangent_m2 > LENGTH_MIN_M2);
-    if (arc->whole) {
-        memcpy(arc->to_m, begin, sizeof begin);
+    set_arc(arc, begin_m, turn_m, place_m);
+    if (!arc->whole) {
+        const float leaves[2] = {arc->to_m[0], arc->to_m[1]};
+        add_straight(region, leaves, place_m);
+    }
+}
+
+/* Between the straight legs of both turns away is a triangle. */
+static void fill_between(region_t *region, const float target_m[2]) {
+    const leg_t *early = &region->leg[1];
+    const leg_t *late = &region->leg[3];
+    if (region->legs < 5) { /* one of the turns is a whole circle */
         return;
     }
-    const float along = turn_m * turn_m / square;
-    const float across = (arc->right ? -turn_m : turn_m) * sqrtf(tangent_m2) / square;
-    arc->to_m[0] = arc->center_m[0] + along * d[0] - across * d[1];
-    arc->to_m[1] = arc->center_m[1] + along * d[1] + across * d[0];
-    const float leaves[2] = {arc->to_m[0], arc->to_m[1]};
-    add_straight(region, leaves, place_m);
+    region->has_fan = true;
+    memcpy(region->fan_m[0], early->to_m, sizeof early->to_m);
+    memcpy(region->fan_m[1], late->to_m, sizeof late->to_m);
+    memcpy(region->fan_m[2], target_m, sizeof region->fan_m[2]);
 }
 
 /* Both ends of the circle around the target, viewed from the start of the turn. inner_m: the one nearer to the course. */
@@ -293,6 +341,7 @@ static void begin_region(const goe_flight_clear_own_t *own, const goe_flight_cle
     if (way->turns_away) {
         add_turn(region, own->early_m, own->turn_m, way->target_m);
         add_turn(region, own->late_m, own->turn_m, way->target_m);
+        fill_between(region, way->target_m);
         return;
     }
     if (way->circle_m > 0.0f && !ends_of_circle(early_m, way, inner_m, outer_m)) {
@@ -318,7 +367,7 @@ float goe_flight_clear_share(const goe_flight_clear_own_t *own, const goe_flight
     begin_region(own, way, &region);
     for (int i = 0; i < GOE_FLIGHT_SLOTS && least >= enough; i++) {
         if (slots[i].counts) {
-            const float share = spare_m(&region, way, &slots[i]) / slots[i].margin_m;
+            const float share = spare_m(&region, own, way, &slots[i]) / slots[i].margin_m;
             if (!(share >= least)) { /* also NaN */
                 least = share;
                 *nearest = i;

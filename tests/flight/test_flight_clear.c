@@ -200,19 +200,41 @@ static void a_circle_is_flown_about_the_target(void) {
     }
 }
 
-/* GIVEN a target abeam or behind THEN the turns from both delays are the way, of more than half a circle where that is needed. */
-static void a_turn_away_is_flown_from_either_delay(void) {
-    for (int n = 0; n < TRIALS; n++) {
+#define BEGINS 100
+
+/* GIVEN a target abeam or behind THEN the turns of every delay are the way, of more than half a circle where that is needed. On the ground of
+ * the turns between, the distance is that of the obstacle's middle. */
+static void a_turn_away_is_flown_from_every_delay(void) {
+    int swept = 0;
+    int missed = 0;
+    for (int n = 0; n < TRIALS * 10; n++) {
         any_encounter();
+        own.late_m = own.early_m + between(0.0, n % 2 == 0 ? 30.0 : 120.0);
         way.turns_away = true;
         way.target_m[0] = between(-150.0, 10.0);
         way.target_m[1] = between(-250.0, 250.0);
+        slots[0].at_m[0] = between(-60.0, 250.0);
         begin_trace();
         fly_turn((double)own.early_m, (double)way.target_m[0], (double)way.target_m[1]);
         here_m[0] = here_m[1] = 0.0;
         fly_turn((double)own.late_m, (double)way.target_m[0], (double)way.target_m[1]);
-        CHECK_CLOSE(TRACED_M, least_m - (double)slots[0].radius_m, spare_m());
+        const double edge_m = least_m;
+        const double step_m = (double)(own.late_m - own.early_m) / BEGINS;
+        for (int i = 1; i < BEGINS; i++) {
+            here_m[0] = here_m[1] = 0.0;
+            fly_turn((double)own.early_m + step_m * i, (double)way.target_m[0], (double)way.target_m[1]);
+        }
+        const double found_m = spare_m() + (double)slots[0].radius_m;
+        if (edge_m > TRACED_M + step_m && least_m < 0.25) {
+            missed +=
+                fabs(found_m) > TRACED_M ? 1 : 0; /* the ends of the arcs lie on a curve, just beside the triangle */
+            swept++;
+        } else if (least_m > TRACED_M + step_m) {
+            CHECK_CLOSE(TRACED_M, edge_m, found_m);
+        }
     }
+    check_report("between the turns", (double)swept);
+    TEST_ASSERT_TRUE(swept > 40 && swept > 20 * missed);
 }
 
 /* Doubt about the place: before it along the nearest distance, on the way past it also across the line of sight: the less of both. */
@@ -420,7 +442,7 @@ int main(void) {
     RUN_TEST(a_target_is_flown_through_by_turns_of_every_delay);
     RUN_TEST(a_line_may_be_left_at_once);
     RUN_TEST(a_circle_is_flown_about_the_target);
-    RUN_TEST(a_turn_away_is_flown_from_either_delay);
+    RUN_TEST(a_turn_away_is_flown_from_every_delay);
     RUN_TEST(doubt_about_the_place_is_taken_off);
     RUN_TEST(doubt_abeam_of_a_turn_lies_along_its_radius);
     RUN_TEST(the_nearest_is_that_of_the_least_share);
