@@ -27,8 +27,8 @@
  *             frame and an assessment return GOE_FLIGHT_CORRUPTED. [F3] An estimator that returns GOE_CORRUPTED starts again; if its
  *             settings are lost, it takes those of another slot. Until it has a position again, the slot keeps its position, hazard
  *             and warning, marked suspect. [F4] The rest (poses, clocks, positions, the active order) is not sealed.
- * Cost        On a Cortex-M4F (gcc), measured in instructions: a sample at most 1,700; a frame 49,300 for each obstacle in it (it
- *             includes goe_update(), whose proved limit goe.h states); an assessment 29,700 with one obstacle and 23,200 for each
+ * Cost        On a Cortex-M4F (gcc), measured in instructions: a sample at most 1,710; a frame 49,300 for each obstacle in it (it
+ *             includes goe_update(), whose proved limit goe.h states); an assessment 30,500 with one obstacle and 23,200 for each
  *             further one with a position. While there is a hazard or an order, an assessment also examines paths: at most 4 times
  *             (4 + 4 GOE_FLIGHT_SLOTS), each against every obstacle. goe_flight_obstacle() 980; goe_flight_sectors() 12,800 with one
  *             obstacle; goe_flight_init() 12,700 for each slot. No loop runs longer than GOE_FLIGHT_SECTORS.
@@ -220,10 +220,10 @@ typedef enum {
     GOE_FLIGHT_REASON_NONE = 0,  /* no order is given, and none is withheld */
     GOE_FLIGHT_REASON_CLEAR = 1, /* when it was chosen, the path of the order kept at least 75 % of margin_m (HOLD: 50 %) from every
                                     known obstacle, at two sigmas. The reason stays until the path leads into an obstacle at one
-                                    sigma (clear_m below 0): clear_m tells how clear it is now. With loiter_m 0 that path goes
+                                    sigma (clear_m below 0): clear_m is the present value. With loiter_m 0 that path goes
                                     on along the order line: an aircraft that turns elsewhere at the target leaves it. CLIMB,
                                     GO_AROUND: all tops that the climb leads over are known, and it clears them in time */
-    GOE_FLIGHT_REASON_LEAST_BAD = 2, /* no path is clear: the side with the largest distance, or HOLD, whose distance is then larger by
+    GOE_FLIGHT_REASON_LEAST_BAD = 2, /* no path is clear: the side with the largest distance, or HOLD with a distance that is larger by
                                        more than 0.2 margin_m; on approach also GO_AROUND over a top that is not known */
     /* an order is due and withheld, because the aircraft ... */
     GOE_FLIGHT_REASON_LOW = 3,   /* is lower than order_height_m */

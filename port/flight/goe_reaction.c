@@ -732,7 +732,7 @@ static float simplest_s(const look_t *look, const encounter_t *e) {
 /* Time that is left, minus that of the simplest action against this obstacle. */
 static float slack_s(const look_t *look, const encounter_t *e) { return e->earliest_tcpa_s - simplest_s(look, e); }
 
-static bool is_hazard_of(const look_t *look, int i) {
+static bool is_hazard_slot(const look_t *look, int i) {
     const goe_flight_slot_t *slot = &look->flight->slot[i];
     return slot->used && slot->assessed &&
            slot->hazard.conflict_probability >= look->flight->settings.conflict_probability_max;
@@ -746,9 +746,12 @@ static int worst_ahead(const look_t *look, int worst) {
     meet(look, worst, &e);
     for (int i = 0; i < GOE_FLIGHT_SLOTS && !(e.ahead_m > 0.0f); i++) {
         encounter_t other;
-        const float urgency = is_hazard_of(look, i) ? goe_flight_lookout_urgency(&look->flight->slot[i]) : 0.0f;
+        const float urgency = goe_flight_lookout_urgency(&look->flight->slot[i]);
+        if (!is_hazard_slot(look, i) || !(urgency > most)) {
+            continue;
+        }
         meet(look, i, &other);
-        if (other.ahead_m > 0.0f && urgency > most) {
+        if (other.ahead_m > 0.0f) {
             most = urgency;
             ahead = i;
         }
@@ -763,7 +766,7 @@ static int most_pressing(const look_t *look, int worst) {
     meet(look, worst, &e);
     float least_s = slack_s(look, &e);
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
-        if (i == worst || !is_hazard_of(look, i)) {
+        if (i == worst || !is_hazard_slot(look, i)) {
             continue;
         }
         meet(look, i, &e);

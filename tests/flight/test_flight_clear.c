@@ -227,7 +227,7 @@ static void a_turn_away_is_flown_from_every_delay(void) {
         const double found_m = spare_m() + (double)slots[0].radius_m;
         if (edge_m > TRACED_M + step_m && least_m < 0.25) {
             missed +=
-                fabs(found_m) > TRACED_M ? 1 : 0; /* the ends of the arcs lie on a curve, just beside the triangle */
+                fabs(found_m) > TRACED_M ? 1 : 0; /* the ends of the arcs lie on a curve, just outside the triangle */
             swept++;
         } else if (least_m > TRACED_M + step_m) {
             CHECK_CLOSE(TRACED_M, edge_m, found_m);

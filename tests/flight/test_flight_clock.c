@@ -122,8 +122,8 @@ static void one_stuck_message_is_no_other_clock(void) {
     TEST_ASSERT_INT32_WITHIN(3000, 0, off_us(5100000u, 1000u, &sd_us));
 }
 
-/* GIVEN messages that were stuck for up to three seconds, and come all at once THEN they are of no other clock: their lateness falls. The same
- * holds for the parts of one image. */
+/* GIVEN messages that were stuck for up to three seconds, and come all at once THEN they are of no other clock: their lateness falls. The
+ * parts of one image are of no other clock either. */
 static void messages_that_come_at_once_are_no_other_clock(void) {
     for (int parts = 0; parts < 2; parts++) {
         uint32_t sd_us;
