@@ -224,7 +224,7 @@ typedef enum {
                                     on along the order line: an aircraft that turns elsewhere at the target leaves it. CLIMB,
                                     GO_AROUND: all tops that the climb leads over are known, and it clears them in time */
     GOE_FLIGHT_REASON_LEAST_BAD = 2, /* no path is clear: the side with the largest distance, or HOLD with a distance that is larger by
-                                       more than 0.2 margin_m; on approach also GO_AROUND over a top that is not known */
+                                       more than 0.2 margin_m; on approach, if these lead into an obstacle, GO_AROUND over an unknown top */
     /* an order is due and withheld, because the aircraft ... */
     GOE_FLIGHT_REASON_LOW = 3,   /* is lower than order_height_m */
     GOE_FLIGHT_REASON_SLOW = 4,  /* is slower than order_speed_m_s */

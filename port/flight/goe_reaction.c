@@ -315,7 +315,7 @@ static void try_hold(const look_t *look, int side, option_t *best) {
 }
 
 /* Chooses the clear side or climb of the lowest cost; otherwise HOLD; otherwise the clearest path. On approach, a climb over known tops comes
- * first, and one over a top that is not known comes before HOLD. side: the only one that is allowed; 0: both. */
+ * first, and one over a top that is not known comes last, before a path into an outline. side: the only one that is allowed; 0: both. */
 static option_t choose(const look_t *look, int about, const encounter_t *e, int side) {
     option_t best;
     option_t hold;
@@ -341,9 +341,6 @@ static option_t choose(const look_t *look, int about, const encounter_t *e, int 
     if (best.action != GOE_FLIGHT_NONE && best.share >= FREE) {
         return best;
     }
-    if (side == 0 && climb.action != GOE_FLIGHT_NONE) {
-        return climb;
-    }
     const int away = e->aside_m > 0.0f ? TO_LEFT : TO_RIGHT;
     if (side == 0 || side == away) {
         try_hold(look, away, &hold);
@@ -352,7 +349,8 @@ static option_t choose(const look_t *look, int about, const encounter_t *e, int 
         try_hold(look, -away, &hold);
     }
     const bool keep = best.action == GOE_FLIGHT_NONE || hold.share >= HOLD_FREE || hold.share > best.share + GAIN;
-    return keep ? hold : best;
+    const option_t level = keep ? hold : best;
+    return side == 0 && climb.action != GOE_FLIGHT_NONE && climb.share >= level.share ? climb : level;
 }
 
 /* ------------------------------------------------------------------------------------------------------------- order -- */

@@ -394,18 +394,19 @@ static void a_go_around_carries_the_height_of_the_highest_top(void) {
     CHECK_CLOSE(0.01, -28.0, flight.reaction.target_ned_m[2]);
 }
 
-/* On the approach: a mast, and 18 m to both sides of it a wide obstacle, so that no side is clear. */
+/* On the approach: a mast, and to both sides before it a wide obstacle, so that every turn leads into one. */
 static void put_unknown_tops(int count) {
     for (int i = 0; i < 3; i++) {
-        put_wide(i, 130.0f, i == 0 ? 0.5f : i == 1 ? -48.0f : 48.0f, i == 0 ? 6.0f : 60.0f);
+        put_wide(i, i == 0 ? 150.0f : 70.0f, i == 0 ? 0.5f : i == 1 ? -58.0f : 58.0f, i == 0 ? 40.0f : 80.0f);
         flight.slot[i].used = i < count;
         flight.slot[i].valid = GOE_HAS_POSITION | GOE_HAS_WIDTH;
         flight.slot[i].hazard.conflict_probability = i == 0 ? 1.0f : 0.0f;
     }
 }
 
-/* GIVEN an approach to an obstacle whose top is not known WHEN a side is clear THEN the side is flown; otherwise the aircraft climbs by the
- * clearance over the present height, and the reason does not call that clear. */
+/* GIVEN an approach to an obstacle whose top is not known WHEN a side is clear THEN the side is flown; WHEN every turn leads into another
+ * obstacle THEN the aircraft climbs by the clearance over the present height, and the reason does not call that clear. WHEN there is space to
+ * turn away and hold THEN it does that instead. */
 static void a_go_around_over_an_unknown_top_is_the_least_bad(void) {
     own.approach = true;
     put_unknown_tops(1);
@@ -418,6 +419,17 @@ static void a_go_around_over_an_unknown_top_is_the_least_bad(void) {
     TEST_ASSERT_EQUAL(GOE_FLIGHT_GO_AROUND, decide(0.5));
     CHECK_CLOSE(0.01, -30.0, flight.reaction.target_ned_m[2]);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_REASON_LEAST_BAD, flight.reaction.reason);
+    start(0.0f);
+    own.approach = true;
+    put_unknown_tops(3);
+    for (int i = 0; i < 3; i++) { /* farther ahead: the aircraft can still turn away */
+        put_wide(i, 180.0f, i == 0 ? 0.5f : i == 1 ? -48.0f : 48.0f, i == 0 ? 6.0f : 60.0f);
+        flight.slot[i].valid = GOE_HAS_POSITION | GOE_HAS_WIDTH;
+        flight.slot[i].hazard.conflict_probability = i == 0 ? 1.0f : 0.0f;
+    }
+    flight.slot[0].hazard.tcpa_s = 7.0f; /* a climb by 10 m would be in time */
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_HOLD, decide(1.5));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_REASON_CLEAR, flight.reaction.reason);
 }
 
 /* ... WHEN a second obstacle behind the first has no known top, the climb is not called clear either. */

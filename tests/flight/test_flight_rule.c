@@ -533,14 +533,13 @@ static choice_t choose(double earliest_tcpa_s) {
     if (best.action != GOE_FLIGHT_NONE && is_more(best.share, 0.75, NEAR_TIE)) {
         return best;
     }
-    if (climb.action == GOE_FLIGHT_GO_AROUND) { /* over a top that is not known */
-        return climb;
-    }
     const choice_t hold = best_hold();
-    return best.action == GOE_FLIGHT_NONE || is_more(hold.share, 0.5, NEAR_TIE) ||
-                   is_more(hold.share, best.share + 0.2, NEAR_TIE)
-               ? hold
-               : best;
+    const choice_t level = best.action == GOE_FLIGHT_NONE || is_more(hold.share, 0.5, NEAR_TIE) ||
+                                   is_more(hold.share, best.share + 0.2, NEAR_TIE)
+                               ? hold
+                               : best;
+    const bool blind = climb.action == GOE_FLIGHT_GO_AROUND; /* over a top that is not known */
+    return blind && !is_more(level.share, climb.share, NEAR_TIE) ? climb : level;
 }
 
 /* An obstacle ahead that is surely a hazard, among others that are none. */
