@@ -19,16 +19,20 @@ static void covariance_of_sigmas(const goe_sigma_t *sigma, goe_covariance_t cova
 }
 
 #if GOE_WITH_FILTER
-static const unsigned bit_of[GOE_QUANTITIES] = {GOE_HAS_POSITION, GOE_HAS_POSITION, GOE_HAS_ORIENTATION,
-                                                GOE_HAS_WIDTH,    GOE_HAS_LENGTH,   GOE_HAS_HEIGHT};
+static const uint8_t bit_of[GOE_QUANTITIES] = {GOE_HAS_POSITION, GOE_HAS_POSITION, GOE_HAS_ORIENTATION,
+                                               GOE_HAS_WIDTH,    GOE_HAS_LENGTH,   GOE_HAS_HEIGHT};
 
-static void keep_valid(unsigned valid, goe_covariance_t covariance) {
+/* Factor of a quantity's row and column: its unit, or 0 if it is not known. */
+static float factor_of(unsigned known, int i) {
+    const float unit = i == GOE_ORIENTATION ? GOE_DEG_PER_RAD : 1.0f;
+    return (known & bit_of[i]) != 0u ? unit : 0.0f;
+}
+
+static void keep_known(unsigned known, goe_covariance_t covariance) {
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         for (int j = 0; j < GOE_QUANTITIES; j++) {
-            const float scale =
-                (i == GOE_ORIENTATION ? GOE_DEG_PER_RAD : 1.0f) * (j == GOE_ORIENTATION ? GOE_DEG_PER_RAD : 1.0f);
-            const bool known = (valid & bit_of[i]) && (valid & bit_of[j]);
-            covariance[i][j] = known ? covariance[i][j] * scale : 0.0f;
+            const float factor = factor_of(known, i) * factor_of(known, j);
+            covariance[i][j] = factor > 0.0f ? covariance[i][j] * factor : 0.0f;
         }
     }
 }
@@ -52,8 +56,8 @@ static bool covariance_of_filter(const goe_estimator_t *estimator, bool for_haza
     }
     goe_quantities_covariance(&estimator->filter, &estimator->settings, &estimator->motion, for_hazard, ahead_s,
                               covariance);
-    /* An unknown width also moves the far end of what the border cuts: a hazard counts it. */
-    keep_valid(estimator->estimate.valid | (for_hazard ? GOE_HAS_WIDTH : 0u), covariance);
+    /* The hazard counts the width of an obstacle that the border cuts, even if it is not known: its far end may be anywhere. */
+    keep_known(estimator->estimate.valid | (for_hazard ? estimator->filter.answer.cut : 0u), covariance);
     if (!for_hazard && !goe_is_set(&estimator->estimate.fresh)) {
         keep_at_least(estimator, covariance);
     }

@@ -96,12 +96,12 @@ static void forget_track(goe_estimator_t *estimator) {
 static void grow_old(goe_estimator_t *estimator) {
     goe_estimate_t *estimate = &estimator->estimate;
     const goe_motion_t *motion = &estimator->motion;
-    const float s = goe_latest_since_s(estimator, motion->time_us);
     estimate->fresh = false;
-    goe_motion_relate(motion, estimate);
     if (!(estimate->valid & GOE_HAS_POSITION)) {
         return;
     }
+    goe_motion_relate(motion, estimate);
+    const float s = goe_latest_since_s(estimator, motion->time_us);
     const float grown_m2 = goe_latest_grown_m2(estimator, s);
     const float north_m = estimate->velocity_north_m_s * s; /* 0 for a static obstacle */
     const float east_m = estimate->velocity_east_m_s * s;
@@ -120,8 +120,7 @@ static void drop_contradicted(goe_estimator_t *estimator, const goe_view_t *view
     for (size_t i = 0; i < GOE_FEATURES; i++) {
         ahead = ahead || view->point[i].usable;
     }
-    if (ahead && (estimate->valid & GOE_HAS_POSITION) != 0u &&
-        estimate->z_m < -reach_m - SURE_SIGMA * estimate->sigma.z_m) {
+    if (ahead && estimate->z_m < -reach_m - SURE_SIGMA * estimate->sigma.z_m) { /* 0 without a position */
         memset(estimate, 0, sizeof *estimate);
     }
 }
@@ -244,12 +243,7 @@ static void open_view(goe_estimator_t *estimator, const goe_image_t *image, cons
     view->image = image;
     view->motion = &estimator->motion;
     view->camera = camera;
-    view->box_noise_rel = 0.0f;
-#if GOE_WITH_FILTER
-    if (goe_uses_filter(estimator)) { /* only the filter has settings of the detector */
-        view->box_noise_rel = estimator->settings.detector.box_noise_rel;
-    }
-#endif
+    view->box_noise_rel = estimator->settings.detector.box_noise_rel;
     view->camera_to_body = estimator->camera_to_body[image->camera];
     follow_motion(estimator, view);
     if (may_begin_again(estimator, view)) {

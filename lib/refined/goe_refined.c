@@ -95,10 +95,9 @@ static void doubt(goe_filter_t *filter, const goe_observation_t *obs) {
 
 /* Notes a growth in the image that contradicts the range. An image that does not show it changes nothing. */
 static void note_growth(goe_answer_t *answer, float grown2, float since_s) {
-    if (grown2 > DOUBTED_SIGMAS2) {
-        answer->outgrown_s = DOUBTED_S;
-    } else if (grown2 >= 0.0f) {
-        answer->outgrown_s = goe_larger(answer->outgrown_s - since_s, 0.0f);
+    const float left_s = goe_larger(answer->outgrown_s - since_s, 0.0f);
+    if (grown2 >= 0.0f) {
+        answer->outgrown_s = grown2 > DOUBTED_SIGMAS2 ? DOUBTED_S : left_s;
     }
 }
 
@@ -126,6 +125,7 @@ static bool measure(goe_filter_t *filter, const goe_observation_t *obs, goe_rows
         return false;
     }
     filter->answer.outdated = true;
+    filter->answer.cut = obs->sides->cut ? GOE_HAS_WIDTH : 0u;
     filter->measured.dx_m = obs->camera_m.x;
     filter->measured.dz_m = obs->camera_m.z;
     note_use(filter, obs->number);
