@@ -54,13 +54,10 @@ static inline void copy_estimate(goe_estimate_t *to, const goe_estimate_t *from)
 
 /* The estimate also ages while images are refused. Their times count only if they are later than the latest image. */
 static void set_age(const goe_estimator_t *estimator, int64_t image_us, goe_estimate_t *estimate) {
-    estimate->age_s = 0.0f;
-    if (!(estimate->valid & GOE_HAS_POSITION)) {
-        return;
-    }
     const int64_t latest_us = estimator->motion.time_us;
     const int64_t now_us = image_us > latest_us ? image_us : latest_us;
-    estimate->age_s = goe_latest_since_s(estimator, now_us);
+    const bool placed = (estimate->valid & GOE_HAS_POSITION) != 0u;
+    estimate->age_s = placed ? goe_latest_since_s(estimator, now_us) : 0.0f;
 }
 
 /* Fields that every output contains, also after a refused image. */

@@ -105,7 +105,6 @@ static goe_decision_t decision_of(const goe_hazard_t *met, const goe_intent_t *i
 }
 
 /* The decision for a widened intent. */
-/*@ requires \valid_read(estimator) && \valid_read(wide) && \valid_read(rule) && \valid(met); */
 static GOE_NOINLINE goe_decision_t judge(const goe_estimator_t *estimator, const goe_intent_t *wide,
                                          const goe_rule_t *rule, goe_hazard_t *met) {
     const goe_status_t status = goe_hazard(estimator, wide, met);

@@ -749,7 +749,7 @@ static void test_an_obstacle_whose_slot_is_taken_is_left_to_the_database(void) {
     }
 }
 
-/* A detector that numbers its obstacle anew, or a pose that is lost for a moment, makes no second item. */
+/* A detector that numbers its obstacle again, or a pose that is lost for a moment, makes no second item. */
 static void test_a_track_is_one_item(void) {
     FlownVehicle vehicle;
     vehicle.compares = false;
