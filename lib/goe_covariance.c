@@ -10,11 +10,16 @@
 
 #define LOST_CORRELATION 2.0f
 
-static void covariance_of_sigmas(const goe_sigma_t *sigma, goe_covariance_t covariance) {
-    const float of[GOE_QUANTITIES] = {sigma->x0_m,    sigma->z0_m,     sigma->orientation_deg,
-                                      sigma->width_m, sigma->length_m, sigma->height_m};
+/* No variance is smaller than that of the reported sigma. now: the position's sigma is that relative to the present camera. */
+static void keep_at_least(const goe_sigma_t *sigma, bool now, goe_covariance_t covariance) {
+    const float least[GOE_QUANTITIES] = {now ? sigma->x_m : sigma->x0_m,
+                                         now ? sigma->z_m : sigma->z0_m,
+                                         sigma->orientation_deg,
+                                         sigma->width_m,
+                                         sigma->length_m,
+                                         sigma->height_m};
     for (int i = 0; i < GOE_QUANTITIES; i++) {
-        covariance[i][i] = of[i] * of[i];
+        covariance[i][i] = goe_larger(covariance[i][i], least[i] * least[i]);
     }
 }
 
@@ -37,16 +42,6 @@ static void keep_known(unsigned known, goe_covariance_t covariance) {
     }
 }
 
-/* For a stale estimate: no variance becomes smaller than the reported one, whatever path was flown since. */
-static void keep_at_least(const goe_estimator_t *estimator, goe_covariance_t covariance) {
-    const goe_sigma_t *sigma = &estimator->estimate.sigma;
-    const float least[GOE_QUANTITIES] = {sigma->x_m,     sigma->z_m,      sigma->orientation_deg,
-                                         sigma->width_m, sigma->length_m, sigma->height_m};
-    for (int i = 0; i < GOE_QUANTITIES; i++) {
-        covariance[i][i] = goe_larger(covariance[i][i], least[i] * least[i]);
-    }
-}
-
 /* Returns false if the estimate is not the filter's, or if the state has changed since, other than by time. An image without a detection
  * changes only the time. */
 static bool covariance_of_filter(const goe_estimator_t *estimator, bool for_hazard, float ahead_s,
@@ -57,9 +52,10 @@ static bool covariance_of_filter(const goe_estimator_t *estimator, bool for_haza
     goe_quantities_covariance(&estimator->filter, &estimator->settings, &estimator->motion, for_hazard, ahead_s,
                               covariance);
     /* The hazard counts the width of an obstacle that the border cuts, even if it is not known: its far end may be anywhere. */
-    keep_known(estimator->estimate.valid | (for_hazard ? estimator->filter.answer.cut : 0u), covariance);
-    if (!for_hazard && !goe_is_set(&estimator->estimate.fresh)) {
-        keep_at_least(estimator, covariance);
+    const bool open = for_hazard && estimator->filter.answer.cut != 0u;
+    keep_known(estimator->estimate.valid | (open ? GOE_HAS_WIDTH : 0u), covariance);
+    if (!for_hazard && !goe_is_set(&estimator->estimate.fresh)) { /* whatever path was flown since */
+        keep_at_least(&estimator->estimate.sigma, true, covariance);
     }
     return true;
 }
@@ -82,7 +78,7 @@ static void covariance_of_answer(const goe_estimator_t *estimator, bool for_haza
     const float age_s = goe_latest_since_s(estimator, estimator->motion.time_us);
     const float moving_s = (estimator->estimate.valid & GOE_HAS_VELOCITY) != 0u ? ahead_s : 0.0f;
     const float grown_m2 = goe_latest_grown_m2(estimator, age_s + moving_s);
-    covariance_of_sigmas(&estimator->estimate.sigma, covariance);
+    keep_at_least(&estimator->estimate.sigma, false, covariance); /* all 0 so far */
     for (int i = 0; lost && i < GOE_QUANTITIES; i++) {
         covariance[i][i] *= LOST_CORRELATION;
     }

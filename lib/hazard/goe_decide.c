@@ -7,6 +7,7 @@
 #include "goe_guard.h"
 #include "goe_latest.h"
 #include "maths/goe_scalar.h"
+#include "maths/goe_xz.h"
 
 #if GOE_WITH_HAZARD
 
@@ -72,18 +73,41 @@ static bool is_outside(const goe_hazard_t *hazard, const goe_intent_t *intent) {
     return aside || above;
 }
 
+/* The own velocity minus that of the obstacle, which is 0 unless valid: north and east. */
+static goe_xz_t relative_velocity(const goe_estimate_t *estimate, const goe_intent_t *intent) {
+    const goe_xz_t velocity = {intent->velocity_ned_m_s[1] - estimate->velocity_east_m_s,
+                               intent->velocity_ned_m_s[0] - estimate->velocity_north_m_s};
+    return velocity;
+}
+
+#if GOE_WITH_FILTER
+/* Whether the image's border cuts the obstacle on the side of the course: it may go on to there. */
+static bool may_reach_course(const goe_estimator_t *estimator, const goe_intent_t *intent) {
+    const goe_motion_t *motion = &estimator->motion;
+    const goe_xz_t to = {estimator->estimate.x_m, estimator->estimate.z_m};
+    const goe_xz_t to_ne = goe_xz_out_of(to, motion->heading_cos, motion->heading_sin);
+    const goe_xz_t velocity = relative_velocity(&estimator->estimate, intent);
+    const unsigned toward = to_ne.x * velocity.z > to_ne.z * velocity.x ? GOE_SIDE_LEFT : GOE_SIDE_RIGHT;
+    return (estimator->filter.answer.cut & toward) != 0u;
+}
+#endif
+
 /* Whether the estimate is in doubt. Detections came for a while without a new one: the old one may belong to another object. The absence
  * of detections does not count. Filter: the range is that of a class, which may be wrong, and no image has tested it yet; or the obstacle
- * is ahead, and images showed it larger than it can be at this range. If it is nearer than that, it also passes sooner. */
-static bool is_doubted(const goe_estimator_t *estimator) {
+ * is ahead, and images showed it larger than it can be at this range, or cut on the side of the course. If it is nearer than that, it also
+ * passes sooner. */
+static bool is_doubted(const goe_estimator_t *estimator, const goe_intent_t *intent) {
     bool superseded = estimator->motion.detected > 1u;
     bool wrong = false;
 #if GOE_WITH_FILTER
     if (goe_uses_filter(estimator)) {
         const goe_answer_t *answer = &estimator->filter.answer;
         superseded = superseded || answer->outdated != 0u;
-        wrong = answer->by_kind != 0u || (answer->outgrown_s > 0.0f && estimator->estimate.z_m > 0.0f);
+        wrong = answer->by_kind != 0u ||
+                (estimator->estimate.z_m > 0.0f && (answer->outgrown_s > 0.0f || may_reach_course(estimator, intent)));
     }
+#else
+    (void)intent;
 #endif
     return wrong || (superseded && goe_latest_since_s(estimator, estimator->motion.time_us) > GOE_SUPERSEDED_S);
 }
@@ -113,7 +137,7 @@ static GOE_NOINLINE goe_decision_t judge(const goe_estimator_t *estimator, const
     }
     const goe_decision_t decision = decision_of(met, wide, rule);
     const bool clears =
-        wide->since_image_s <= SILENT_S && !is_doubted(estimator) && !is_misplaced(&estimator->estimate);
+        wide->since_image_s <= SILENT_S && !is_doubted(estimator, wide) && !is_misplaced(&estimator->estimate);
     return decision == GOE_DECISION_CLEAR && !clears ? GOE_DECISION_UNKNOWN : decision;
 }
 
@@ -123,9 +147,8 @@ static GOE_NOINLINE goe_decision_t judge(const goe_estimator_t *estimator, const
 static GOE_NOINLINE bool is_too_near(const goe_estimator_t *estimator, const goe_intent_t *wide, const goe_rule_t *rule,
                                      goe_hazard_t *met) {
     const goe_estimate_t *estimate = &estimator->estimate;
-    const float north_m_s = wide->velocity_ned_m_s[0] - estimate->velocity_north_m_s; /* 0 unless valid */
-    const float east_m_s = wide->velocity_ned_m_s[1] - estimate->velocity_east_m_s;
-    const float speed_m_s = sqrtf(north_m_s * north_m_s + east_m_s * east_m_s);
+    const goe_xz_t velocity = relative_velocity(estimate, wide);
+    const float speed_m_s = sqrtf(goe_xz_dot(velocity, velocity));
     if (speed_m_s * rule->act_within_s > wide->margin_m) {
         return false;
     }

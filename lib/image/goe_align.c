@@ -25,7 +25,7 @@ void goe_align_points(const goe_camera_t *camera, goe_view_t *view, goe_faults_t
     const goe_pixel_t *pixels = goe_image_pixels(view->image);
     view->sides.usable = 0;
     view->sides.doubtful = 0;
-    view->sides.cut = false;
+    view->sides.cut = 0;
     view->seen = false;
     if (view->image->box.sides != 0) {
         replace_points(camera, view, replaced, faults);

@@ -75,7 +75,7 @@ void goe_sides_read(const goe_camera_t *camera, goe_view_t *view, goe_faults_t *
     }
     end_at_border(camera, sides);
     const unsigned wide = GOE_SIDE_LEFT | GOE_SIDE_RIGHT;
-    sides->cut = !goe_sides_see(sides, wide) || (near_border(camera, sides, camera->truncation_rel) & wide) != 0u;
+    sides->cut = (uint8_t)((~(unsigned)sides->usable | near_border(camera, sides, camera->truncation_rel)) & wide);
 }
 
 /* --------------------------------------------------------------------------------------------------------- points -- */

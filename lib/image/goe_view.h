@@ -31,7 +31,7 @@ typedef struct {
     float px[GOE_BOX_SIDES]; /* in the raw image */
     uint8_t usable;          /* mask of GOE_SIDE_... */
     uint8_t doubtful;        /* mask: usable top and bottom that the image's border may cut */
-    bool cut;                /* left or right is missing, or near the image's border */
+    uint8_t cut;             /* mask: left and right if they are missing, or near the image's border */
 } goe_sides_t;
 
 /* Whether all of these sides (GOE_SIDE_...) are measured. */

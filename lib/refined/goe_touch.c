@@ -41,7 +41,7 @@ float goe_touch_size(const goe_observation_t *obs, size_t side, float extent) {
 float goe_touch_white_variance(const goe_observation_t *obs, size_t side, float size) {
     const float pixel = obs->side_px / focal_px(obs->camera, side);
     return goe_square(pixel) + goe_square(SCATTER_SHARE * size) +
-           (obs->sides->cut ? goe_square(obs->settings->detector.truncation_noise_rel * size) : 0.0f);
+           (obs->sides->cut != 0u ? goe_square(obs->settings->detector.truncation_noise_rel * size) : 0.0f);
 }
 
 float goe_touch_variance(const goe_observation_t *obs, size_t side, float size) {

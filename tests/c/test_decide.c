@@ -172,6 +172,26 @@ static void a_widened_margin_counts_at_every_speed(void) {
     }
 }
 
+/* [GOE_DECISION_UNKNOWN]
+ * GIVEN an obstacle aside WHEN the image's border cuts it on the side of the course THEN it is not clear while it is ahead; WHEN the border
+ * cuts it on the other side THEN it is. The course, not the nose, decides. */
+static void what_goes_on_toward_the_course_is_not_clear(void) {
+    for (int right = 0; right < 2; right++) {
+        const unsigned near_side = right ? GOE_SIDE_LEFT : GOE_SIDE_RIGHT;
+        place(right ? 60.0f : -60.0f);
+        TEST_ASSERT_EQUAL_INT(GOE_DECISION_CLEAR, decide());
+        estimator.filter.answer.cut = (uint8_t)((GOE_SIDE_LEFT | GOE_SIDE_RIGHT) ^ near_side);
+        TEST_ASSERT_EQUAL_INT(GOE_DECISION_CLEAR, decide());
+        estimator.filter.answer.cut = (uint8_t)near_side;
+        TEST_ASSERT_EQUAL_INT(GOE_DECISION_UNKNOWN, decide());
+        intent.velocity_ned_m_s[1] = right ? 20.0f : -20.0f; /* past it on its other side */
+        TEST_ASSERT_EQUAL_INT(GOE_DECISION_CLEAR, decide());
+        intent.velocity_ned_m_s[1] = 0.0f;
+        estimator.estimate.z_m = -1.0f;
+        TEST_ASSERT_EQUAL_INT(GOE_DECISION_CLEAR, decide());
+    }
+}
+
 /* GIVEN an obstacle that is passed far aside WHEN the camera is silent THEN it is clear for two seconds after the latest image, and not
  * known after that; one ahead is still acted on. */
 static void a_silent_camera_clears_nothing(void) {
@@ -348,6 +368,7 @@ int main(void) {
     RUN_TEST(an_old_answer_clears_nothing_after_new_detections);
     RUN_TEST(a_wrong_position_clears_nothing);
     RUN_TEST(a_silent_camera_clears_nothing);
+    RUN_TEST(what_goes_on_toward_the_course_is_not_clear);
     RUN_TEST(a_violation_at_a_creeping_speed_is_one_of_now);
     RUN_TEST(a_widened_margin_counts_at_every_speed);
     RUN_TEST(doubt_and_age_widen);
