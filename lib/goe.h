@@ -271,17 +271,18 @@ void goe_settings_default(goe_settings_t *settings);
 /* Checks and copies *settings. The track is then empty, and all counters are 0.
  *   estimator_size  sizeof(goe_estimator_t) as the caller compiles it
  *   bad_field       receives the name of the first bad setting ("camera.fx_px"), otherwise null. May be null
- * Returns GOE_OK, GOE_BAD_ARGUMENT, GOE_BAD_SETTINGS. After a failure the estimator is unchanged.
+ * Returns GOE_OK, GOE_BAD_ARGUMENT, GOE_BAD_SETTINGS. A failure changes nothing.
  * Cost: at most 8200 instructions, 160 bytes of stack. */
 GOE_NODISCARD goe_status_t goe_init(goe_estimator_t *estimator, size_t estimator_size, const goe_settings_t *settings,
                                     const char **bad_field);
 
-/* Processes one image and reports the estimate after it. Judge that by its valid, fresh, age_s and sigma, not by the status.
+/* Processes one image and reports the estimate after it. Judge it by valid, fresh, age_s and sigma, not by the status.
  *   estimate  always written; a null pointer returns GOE_BAD_ARGUMENT. It is all zero with GOE_BAD_ARGUMENT,
  *             GOE_NOT_INITIALIZED and GOE_CORRUPTED. With any other negative status it is the last estimate, marked stale
  * Returns GOE_OK, a positive status, GOE_BEHIND_CAMERA to GOE_NO_HEIGHT (except GOE_BAD_HEIGHT), GOE_BAD_ARGUMENT,
  * GOE_NOT_INITIALIZED, GOE_CORRUPTED. Faults of images are counted. The solution's status has priority over a feature's.
- * Cost: at most 58000 instructions, 2048 bytes of stack; 81000 with lens distortion; window without it: 5700. */
+ * Cost: at most 58000 instructions, 2048 bytes of stack; 81000 with lens distortion; window: 5700.
+ * The window method's figure excludes lens distortion. */
 goe_status_t goe_update(goe_estimator_t *estimator, const goe_image_t *image, goe_estimate_t *estimate);
 
 /* Ends the track; keeps settings and counters. Call it before another obstacle, after a teleport, after a turn of over 60 degrees.

@@ -325,6 +325,12 @@ static void images_of_one_time_come_in_the_order_of_the_cameras(void) {
             TEST_ASSERT_TRUE(taken[i] ? estimate.fresh && status >= GOE_OK : status == GOE_BAD_TIME);
         }
     }
+    goe_image_t first;
+    look_ahead(0, &first);
+    first.pose.time_us = GOE_TIME_UNKNOWN;
+    first.camera = 1;
+    start();
+    CHECK_STATUS(GOE_BAD_TIME, goe_update(&estimator, &first, &estimate));
 }
 
 /* [GOE_CAMERAS_MAX] GIVEN a camera that cuts the obstacle WHEN the camera that saw all of it sees nothing any more THEN its boxes are used

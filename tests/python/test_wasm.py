@@ -147,6 +147,7 @@ def reports(lines: list[str]) -> list[dict[str, float]]:
     return [dict(zip(names, struct.unpack(f">{len(names)}f", bytes.fromhex(line.split()[0])))) for line in lines]
 
 
+FAIR_NOISE_PX = 3.0  # of the detector; a larger one, which is not configured, makes boxes larger than they can be
 NOTHING_KNOWN, CLEAR, IN_DOUBT, GO_AROUND, UNCERTAIN = range(5)  # the order in live.h
 
 
@@ -167,17 +168,17 @@ def order_after(before: float, r: dict[str, float]) -> float:
 
 def test_orders_are_those_of_the_decision_rule(flown: dict[str, Any]) -> None:
     """Nothing is clear while the obstacle is larger in the image than it can be at its range. A report does not state
-    this, but an obstacle that stands still seldom is so large."""
+    this, but an obstacle that stands still seldom is so large, unless the detector is noisier than configured."""
     seen: dict[float, int] = {}
     doubted = 0
-    for lines in flown["flights"]:
+    for controls, lines in zip(FLIGHTS, flown["flights"]):
         before = float(NOTHING_KNOWN)
         for r in reports(lines):
             expected = order_after(before, r)
             old = r["age_s"] > 2.0 and before != GO_AROUND  # of detections without an answer
             outgrown = r["order"] == UNCERTAIN and expected in (CLEAR, IN_DOUBT) and before != GO_AROUND
             assert r["order"] == expected or outgrown or (old and r["order"] == UNCERTAIN)
-            doubted += outgrown and not old
+            doubted += outgrown and not old and controls[3] <= FAIR_NOISE_PX
             before = r["order"]
             seen[before] = seen.get(before, 0) + 1
     assert set(seen) == {NOTHING_KNOWN, CLEAR, IN_DOUBT, GO_AROUND, UNCERTAIN}
