@@ -23,7 +23,7 @@
 #define BASE_NOISE 2.0f   /* factor on the variance of a base corner's y, where it gives the range of the middle */
 
 /* Indices of the memories: sides of each camera's boxes by goe_box_side_t, then left and right as points. */
-enum { SHAPE_LEFT = GOE_CAMERAS_MAX * GOE_BOX_SIDES, SHAPE_RIGHT, MEMORIES };
+enum { SHAPE_LEFT = GOE_SIDE_MEMORIES - 2, SHAPE_RIGHT, MEMORIES };
 
 GOE_STATIC_ASSERT(sizeof(((goe_filter_t *)0)->side) == MEMORIES * sizeof(goe_side_memory_t), every_side_has_a_memory);
 
@@ -69,12 +69,7 @@ static void set_place(const goe_observation_t *obs, const goe_solid_t *o, const 
 /* Memory of a side of the boxes of the image's camera. */
 /*@ requires \valid_read(obs) && side < GOE_BOX_SIDES; */
 static size_t memory_of(const goe_observation_t *obs, size_t side) {
-#if GOE_CAMERAS_MAX > 1
-    return obs->number * (size_t)GOE_BOX_SIDES + side;
-#else
-    (void)obs;
-    return side;
-#endif
+    return (size_t)GOE_BOX_SIDES * (obs->number % (size_t)GOE_CAMERAS_MAX) + side;
 }
 
 /* Notes that the error of the last row is remembered, in the memory `side`. */
