@@ -471,7 +471,9 @@ void orders_follow(orders_t *orders, const goe_flight_assessment_t *assessment, 
     forget_after_restart(orders);
     const bool is_new = assessment->action != orders->action;
     if (assessment->action != GOE_FLIGHT_NONE) {
-        orders->slot = assessment->avoided; /* without one, another obstacle may take the slot */
+        orders->slot = assessment->avoided < 0
+                           ? -1
+                           : (int)(uint8_t)assessment->avoided; /* without one, another obstacle may take the slot */
     }
     orders->assessment = *assessment;
     orders->unix_us = (int64_t)own->unix_usec;

@@ -666,9 +666,13 @@ def test_the_first_camera_is_the_default(tmp_path: Path, log: Path, numbers: tup
 
 
 def test_the_second_camera_is_no_other_track(tmp_path: Path) -> None:
-    """The second camera's own row of the same image would have the same time."""
-    rows = [row for pair in zip(chimney(), by_camera(chimney(), 1)) for row in pair]
-    out = replay(write_log(tmp_path, table(rows, [*COLUMNS, "camera"]), CAMERA + SECOND_CAMERA))
+    """Rows of one time are images of one track, in the order of the cameras; in another order the second is refused."""
+    first, second = by_camera(chimney(), 0), by_camera(chimney(), 1)
+    rows = [row for pair in zip(first, second) for row in pair]
+    out = replay(write_log(tmp_path / "in_order", table(rows, [*COLUMNS, "camera"]), CAMERA + SECOND_CAMERA))
+    assert "bad_time" not in {row["status"] for row in out} and out[-1]["status"] == "ok"
+    rows = [row for pair in zip(second, first) for row in pair]
+    out = replay(write_log(tmp_path / "exchanged", table(rows, [*COLUMNS, "camera"]), CAMERA + SECOND_CAMERA))
     assert {row["status"] for row in out[1::2]} == {"bad_time"} and out[-2]["status"] == "ok"
 
 
