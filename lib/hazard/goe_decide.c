@@ -49,8 +49,8 @@ static float enlarged(float distance_m, float factor, float more_m) {
                                                         : distance_m;
 }
 
-/* The intent, a time after the latest image, with both distances enlarged: an estimate that is suspect, or was not updated for a while, may be
- * wrong toward the obstacle. An intent that is not finite stays so, and is refused. */
+/* The intent at a time after the latest image, with both distances enlarged: an estimate that is suspect, or was not updated for a while,
+ * may be wrong toward the obstacle. An intent that is not finite stays so, and is refused. */
 static GOE_NOINLINE void widen(const goe_estimator_t *estimator, const goe_intent_t *intent, float since_s,
                                const goe_rule_t *rule, goe_intent_t *wide) {
     const goe_estimate_t *estimate = &estimator->estimate;

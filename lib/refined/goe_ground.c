@@ -50,7 +50,8 @@ static void average(goe_datum_t *datum, const goe_navigation_t *navigation, bool
     }
 }
 
-/* Before the first height of a track. A filter that started without it, and has found no position yet, starts again with it. */
+/* Call before each height; only the first one of a track has an effect. A filter that started without it, and has found no position yet,
+ * starts again with it. */
 static void begin_heights(goe_filter_t *filter, float sd_m) {
     if (filter->datum.readings > 0) {
         return;

@@ -160,8 +160,8 @@ static float fade_time(goe_filter_t *filter, const goe_observation_t *obs) {
 #endif
 }
 
-/* Sets how much of a box's error remains from the camera's previous image, and the effect of this image's position noise, including the second order
- * by the uncertain range. */
+/* Sets how much of a box's error remains from the camera's previous image, and the effect of this image's position noise, including the
+ * second order by the uncertain range. */
 static void note_time(goe_filter_t *filter, goe_observation_t *obs) {
     const goe_detector_t *detector = &obs->settings->detector;
     obs->range_variance = goe_filter_variance(filter, GOE_INVERSE_RANGE);

@@ -31,8 +31,8 @@ static void begin(goe_flight_clock_t *clock, uint32_t offset_us, uint32_t arriva
     clock->has_before = false;
 }
 
-/* Counts an arrival that is late by more than a second. Those of a clock that was set back are late by the same time. Messages that were stuck
- * arrive at once, each less late than the one before; so do the parts of one image. before_us is free for the first offset. */
+/* Counts an arrival that is late by more than a second. Those of a clock that was set back are late by the same time. Messages that were
+ * stuck arrive at once, each less late than the one before; so do the parts of one image. before_us is free for the first offset. */
 static bool is_another_clock(goe_flight_clock_t *clock, uint32_t offset_us, uint32_t arrival_us) {
     const int32_t apart_us = goe_flight_between_us(offset_us, clock->before_us);
     if (clock->strange == 0 || apart_us > ALIKE_US || apart_us < -ALIKE_US) {

@@ -8,7 +8,7 @@
 uint32_t goe_flight_clock_capture(goe_flight_clock_t *clock, const goe_flight_frame_t *frame,
                                   const goe_flight_settings_t *settings, uint32_t *sd_us);
 
-/* Forgets the one-way offset if no message has changed it for 100 s. To be called with each sample: times of half an hour ago would look like
+/* Forgets the one-way offset if no message has changed it for 100 s. Call it with each sample: times of half an hour ago would look like
  * future times. */
 void goe_flight_clock_bury(goe_flight_clock_t *clock, uint32_t now_us);
 

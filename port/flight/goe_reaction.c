@@ -314,8 +314,8 @@ static void try_hold(const look_t *look, int side, option_t *best) {
     }
 }
 
-/* Chooses the clear side or climb of the lowest cost; otherwise HOLD; otherwise the clearest path. On approach, a climb over known tops comes
- * first, and one over a top that is not known comes last, before a path into an outline. side: the only one that is allowed; 0: both. */
+/* Chooses the clear side or climb of the lowest cost; otherwise HOLD; otherwise the clearest path. On approach, a climb over known tops
+ * comes first, and one over a top that is not known comes last, before a path into an outline. side: the only one that is allowed; 0: both. */
 static option_t choose(const look_t *look, int about, const encounter_t *e, int side) {
     option_t best;
     option_t hold;

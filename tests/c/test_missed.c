@@ -416,19 +416,25 @@ static void detections_without_an_estimate_clear_nothing(void) {
     }
 }
 
+/* Boxes of a mast that is passed at a distance. */
+static void start_aside(double image_rate_hz, double speed_mps) {
+    scene_default(&scene);
+    scene_make_cylinder(&scene);
+    scene.x0_m = 70.0;
+    scene.z0_m = 300.0;
+    scene.image_rate_hz = image_rate_hz;
+    scene.speed_mps = speed_mps;
+    scene.boxes = true;
+    start();
+}
+
 /* [GOE_DECISION_UNKNOWN]
  * GIVEN an obstacle that is passed at a distance WHEN detections without a new estimate come for over two seconds, one in half a second,
  * among images without a detection at any rate, THEN nothing is clear in between; after two silent seconds it is. */
 static void rare_detections_without_an_estimate_clear_nothing(void) {
     static const int every[] = {1, 5, 25, 50}; /* of 1000 images a second */
     for (size_t i = 0; i < sizeof every / sizeof every[0]; i++) {
-        scene_default(&scene);
-        scene_make_cylinder(&scene);
-        scene.x0_m = 70.0;
-        scene.z0_m = 300.0;
-        scene.image_rate_hz = 1000.0;
-        scene.boxes = true;
-        start();
+        start_aside(1000.0, 16.0);
         const goe_intent_t intent = intent_of(0.0);
         for (int ms = 0; ms < 10500; ms += every[i]) {
             scene_image(&scene, ms, &image, NULL);
@@ -450,13 +456,7 @@ static void rare_detections_without_an_estimate_clear_nothing(void) {
  * GIVEN images in which the obstacle grows faster than it can at the estimated range WHEN the next images show one end of it, or the range
  * seems right again, THEN nothing is clear for two more seconds of images that show both ends. */
 static void a_doubt_about_the_range_lasts(void) {
-    scene_make_cylinder(&scene);
-    scene.x0_m = 70.0;
-    scene.z0_m = 300.0;
-    scene.image_rate_hz = 10.0;
-    scene.speed_mps = 8.0;
-    scene.boxes = true;
-    start();
+    start_aside(10.0, 8.0);
     const goe_intent_t intent = intent_of(0.0);
     int doubted = 0;
     int partial = 0;
@@ -538,13 +538,7 @@ static void the_center_of_a_moving_obstacle_moves_on(void) {
 /* GIVEN an obstacle that is passed at a distance, whose last box comes too soon after another one, WHEN the detector is silent from then on,
  * THEN it stays clear. */
 static void a_box_too_soon_does_not_end_clear(void) {
-    scene_default(&scene);
-    scene_make_cylinder(&scene);
-    scene.x0_m = 70.0;
-    scene.z0_m = 300.0;
-    scene.image_rate_hz = 50.0;
-    scene.boxes = true;
-    start();
+    start_aside(50.0, 16.0);
     const goe_intent_t intent = intent_of(0.0);
     for (int k = 0; k < 400; k++) {
         scene_image(&scene, k, &image, NULL);
