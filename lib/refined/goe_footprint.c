@@ -69,7 +69,12 @@ static void set_place(const goe_observation_t *obs, const goe_solid_t *o, const 
 /* Memory of a side of the boxes of the image's camera. */
 /*@ requires \valid_read(obs) && side < GOE_BOX_SIDES; */
 static size_t memory_of(const goe_observation_t *obs, size_t side) {
+#if GOE_CAMERAS_MAX > 1
     return (size_t)GOE_BOX_SIDES * (obs->number % (size_t)GOE_CAMERAS_MAX) + side;
+#else
+    (void)obs;
+    return side;
+#endif
 }
 
 /* Notes that the error of the last row is remembered, in the memory `side`. */
