@@ -12,9 +12,11 @@
 #if GOE_WITH_HAZARD
 
 #define SURE_SIGMA 2.0f
+#define HOVER_M_S 0.1f        /* as for goe_hazard() */
 #define SILENT_S 2.0f         /* after this time without an image nothing is clear: the flight since is not known */
 #define DISTANCE_MAX_M 1.0e4f /* the limit of an intent */
 #define TIME_MAX_S 1.0e4f
+#define RULE_NUMBERS (sizeof(goe_rule_t) / sizeof(float))
 #define DOUBT_MAX 100.0f
 #define DRIFT_MAX_M_S 100.0f
 
@@ -35,18 +37,18 @@ float goe_earliest_tcpa_s(const goe_hazard_t *hazard) {
     return most_s > 0.0f && hazard->tcpa_s > 0.0f ? hazard->tcpa_s * (hazard->tcpa_s / most_s) : 0.0f;
 }
 
-static bool is_between(float value, float least, float most) { return goe_within(value, most) && value >= least; }
-
 static bool is_rule(const goe_rule_t *rule) {
-    return is_between(rule->conflict_probability_max, 0.0f, 1.0f) && is_between(rule->act_within_s, 0.0f, TIME_MAX_S) &&
-           is_between(rule->suspect_factor, 1.0f, DOUBT_MAX) && is_between(rule->stale_growth_m_s, 0.0f, DRIFT_MAX_M_S);
+    return goe_guard_finite(&rule->conflict_probability_max, RULE_NUMBERS) &&
+           goe_between(rule->conflict_probability_max, 0.0f, 1.0f) &&
+           goe_between(rule->act_within_s, 0.0f, TIME_MAX_S) && goe_between(rule->suspect_factor, 1.0f, DOUBT_MAX) &&
+           goe_between(rule->stale_growth_m_s, 0.0f, DRIFT_MAX_M_S);
 }
 
-/* A distance that is not one of an intent stays so. */
+/* A distance that is not one of an intent, or not finite, stays so. */
 static float enlarged(float distance_m, float factor, float more_m) {
     const float wide_m = factor * distance_m + more_m;
-    return is_between(distance_m, 0.0f, DISTANCE_MAX_M) ? (wide_m < DISTANCE_MAX_M ? wide_m : DISTANCE_MAX_M)
-                                                        : distance_m;
+    const bool valid = goe_within(distance_m, DISTANCE_MAX_M) && distance_m >= 0.0f;
+    return valid ? (wide_m < DISTANCE_MAX_M ? wide_m : DISTANCE_MAX_M) : distance_m;
 }
 
 /* The intent at a time after the latest image, with both distances enlarged: an estimate that is suspect, or was not updated for a while,
@@ -81,13 +83,16 @@ static goe_xz_t relative_velocity(const goe_estimate_t *estimate, const goe_inte
 }
 
 #if GOE_WITH_FILTER
-/* Whether the image's border cuts the obstacle on the side of the course: it may go on to there. */
+/* Whether the image's border cuts the obstacle on the side of the course: it may go on to there. A hovering aircraft has no course, and the
+ * course to the obstacle itself no side: then each end counts. */
 static bool may_reach_course(const goe_estimator_t *estimator, const goe_intent_t *intent) {
     const goe_motion_t *motion = &estimator->motion;
     const goe_xz_t to = {estimator->estimate.x_m, estimator->estimate.z_m};
     const goe_xz_t to_ne = goe_xz_out_of(to, motion->heading_cos, motion->heading_sin);
     const goe_xz_t velocity = relative_velocity(&estimator->estimate, intent);
-    const unsigned toward = to_ne.x * velocity.z > to_ne.z * velocity.x ? GOE_SIDE_LEFT : GOE_SIDE_RIGHT;
+    const float right = to_ne.x * velocity.z - to_ne.z * velocity.x; /* of the course, times the speed */
+    const float hover = HOVER_M_S * to.z;
+    const unsigned toward = (right > -hover ? GOE_SIDE_LEFT : 0u) | (right < hover ? GOE_SIDE_RIGHT : 0u);
     return (estimator->filter.answer.cut & toward) != 0u;
 }
 #endif

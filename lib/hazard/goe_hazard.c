@@ -11,6 +11,7 @@
 #define DISTANCE_MAX_M 1.0e4f
 #define SINCE_MAX_S 1.0e3f
 #define VELOCITY_SD_MAX_M_S 100.0f
+#define INTENT_NUMBERS (sizeof(goe_intent_t) / sizeof(float))
 #define HAZARD_NUMBERS (offsetof(goe_hazard_t, has_clearance) / sizeof(float))
 
 GOE_STATIC_ASSERT(offsetof(goe_hazard_t, conflict_probability) + sizeof(float) == offsetof(goe_hazard_t, has_clearance),
@@ -18,21 +19,15 @@ GOE_STATIC_ASSERT(offsetof(goe_hazard_t, conflict_probability) + sizeof(float) =
 
 /* Returns GOE_OK, or why the intent is refused. */
 static goe_status_t check_intent(const goe_intent_t *intent) {
-    const uint32_t velocity = goe_largest_of_three(intent->velocity_ned_m_s);
-    const uint32_t margin = goe_magnitude(intent->margin_m);
-    const uint32_t clearance = goe_magnitude(intent->clearance_m);
-    const uint32_t since = goe_magnitude(intent->since_image_s);
-    const uint32_t sd = goe_magnitude(intent->velocity_sd_m_s);
-    const uint32_t most = goe_larger_bits(goe_larger_bits(velocity, since), goe_larger_bits(margin, clearance));
-    if (goe_larger_bits(most, sd) >= GOE_INFINITY_BITS) {
+    if (!goe_guard_finite(intent->velocity_ned_m_s, INTENT_NUMBERS)) {
         return GOE_NOT_FINITE;
     }
-    const bool within = velocity <= goe_magnitude(VELOCITY_MAX_M_S) && margin <= goe_magnitude(DISTANCE_MAX_M) &&
-                        clearance <= goe_magnitude(DISTANCE_MAX_M) && since <= goe_magnitude(SINCE_MAX_S) &&
-                        sd <= goe_magnitude(VELOCITY_SD_MAX_M_S);
-    const bool negative = intent->margin_m < 0.0f || intent->clearance_m < 0.0f || intent->since_image_s < 0.0f ||
-                          intent->velocity_sd_m_s < 0.0f;
-    return within && !negative ? GOE_OK : GOE_OUT_OF_RANGE;
+    const bool within = goe_largest_of_three(intent->velocity_ned_m_s) <= goe_magnitude(VELOCITY_MAX_M_S) &&
+                        goe_between(intent->margin_m, 0.0f, DISTANCE_MAX_M) &&
+                        goe_between(intent->clearance_m, 0.0f, DISTANCE_MAX_M) &&
+                        goe_between(intent->since_image_s, 0.0f, SINCE_MAX_S) &&
+                        goe_between(intent->velocity_sd_m_s, 0.0f, VELOCITY_SD_MAX_M_S);
+    return within ? GOE_OK : GOE_OUT_OF_RANGE;
 }
 
 goe_status_t goe_hazard(const goe_estimator_t *estimator, const goe_intent_t *intent, goe_hazard_t *hazard) {

@@ -26,6 +26,7 @@ void goe_align_points(const goe_camera_t *camera, goe_view_t *view, goe_faults_t
     view->sides.usable = 0;
     view->sides.doubtful = 0;
     view->sides.cut = 0;
+    view->sides.ends = 0;
     view->seen = false;
     if (view->image->box.sides != 0) {
         replace_points(camera, view, replaced, faults);

@@ -1,6 +1,8 @@
 /* Input checks: whether each number of an image is finite and in range. SPDX-License-Identifier: MIT */
 #include "image/goe_intake.h"
 
+#include <stddef.h>
+
 #include "image/goe_ego_motion.h"
 #include "image/goe_view.h"
 #include "maths/goe_scalar.h"
@@ -17,6 +19,15 @@
 #define NORM2_MIN (0.99f * 0.99f) /* the norm may be off by 1 % */
 #define NORM2_MAX (1.01f * 1.01f)
 
+/* The largest magnitude of at most four numbers. */
+static uint32_t largest_of(const float *x, size_t count) {
+    uint32_t largest = 0u;
+    for (size_t i = 0; i < count; i++) {
+        largest = goe_larger_bits(largest, goe_magnitude(x[i]));
+    }
+    return largest;
+}
+
 static uint32_t with_pixel(uint32_t so_far, const goe_pixel_t *pixel) {
     const uint32_t largest = goe_larger_bits(goe_magnitude(pixel->u_px), goe_magnitude(pixel->v_px));
     return goe_is_set(&pixel->visible) ? goe_larger_bits(so_far, largest) : so_far;
@@ -31,15 +42,14 @@ static uint32_t largest_pixel(const goe_image_t *image) {
     return largest;
 }
 
-static uint32_t with_side(uint32_t so_far, const goe_box_t *box, unsigned side, float px) {
-    return (box->sides & side) != 0 ? goe_larger_bits(so_far, goe_magnitude(px)) : so_far;
-}
-
+/* The sides that are measured. */
 static uint32_t largest_side(const goe_box_t *box) {
-    uint32_t largest = with_side(0u, box, GOE_SIDE_LEFT, box->left_px);
-    largest = with_side(largest, box, GOE_SIDE_TOP, box->top_px);
-    largest = with_side(largest, box, GOE_SIDE_RIGHT, box->right_px);
-    return with_side(largest, box, GOE_SIDE_BOTTOM, box->bottom_px);
+    const float *px = goe_box_sides(box);
+    uint32_t largest = 0u;
+    for (size_t i = 0; i < GOE_BOX_SIDES; i++) {
+        largest = (box->sides >> i & 1u) != 0u ? goe_larger_bits(largest, goe_magnitude(px[i])) : largest;
+    }
+    return largest;
 }
 
 /* Not finite has priority over out of range, and this over a bad attitude. */
@@ -83,7 +93,7 @@ static bool is_next(const goe_motion_t *motion, const goe_image_t *image) {
 
 goe_status_t goe_intake_check(const goe_motion_t *motion, const goe_image_t *image) {
     const float *q = image->pose.attitude;
-    const uint32_t attitude = goe_larger_bits(goe_largest_of_three(q), goe_magnitude(q[3]));
+    const uint32_t attitude = largest_of(q, 4);
     const goe_status_t status = check_numbers(image, attitude, goe_motion_reset(motion, &image->pose));
     if (status != GOE_OK) {
         return status;
@@ -95,27 +105,22 @@ goe_status_t goe_intake_check(const goe_motion_t *motion, const goe_image_t *ima
 }
 
 goe_status_t goe_intake_check_noise(const goe_image_noise_t *noise) {
-    const uint32_t attitude = goe_magnitude(noise->attitude_sd_deg);
-    const uint32_t height = goe_magnitude(noise->height_sd_m);
-    const uint32_t pixel = goe_magnitude(noise->pixel_sd_px);
-    if (goe_larger_bits(goe_larger_bits(attitude, height), pixel) >= GOE_INFINITY_BITS) {
+    if (largest_of(&noise->attitude_sd_deg, sizeof *noise / sizeof(float)) >= GOE_INFINITY_BITS) {
         return GOE_NOT_FINITE;
     }
-    const bool within = attitude <= goe_magnitude(NOISE_MAX_DEG) && height <= goe_magnitude(NOISE_MAX_M) &&
-                        pixel <= goe_magnitude(NOISE_MAX_PX);
-    const bool negative = noise->attitude_sd_deg < 0.0f || noise->height_sd_m < 0.0f || noise->pixel_sd_px < 0.0f;
-    return within && !negative ? GOE_OK : GOE_OUT_OF_RANGE;
+    const bool within = goe_between(noise->attitude_sd_deg, 0.0f, NOISE_MAX_DEG) &&
+                        goe_between(noise->height_sd_m, 0.0f, NOISE_MAX_M) &&
+                        goe_between(noise->pixel_sd_px, 0.0f, NOISE_MAX_PX);
+    return within ? GOE_OK : GOE_OUT_OF_RANGE;
 }
 
 static bool is_size(float size_m, float sd_m) {
-    return !(size_m < 0.0f) && goe_within(size_m, SIZE_MAX_M) &&
-           (!(size_m > 0.0f) || (goe_within(sd_m, SIZE_MAX_M) && sd_m >= SIZE_SHARE_MIN * size_m));
+    return goe_between(size_m, 0.0f, SIZE_MAX_M) &&
+           (!(size_m > 0.0f) || goe_between(sd_m, SIZE_SHARE_MIN * size_m, SIZE_MAX_M));
 }
 
 goe_status_t goe_intake_check_kind(const goe_kind_t *kind) {
-    const uint32_t width = goe_larger_bits(goe_magnitude(kind->width_m), goe_magnitude(kind->width_sd_m));
-    const uint32_t height = goe_larger_bits(goe_magnitude(kind->height_m), goe_magnitude(kind->height_sd_m));
-    if (goe_larger_bits(width, height) >= GOE_INFINITY_BITS) {
+    if (largest_of(&kind->width_m, offsetof(goe_kind_t, shape) / sizeof(float)) >= GOE_INFINITY_BITS) {
         return GOE_NOT_FINITE;
     }
     const bool within = is_size(kind->width_m, kind->width_sd_m) && is_size(kind->height_m, kind->height_sd_m) &&

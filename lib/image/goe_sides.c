@@ -2,13 +2,15 @@
 #include "image/goe_sides.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "maths/goe_scalar.h"
 
 #define UPRIGHT 0.01f      /* sine of a lean that needs no correction */
 #define COSINE_MIN 0.5f    /* cosine of twice the lean: beyond 30 degrees a box hardly separates width and height */
 #define DIRECTION_MIN 0.1f /* least length of a vertical in the image, focal lengths: from above it has no direction */
-#define CUT_SIGMAS 3.0f    /* of a side's slow error, by which a detector may place a cut side inside the border */
+#define WIDE (GOE_SIDE_LEFT | GOE_SIDE_RIGHT)
+#define CUT_SIGMAS 3.0f /* of a side's slow error, by which a detector may place a cut side inside the border */
 
 GOE_STATIC_ASSERT(GOE_SIDE_LEFT == 1u << GOE_BOX_LEFT && GOE_SIDE_TOP == 1u << GOE_BOX_TOP &&
                       GOE_SIDE_RIGHT == 1u << GOE_BOX_RIGHT && GOE_SIDE_BOTTOM == 1u << GOE_BOX_BOTTOM,
@@ -26,7 +28,7 @@ static unsigned near_border(const goe_camera_t *camera, const goe_sides_t *sides
         const float size_px = (i & 1u) ? camera->height_px : camera->width_px;
         set |= is_near(sides->px[i], size_px, distance_px) ? 1u << i : 0u;
     }
-    return set & sides->usable;
+    return set;
 }
 
 /* Returns top and bottom if the border may cut them: a detector draws a cut side up to some sigma inside it. The slow error is that of the
@@ -43,6 +45,14 @@ static unsigned may_be_cut(const goe_camera_t *camera, const goe_sides_t *sides,
            (last_px - bottom_px < share * (last_px - top_px) ? GOE_SIDE_BOTTOM : 0u);
 }
 
+/* Ends of the obstacle, left or right, that lie at these sides of the image: the camera may be rolled, even upside down. down: the vertical,
+ * in the camera's axes. */
+static unsigned ends_at(const float down[2], unsigned sides) {
+    const bool rolled = goe_absolute(down[0]) > goe_absolute(down[1]);
+    const unsigned ends = (rolled ? sides >> 1 : sides) & WIDE; /* top for left */
+    return (rolled ? down[0] > 0.0f : down[1] < 0.0f) ? (ends << 2 | ends >> 2) & WIDE : ends;
+}
+
 /* A side that is not measured may have any value: the visible part ends at the image's border. */
 static void end_at_border(const goe_camera_t *camera, goe_sides_t *sides) {
     if (!goe_sides_see(sides, GOE_SIDE_LEFT)) {
@@ -56,10 +66,7 @@ static void end_at_border(const goe_camera_t *camera, goe_sides_t *sides) {
 void goe_sides_read(const goe_camera_t *camera, goe_view_t *view, goe_faults_t *faults) {
     const goe_box_t *box = &view->image->box;
     goe_sides_t *sides = &view->sides;
-    sides->px[GOE_BOX_LEFT] = box->left_px;
-    sides->px[GOE_BOX_TOP] = box->top_px;
-    sides->px[GOE_BOX_RIGHT] = box->right_px;
-    sides->px[GOE_BOX_BOTTOM] = box->bottom_px;
+    memcpy(sides->px, goe_box_sides(box), sizeof sides->px);
     sides->usable = (uint8_t)(box->sides & GOE_SIDES_ALL);
     const bool swapped = (goe_sides_see(sides, GOE_SIDE_LEFT | GOE_SIDE_RIGHT) && !(box->left_px < box->right_px)) ||
                          (goe_sides_see(sides, GOE_SIDE_TOP | GOE_SIDE_BOTTOM) && !(box->top_px < box->bottom_px));
@@ -74,8 +81,9 @@ void goe_sides_read(const goe_camera_t *camera, goe_view_t *view, goe_faults_t *
         goe_fault_count(faults, GOE_BOX_INCOMPLETE);
     }
     end_at_border(camera, sides);
-    const unsigned wide = GOE_SIDE_LEFT | GOE_SIDE_RIGHT;
-    sides->cut = (uint8_t)((~(unsigned)sides->usable | near_border(camera, sides, camera->truncation_rel)) & wide);
+    const unsigned open = (sides->usable ^ GOE_SIDES_ALL) | near_border(camera, sides, camera->truncation_rel);
+    sides->ends = (uint8_t)ends_at(&view->camera_to_trajectory[3], open);
+    sides->cut = (uint8_t)open;
 }
 
 /* --------------------------------------------------------------------------------------------------------- points -- */

@@ -31,7 +31,8 @@ typedef struct {
     float px[GOE_BOX_SIDES]; /* in the raw image */
     uint8_t usable;          /* mask of GOE_SIDE_... */
     uint8_t doubtful;        /* mask: usable top and bottom that the image's border may cut */
-    uint8_t cut;             /* mask: left and right if they are missing, or near the image's border */
+    uint8_t cut;             /* mask: sides that are missing, or near the image's border */
+    uint8_t ends; /* mask: the obstacle's left and right end, if the border may cut them; the camera may be rolled */
 } goe_sides_t;
 
 /* Whether all of these sides (GOE_SIDE_...) are measured. */
@@ -64,6 +65,17 @@ GOE_STATIC_ASSERT(GOE_PIXEL_LIES_AT(right, GOE_POINT_RIGHT) && GOE_PIXEL_LIES_AT
 /* The pixels of an image, by goe_feature_t. */
 static inline const goe_pixel_t *goe_image_pixels(const goe_image_t *image) {
     return (const goe_pixel_t *)(const void *)((const unsigned char *)image + offsetof(goe_image_t, left));
+}
+
+#define GOE_SIDE_LIES_AT(field, side)                                                                                  \
+    (offsetof(goe_box_t, field) == offsetof(goe_box_t, left_px) + (side) * sizeof(float))
+GOE_STATIC_ASSERT(GOE_SIDE_LIES_AT(top_px, GOE_BOX_TOP) && GOE_SIDE_LIES_AT(right_px, GOE_BOX_RIGHT) &&
+                      GOE_SIDE_LIES_AT(bottom_px, GOE_BOX_BOTTOM),
+                  the_sides_of_a_box_follow_each_other);
+
+/* The sides of a box, by goe_box_side_t. */
+static inline const float *goe_box_sides(const goe_box_t *box) {
+    return (const float *)(const void *)((const unsigned char *)box + offsetof(goe_box_t, left_px));
 }
 
 #endif

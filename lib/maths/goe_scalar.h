@@ -48,6 +48,9 @@ static inline float goe_absolute(float x) {
 /* |x| <= limit; false for NaN and infinity. */
 static inline bool goe_within(float x, float limit) { return goe_magnitude(x) <= goe_magnitude(limit); }
 
+/* For a finite x: least <= x <= most. */
+static inline bool goe_between(float x, float least, float most) { return x >= least && x <= most; }
+
 static inline float goe_larger(float a, float b) { return a > b ? a : b; }
 
 /* Whether a truth value from outside is set. A byte that is neither 0 nor 1 counts as set; as a bool it would be undefined. */

@@ -11,8 +11,8 @@
 #define GOE_GROWTH_UNSEEN (-1.0f) /* the image does not show both ends */
 
 /* (R34): by how much the width or height exceeds the predicted one, in squared sigmas. 0 if it does not, or if the line of sight may have
- * turned far; GOE_GROWTH_UNSEEN if the image does not show both ends. rows: those of the model, before remembered errors are removed; for a
- * cut box, their variances contain the error of a cut. */
+ * turned far; GOE_GROWTH_UNSEEN if the image does not show both ends. rows: those of the model, before remembered errors are removed. The
+ * error of a cut counts, except for a height that the border does not cut. */
 float goe_growth_find(const goe_observation_t *obs, const goe_rows_t *rows);
 
 #endif

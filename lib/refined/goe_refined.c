@@ -125,7 +125,7 @@ static bool measure(goe_filter_t *filter, const goe_observation_t *obs, goe_rows
         return false;
     }
     filter->answer.outdated = true;
-    filter->answer.cut = obs->sides->cut;
+    filter->answer.cut = obs->sides->ends;
     filter->measured.dx_m = obs->camera_m.x;
     filter->measured.dz_m = obs->camera_m.z;
     note_use(filter, obs->number);

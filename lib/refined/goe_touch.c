@@ -38,10 +38,14 @@ float goe_touch_size(const goe_observation_t *obs, size_t side, float extent) {
     return goe_larger(extent, 0.0f) / goe_observation_ahead(obs);
 }
 
+float goe_touch_cut_variance(const goe_observation_t *obs, float size) {
+    const unsigned cut = (obs->sides->cut & (GOE_SIDE_LEFT | GOE_SIDE_RIGHT)) | obs->sides->ends;
+    return cut != 0u ? goe_square(obs->settings->detector.truncation_noise_rel * size) : 0.0f;
+}
+
 float goe_touch_white_variance(const goe_observation_t *obs, size_t side, float size) {
     const float pixel = obs->side_px / focal_px(obs->camera, side);
-    return goe_square(pixel) + goe_square(SCATTER_SHARE * size) +
-           (obs->sides->cut != 0u ? goe_square(obs->settings->detector.truncation_noise_rel * size) : 0.0f);
+    return goe_square(pixel) + goe_square(SCATTER_SHARE * size) + goe_touch_cut_variance(obs, size);
 }
 
 float goe_touch_variance(const goe_observation_t *obs, size_t side, float size) {

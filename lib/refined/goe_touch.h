@@ -47,7 +47,11 @@ float goe_touch_coordinate(const goe_camera_t *camera, const goe_sides_t *sides,
 /*@ requires goe_observation_is_open(obs) && side < GOE_BOX_SIDES; */
 float goe_touch_size(const goe_observation_t *obs, size_t side, float extent);
 
-/* Variance of a side's error that is new in each image; size: that of the box along the side's coordinate. */
+/* Variance that a box has because the border cuts it at the obstacle's left or right; size: that of the box along a side's coordinate. */
+/*@ requires goe_observation_is_open(obs); */
+float goe_touch_cut_variance(const goe_observation_t *obs, float size);
+
+/* Variance of a side's error that is new in each image, with that of a cut. */
 /*@ requires goe_observation_is_open(obs) && side < GOE_BOX_SIDES; */
 float goe_touch_white_variance(const goe_observation_t *obs, size_t side, float size);
 

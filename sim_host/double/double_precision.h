@@ -43,6 +43,8 @@ static inline double goe_absolute(double x) { return fabs(x); }
 
 static inline bool goe_within(double x, double limit) { return fabs(x) <= fabs(limit) && isfinite(x); }
 
+static inline bool goe_between(double x, double least, double most) { return x >= least && x <= most; }
+
 static inline double goe_larger(double a, double b) { return a > b ? a : b; }
 
 static inline double goe_square(double x) { return x * x; }

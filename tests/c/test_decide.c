@@ -174,7 +174,7 @@ static void a_widened_margin_counts_at_every_speed(void) {
 
 /* [GOE_DECISION_UNKNOWN]
  * GIVEN an obstacle aside WHEN the image's border cuts it on the side of the course THEN it is not clear while it is ahead; WHEN the border
- * cuts it on the other side THEN it is. The course, not the nose, decides. */
+ * cuts it on the other side THEN it is. The course, not the nose, decides; a hovering aircraft has none. */
 static void what_goes_on_toward_the_course_is_not_clear(void) {
     for (int right = 0; right < 2; right++) {
         const unsigned near_side = right ? GOE_SIDE_LEFT : GOE_SIDE_RIGHT;
@@ -187,6 +187,11 @@ static void what_goes_on_toward_the_course_is_not_clear(void) {
         intent.velocity_ned_m_s[1] = right ? 20.0f : -20.0f; /* past it on its other side */
         TEST_ASSERT_EQUAL_INT(GOE_DECISION_CLEAR, decide());
         intent.velocity_ned_m_s[1] = 0.0f;
+        estimator.filter.answer.cut = (uint8_t)((GOE_SIDE_LEFT | GOE_SIDE_RIGHT) ^ near_side);
+        intent.velocity_ned_m_s[0] = 0.05f; /* no course */
+        TEST_ASSERT_EQUAL_INT(GOE_DECISION_UNKNOWN, decide());
+        intent.velocity_ned_m_s[0] = 20.0f;
+        estimator.filter.answer.cut = (uint8_t)near_side;
         estimator.estimate.z_m = -1.0f;
         TEST_ASSERT_EQUAL_INT(GOE_DECISION_CLEAR, decide());
     }

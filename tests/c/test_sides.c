@@ -130,7 +130,7 @@ static void a_top_or_bottom_that_may_be_cut_is_doubtful(void) {
         see(cases[i].left_px, cases[i].top_px, cases[i].right_px, cases[i].bottom_px, GOE_SIDES_ALL);
         TEST_ASSERT_EQUAL_HEX(cases[i].doubtful, view.sides.doubtful);
         TEST_ASSERT_EQUAL_HEX(i == 5 ? wide : GOE_SIDES_ALL, view.sides.usable);
-        TEST_ASSERT_FALSE(view.sides.cut);
+        TEST_ASSERT_EQUAL_HEX(0u, view.sides.ends);
     }
     view.box_noise_rel = 0.0666667f;
     see(200.0f, 299.0f, 600.0f, 700.0f, wide | GOE_SIDE_BOTTOM);
@@ -146,21 +146,45 @@ static void a_border_that_is_not_known_is_none(void) {
     camera.width_px = camera.height_px = 0.0f;
     see(-5.0f, -5.0f, 5000.0f, 5000.0f, GOE_SIDES_ALL);
     TEST_ASSERT_EQUAL_HEX(GOE_SIDES_ALL, view.sides.usable);
-    TEST_ASSERT_FALSE(view.sides.cut);
+    TEST_ASSERT_EQUAL_HEX(0u, view.sides.cut);
+    TEST_ASSERT_EQUAL_HEX(0u, view.sides.ends);
 }
 
 /* [camera.truncation_rel, detector.truncation_noise_rel]
- * GIVEN left or right missing, or nearer to the border than truncation_rel THEN the box counts as cut; top and bottom do not cut. */
-static void a_box_is_cut_by_left_and_right_alone(void) {
-    see(200.0f, 30.0f, 600.0f, 780.0f, GOE_SIDES_ALL);
-    TEST_ASSERT_FALSE(view.sides.cut);
+ * GIVEN a side that is missing, or nearer to the border than truncation_rel THEN it counts as cut. */
+static void a_side_near_the_border_is_cut(void) {
+    see(200.0f, 200.0f, 600.0f, 600.0f, GOE_SIDES_ALL);
+    TEST_ASSERT_EQUAL_HEX(0u, view.sides.cut);
     see(40.0f, 200.0f, 600.0f, 600.0f, GOE_SIDES_ALL);
-    TEST_ASSERT_TRUE(view.sides.cut);
+    TEST_ASSERT_EQUAL_HEX(GOE_SIDE_LEFT, view.sides.cut);
     TEST_ASSERT_EQUAL_HEX(GOE_SIDES_ALL, view.sides.usable);
-    see(200.0f, 200.0f, 960.0f, 600.0f, GOE_SIDES_ALL);
-    TEST_ASSERT_TRUE(view.sides.cut);
+    see(200.0f, 30.0f, 960.0f, 600.0f, GOE_SIDES_ALL);
+    TEST_ASSERT_EQUAL_HEX(GOE_SIDE_TOP | GOE_SIDE_RIGHT, view.sides.cut);
     see(200.0f, 200.0f, 600.0f, 600.0f, GOE_SIDES_ALL & ~(unsigned)GOE_SIDE_RIGHT);
-    TEST_ASSERT_TRUE(view.sides.cut);
+    TEST_ASSERT_EQUAL_HEX(GOE_SIDE_RIGHT, view.sides.cut);
+    see(200.0f, 200.0f, 600.0f, 780.0f, GOE_SIDES_ALL);
+    TEST_ASSERT_EQUAL_HEX(GOE_SIDE_BOTTOM, view.sides.cut);
+}
+
+/* [camera.mount_roll_deg]
+ * GIVEN a camera at any roll THEN a cut side of the image hides the end of the obstacle that lies there: the right end in the direction that
+ * is to the right of the obstacle's vertical, none above and below. */
+static void a_cut_side_hides_the_end_that_lies_there(void) {
+    static const double outward[GOE_BOX_SIDES][2] = {{-1.0, 0.0}, {0.0, -1.0}, {1.0, 0.0}, {0.0, 1.0}};
+    static const float cut_at[GOE_BOX_SIDES] = {40.0f, 40.0f, 960.0f, 760.0f};
+    for (int roll_deg = -180; roll_deg < 180; roll_deg += 10) {
+        look((double)roll_deg, 5.0);
+        const float *right_of = view.camera_to_trajectory; /* the axis to the right, in the image */
+        for (size_t side = 0; side < GOE_BOX_SIDES; side++) {
+            float px[GOE_BOX_SIDES] = {200.0f, 200.0f, 600.0f, 600.0f};
+            px[side] = cut_at[side];
+            see(px[0], px[1], px[2], px[3], GOE_SIDES_ALL);
+            const double lies = outward[side][0] * (double)right_of[0] + outward[side][1] * (double)right_of[1];
+            const unsigned expected =
+                fabs(lies) < 0.7071 ? 0u : (unsigned)(lies > 0.0 ? GOE_SIDE_RIGHT : GOE_SIDE_LEFT);
+            TEST_ASSERT_EQUAL_HEX(expected, view.sides.ends);
+        }
+    }
 }
 
 /* [goe_box_t.left_px] GIVEN sides out of order THEN none counts, and that is reported; invisible sides may be in any order. */
@@ -257,7 +281,8 @@ int main(void) {
     RUN_TEST(a_missing_side_ends_at_the_border);
     RUN_TEST(a_top_or_bottom_that_may_be_cut_is_doubtful);
     RUN_TEST(a_border_that_is_not_known_is_none);
-    RUN_TEST(a_box_is_cut_by_left_and_right_alone);
+    RUN_TEST(a_side_near_the_border_is_cut);
+    RUN_TEST(a_cut_side_hides_the_end_that_lies_there);
     RUN_TEST(sides_out_of_order_do_not_count);
     RUN_TEST(a_leaning_box_is_turned_back);
     RUN_TEST(an_upright_box_gives_the_middles_of_its_sides);

@@ -376,6 +376,8 @@ def test_sides_that_are_measured() -> None:
     sides, cut = measured_sides(boxes, (1000.0, 480.0), ErrorModel())
     assert np.isfinite(sides).sum(1).tolist() == [4, 0, 0, 4, 1, 3, 4]
     assert cut.tolist() == [False, True, True, True, True, True, False]
+    _, cut = measured_sides(boxes, (1000.0, 480.0), ErrorModel(), rolled=np.arange(7) > 5)
+    assert cut.tolist() == [False, True, True, True, True, True, True]
     assert np.isfinite(measured_sides(boxes, (0.0, 0.0), ErrorModel())[0]).sum(1).tolist() == [4, 0, 0, 4, 4, 3, 4]
 
 

@@ -140,9 +140,12 @@ def focal_px(camera: Camera) -> np.ndarray:
 
 
 def measured_sides(
-    box_px: np.ndarray, image_size_px: tuple[float, float], errors: ErrorModel
+    box_px: np.ndarray, image_size_px: tuple[float, float], errors: ErrorModel, rolled: np.ndarray | bool = False
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Sides (K, 4), NaN if out of order or at the border, and whether the border cuts the box (K,)."""
+    """Sides (K, 4), NaN if out of order or at the border, and whether the border cuts the box (K,).
+
+    rolled: (K,) whether the image leans by more than 45 degrees: top and bottom are then at the obstacle's left and right.
+    """
     sides = np.array(box_px, float)
     with np.errstate(invalid="ignore"):
         swapped = (sides[:, BOX_LEFT] >= sides[:, BOX_RIGHT]) | (sides[:, BOX_TOP] >= sides[:, BOX_BOTTOM])
@@ -153,9 +156,10 @@ def measured_sides(
             distance = share * image_size_px[0]
             return (size > 0) & ((sides < distance) | (sides > size - 1 - distance))
 
-        cut = near(errors.truncation_rel)[:, [BOX_LEFT, BOX_RIGHT]].any(1)
+        cut = near(errors.truncation_rel)
         sides[near(errors.border_rel)] = np.nan
-    return sides, cut | ~np.isfinite(sides[:, [BOX_LEFT, BOX_RIGHT]]).all(1)
+    cut |= ~np.isfinite(sides)
+    return sides, cut[:, [BOX_LEFT, BOX_RIGHT]].any(1) | (rolled & cut[:, [BOX_TOP, BOX_BOTTOM]].any(1))
 
 
 def doubtful_sides(box_px: np.ndarray, image_height_px: float, errors: ErrorModel) -> np.ndarray:
@@ -179,7 +183,8 @@ def sights(flight: Flight, errors: ErrorModel) -> list[Sight]:
     moved = (eye - eye[0]) @ t_from_ned.T
     t_from_body = t_from_ned @ ned_from_body
     t_from_camera = t_from_body @ mounting(camera)
-    px, cut = measured_sides(flight.box_px, flight.image_size_px, errors)
+    down = np.abs(t_from_camera[:, 1])
+    px, cut = measured_sides(flight.box_px, flight.image_size_px, errors, down[:, 0] > down[:, 1])
     doubtful = doubtful_sides(flight.box_px, flight.image_size_px[1], errors)
     side = (px - np.array([camera.cx, camera.cy])[AXIS]) / focal_px(camera)
     return [
