@@ -156,7 +156,7 @@ static goe_status_t update_refined(goe_estimator_t *estimator, const goe_view_t 
 }
 
 static goe_status_t take_refined(goe_estimator_t *estimator, const goe_view_t *view, goe_faults_t *faults) {
-    if (goe_ground_lacks_height(view->image)) {
+    if (view->seen && goe_ground_lacks_height(view)) {
         goe_fault_count(faults, GOE_NO_HEIGHT);
     }
     return update_refined(estimator, view, faults);

@@ -89,9 +89,9 @@ typedef enum {
                                * linear bound tcpa_s - 2 tcpa_sd_s is within act_within_s; or for two seconds detections
                                * gave no new estimate; or the latest image is over two seconds old; or the obstacle moves
                                * (GOE_REASON_MOVES) without a valid velocity, so the position is wrong; or the range is
-                               * that of a detector's class, which no image confirms yet; or in the last two seconds an
-                               * image showed the obstacle larger than it can be at its range; or the image's border cuts
-                               * the obstacle on the side of the course */
+                               * that of a detector's class, which no image confirms yet. Filter, while the obstacle may
+                               * be ahead: an image showed it larger than it can be at its range, and no images of two
+                               * seconds have shown otherwise; or the border may cut its box on the side of the course */
     GOE_DECISION_CLEAR = 1,   /* no reason to act now */
     GOE_DECISION_ACT = 2,     /* go around, or avoid */
     GOE_DECISION_KEEP = 3     /* the call failed: keep the previous decision */

@@ -222,7 +222,8 @@ typedef struct {         /* refined/goe_answer.c: data of the latest estimate th
     float outgrown_s;    /* time for which a growth beyond that at the state's range still counts; 0: none */
     goe_flag_t outdated; /* the state has changed since the estimate, other than by time */
     goe_flag_t by_kind;  /* the estimate's range is that of the detector's class */
-    uint8_t cut;         /* mask: left and right end of the obstacle, if the border may cut them in the latest box that gave rows */
+    uint8_t
+        cut; /* mask: left and right end of the obstacle, if the border may cut them in the latest box that gave rows */
 } goe_answer_t;
 
 #define GOE_KIND_SIZES 2 /* width, height */
@@ -257,6 +258,7 @@ typedef struct {
 #if GOE_CAMERAS_MAX > 1
     float faded_s[GOE_CAMERAS_MAX]; /* by camera: time since the errors of its boxes were last faded */
     float used_s[GOE_CAMERAS_MAX];  /* by camera: time since its latest image that gave rows */
+    uint8_t ends[GOE_CAMERAS_MAX];  /* by camera: the ends that the border may cut in that image */
 #endif
     goe_kind_use_t kind;
     goe_candidate_t candidate;

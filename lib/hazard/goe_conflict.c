@@ -3,14 +3,31 @@
 
 #include <math.h>
 
+#include "goe_guard.h"
 #include "hazard/goe_approach.h"
 #include "maths/goe_scalar.h"
 
 #if GOE_WITH_HAZARD
 
+#define VELOCITY_MAX_M_S 1.0e3f
+#define SINCE_MAX_S 1.0e3f
+#define VELOCITY_SD_MAX_M_S 100.0f
+#define INTENT_NUMBERS (sizeof(goe_intent_t) / sizeof(float))
 #define SIGMA_MIN 1.0e-6f
 #define SPEED_MIN_M_S 0.1f
 #define AHEAD_MAX_S 60.0f /* longest time for which a velocity counts as constant */
+
+goe_status_t goe_conflict_check(const goe_intent_t *intent) {
+    if (!goe_guard_finite(intent->velocity_ned_m_s, INTENT_NUMBERS)) {
+        return GOE_NOT_FINITE;
+    }
+    const bool within = goe_largest_of_three(intent->velocity_ned_m_s) <= goe_magnitude(VELOCITY_MAX_M_S) &&
+                        goe_between(intent->margin_m, 0.0f, GOE_DISTANCE_MAX_M) &&
+                        goe_between(intent->clearance_m, 0.0f, GOE_DISTANCE_MAX_M) &&
+                        goe_between(intent->since_image_s, 0.0f, SINCE_MAX_S) &&
+                        goe_between(intent->velocity_sd_m_s, 0.0f, VELOCITY_SD_MAX_M_S);
+    return within ? GOE_OK : GOE_OUT_OF_RANGE;
+}
 
 /* ------------------------------------------------------------------------------------------- sigmas and probability -- */
 

@@ -4,6 +4,11 @@
 
 #include "hazard/goe_affine.h"
 
+#define GOE_DISTANCE_MAX_M 1.0e4f /* of an intent's margin and clearance */
+
+/* Returns GOE_OK, or why the intent is refused: GOE_NOT_FINITE, GOE_OUT_OF_RANGE. */
+goe_status_t goe_conflict_check(const goe_intent_t *intent);
+
 /* The intent relative to the obstacle: the own velocity minus the obstacle's, if that is valid. */
 goe_intent_t goe_conflict_relative(const goe_estimator_t *estimator, const goe_intent_t *intent);
 

@@ -2,20 +2,22 @@
  *
  * The README, the examples and the flight layer use this one rule. A failure never means "clear". */
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 #include "goe_guard.h"
 #include "goe_latest.h"
+#include "hazard/goe_conflict.h"
 #include "maths/goe_scalar.h"
 #include "maths/goe_xz.h"
 
 #if GOE_WITH_HAZARD
 
 #define SURE_SIGMA 2.0f
-#define HOVER_M_S 0.1f        /* as for goe_hazard() */
-#define SILENT_S 2.0f         /* after this time without an image nothing is clear: the flight since is not known */
-#define DISTANCE_MAX_M 1.0e4f /* the limit of an intent */
+#define HOVER_M_S 0.1f /* as for goe_hazard() */
+#define SILENT_S 2.0f  /* after this time without an image nothing is clear: the flight since is not known */
 #define TIME_MAX_S 1.0e4f
+#define TIME_NUMBERS (offsetof(goe_hazard_t, tcpa_sd_s) / sizeof(float) + 1u) /* up to the sigma of the time */
 #define RULE_NUMBERS (sizeof(goe_rule_t) / sizeof(float))
 #define DOUBT_MAX 100.0f
 #define DRIFT_MAX_M_S 100.0f
@@ -31,8 +33,7 @@ void goe_rule_default(goe_rule_t *rule) {
 /* An image measures the inverse of the time, so the bound uses the sigma of the inverse. For a small sigma it is the time minus two sigmas;
  * for a sigma of half the time it is half of the time, and not 0. */
 float goe_earliest_tcpa_s(const goe_hazard_t *hazard) {
-    const bool finite =
-        hazard && goe_larger_bits(goe_magnitude(hazard->tcpa_s), goe_magnitude(hazard->tcpa_sd_s)) < GOE_INFINITY_BITS;
+    const bool finite = hazard && goe_guard_finite(&hazard->tcpa_s, TIME_NUMBERS);
     const float most_s = finite ? hazard->tcpa_s + SURE_SIGMA * hazard->tcpa_sd_s : 0.0f;
     return most_s > 0.0f && hazard->tcpa_s > 0.0f ? hazard->tcpa_s * (hazard->tcpa_s / most_s) : 0.0f;
 }
@@ -44,15 +45,13 @@ static bool is_rule(const goe_rule_t *rule) {
            goe_between(rule->stale_growth_m_s, 0.0f, DRIFT_MAX_M_S);
 }
 
-/* A distance that is not one of an intent, or not finite, stays so. */
 static float enlarged(float distance_m, float factor, float more_m) {
     const float wide_m = factor * distance_m + more_m;
-    const bool valid = goe_within(distance_m, DISTANCE_MAX_M) && distance_m >= 0.0f;
-    return valid ? (wide_m < DISTANCE_MAX_M ? wide_m : DISTANCE_MAX_M) : distance_m;
+    return wide_m < GOE_DISTANCE_MAX_M ? wide_m : GOE_DISTANCE_MAX_M;
 }
 
 /* The intent at a time after the latest image, with both distances enlarged: an estimate that is suspect, or was not updated for a while,
- * may be wrong toward the obstacle. An intent that is not finite stays so, and is refused. */
+ * may be wrong toward the obstacle. */
 static GOE_NOINLINE void widen(const goe_estimator_t *estimator, const goe_intent_t *intent, float since_s,
                                const goe_rule_t *rule, goe_intent_t *wide) {
     const goe_estimate_t *estimate = &estimator->estimate;
@@ -62,10 +61,8 @@ static GOE_NOINLINE void widen(const goe_estimator_t *estimator, const goe_inten
     const float drift_m = rule->stale_growth_m_s * (age_s + since_s);
     *wide = *intent;
     wide->since_image_s = since_s;
-    if (goe_within(since_s, TIME_MAX_S)) {
-        wide->margin_m = enlarged(intent->margin_m, factor, drift_m);
-        wide->clearance_m = enlarged(intent->clearance_m, factor, drift_m);
-    }
+    wide->margin_m = enlarged(intent->margin_m, factor, drift_m);
+    wide->clearance_m = enlarged(intent->clearance_m, factor, drift_m);
 }
 
 /* Wide sigmas also make the probability small. CLEAR therefore requires that one of the two distances is kept at one sigma. */
@@ -83,24 +80,28 @@ static goe_xz_t relative_velocity(const goe_estimate_t *estimate, const goe_inte
 }
 
 #if GOE_WITH_FILTER
-/* Whether the image's border cuts the obstacle on the side of the course: it may go on to there. A hovering aircraft has no course, and the
- * course to the obstacle itself no side: then each end counts. */
-static bool may_reach_course(const goe_estimator_t *estimator, const goe_intent_t *intent) {
+/* Filter: whether the obstacle is ahead on the course, within a sigma, and images showed it larger than it can be at this range, or the
+ * border may cut it on the side of the course. If it is nearer, it also passes sooner; if it is cut, it may reach the course. A hovering
+ * aircraft has no course, and the course to the obstacle itself no side: then each end counts. */
+static bool may_be_ahead(const goe_estimator_t *estimator, const goe_intent_t *intent) {
     const goe_motion_t *motion = &estimator->motion;
+    const goe_answer_t *answer = &estimator->filter.answer;
+    const goe_sigma_t *sigma = &estimator->estimate.sigma;
     const goe_xz_t to = {estimator->estimate.x_m, estimator->estimate.z_m};
     const goe_xz_t to_ne = goe_xz_out_of(to, motion->heading_cos, motion->heading_sin);
     const goe_xz_t velocity = relative_velocity(&estimator->estimate, intent);
-    const float right = to_ne.x * velocity.z - to_ne.z * velocity.x; /* of the course, times the speed */
-    const float hover = HOVER_M_S * to.z;
+    const float closing = goe_xz_dot(to_ne, velocity);
+    const float right = to_ne.x * velocity.z - to_ne.z * velocity.x; /* of the course; times the speed, as `closing` */
+    const float hover = HOVER_M_S * (goe_absolute(to.x) + goe_absolute(to.z));
     const unsigned toward = (right > -hover ? GOE_SIDE_LEFT : 0u) | (right < hover ? GOE_SIDE_RIGHT : 0u);
-    return (estimator->filter.answer.cut & toward) != 0u;
+    const float unsure = goe_larger(sigma->x_m, sigma->z_m) * (goe_absolute(velocity.x) + goe_absolute(velocity.z));
+    return closing > -(hover + unsure) && (answer->outgrown_s > 0.0f || (answer->cut & toward) != 0u);
 }
 #endif
 
 /* Whether the estimate is in doubt. Detections came for a while without a new one: the old one may belong to another object. The absence
- * of detections does not count. Filter: the range is that of a class, which may be wrong, and no image has tested it yet; or the obstacle
- * is ahead, and images showed it larger than it can be at this range, or cut on the side of the course. If it is nearer than that, it also
- * passes sooner. */
+ * of detections does not count. Filter: the range is that of a class, which may be wrong, and no image has tested it yet; or more than is
+ * known may be ahead. */
 static bool is_doubted(const goe_estimator_t *estimator, const goe_intent_t *intent) {
     bool superseded = estimator->motion.detected > 1u;
     bool wrong = false;
@@ -108,8 +109,7 @@ static bool is_doubted(const goe_estimator_t *estimator, const goe_intent_t *int
     if (goe_uses_filter(estimator)) {
         const goe_answer_t *answer = &estimator->filter.answer;
         superseded = superseded || answer->outdated != 0u;
-        wrong = answer->by_kind != 0u ||
-                (estimator->estimate.z_m > 0.0f && (answer->outgrown_s > 0.0f || may_reach_course(estimator, intent)));
+        wrong = answer->by_kind != 0u || may_be_ahead(estimator, intent);
     }
 #else
     (void)intent;
@@ -146,6 +146,11 @@ static GOE_NOINLINE goe_decision_t judge(const goe_estimator_t *estimator, const
     return decision == GOE_DECISION_CLEAR && !clears ? GOE_DECISION_UNKNOWN : decision;
 }
 
+/* Whether a more severe decision may replace it. */
+static bool is_open(goe_decision_t decision) {
+    return decision == GOE_DECISION_CLEAR || decision == GOE_DECISION_UNKNOWN;
+}
+
 /* Whether the aircraft is too near now, judged as if it were at rest relative to the obstacle. At a creeping speed, the closest approach is
  * far in the future even if it is near. At a higher speed it is not: within the margin, it comes within the rule's time. The way since the
  * latest image counts as flown toward the obstacle. */
@@ -159,7 +164,7 @@ static GOE_NOINLINE bool is_too_near(const goe_estimator_t *estimator, const goe
     }
     goe_intent_t still = *wide;
     goe_hazard_t now;
-    still.margin_m += speed_m_s * wide->since_image_s;
+    still.margin_m = enlarged(wide->margin_m, 1.0f, speed_m_s * wide->since_image_s);
     still.velocity_ned_m_s[0] = estimate->velocity_north_m_s;
     still.velocity_ned_m_s[1] = estimate->velocity_east_m_s;
     if (judge(estimator, &still, rule, &now) != GOE_DECISION_ACT) {
@@ -169,39 +174,28 @@ static GOE_NOINLINE bool is_too_near(const goe_estimator_t *estimator, const goe
     return true;
 }
 
-/* The caller may not know that images are refused, and since when. The rule therefore also judges the time of the newest refused image.
- * That time may be wrong: it can only make the decision more severe. */
-static goe_decision_t judge_refused(const goe_estimator_t *estimator, const goe_intent_t *intent,
-                                    const goe_rule_t *rule, goe_decision_t now, goe_hazard_t *met) {
-    const float since_s = estimator->estimate.age_s;
-    if (!(since_s > intent->since_image_s)) {
-        return now;
-    }
-    goe_hazard_t then;
-    goe_intent_t wide;
-    widen(estimator, intent, since_s, rule, &wide);
-    const goe_decision_t decision = judge(estimator, &wide, rule, &then);
-    if (decision == GOE_DECISION_CLEAR || (decision != GOE_DECISION_ACT && now != GOE_DECISION_CLEAR)) {
-        return now;
-    }
-    *met = then;
-    return decision;
-}
-
 goe_decision_t goe_decide(const goe_estimator_t *estimator, const goe_intent_t *intent, const goe_rule_t *rule,
                           goe_hazard_t *hazard) {
     goe_hazard_t met;
     goe_decision_t decision = GOE_DECISION_KEEP;
     memset(&met, 0, sizeof met);
     const goe_rule_t *const used = rule ? rule : &by_default;
-    if (estimator && intent && is_rule(used)) {
+    if (estimator && intent && is_rule(used) && goe_conflict_check(intent) == GOE_OK) {
+        goe_hazard_t then;
         goe_intent_t wide;
         widen(estimator, intent, intent->since_image_s, used, &wide);
         decision = judge(estimator, &wide, used, &met);
-        if (decision == GOE_DECISION_CLEAR || decision == GOE_DECISION_UNKNOWN) {
-            decision = judge_refused(estimator, intent, used, decision, &met);
-            if (decision != GOE_DECISION_ACT && is_too_near(estimator, &wide, used, &met)) {
-                decision = GOE_DECISION_ACT;
+        if (is_open(decision) && is_too_near(estimator, &wide, used, &met)) {
+            decision = GOE_DECISION_ACT;
+        }
+        /* The caller may not know that images are refused, and since when. The rule therefore also judges the time of the newest refused
+         * image. That time may be wrong: it can only make the decision more severe. */
+        if (is_open(decision) && estimator->estimate.age_s > intent->since_image_s) {
+            widen(estimator, intent, estimator->estimate.age_s, used, &wide);
+            const goe_decision_t refused = judge(estimator, &wide, used, &then);
+            if (refused == GOE_DECISION_ACT || (decision == GOE_DECISION_CLEAR && refused != GOE_DECISION_CLEAR)) {
+                met = then;
+                decision = refused;
             }
         }
     }

@@ -23,10 +23,7 @@ static void replace_points(const goe_camera_t *camera, goe_view_t *view, goe_pix
 void goe_align_points(const goe_camera_t *camera, goe_view_t *view, goe_faults_t *faults) {
     goe_pixel_t replaced[GOE_FEATURES];
     const goe_pixel_t *pixels = goe_image_pixels(view->image);
-    view->sides.usable = 0;
-    view->sides.doubtful = 0;
-    view->sides.cut = 0;
-    view->sides.ends = 0;
+    memset(&view->sides, 0, sizeof view->sides);
     view->seen = false;
     if (view->image->box.sides != 0) {
         replace_points(camera, view, replaced, faults);

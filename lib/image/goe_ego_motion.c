@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "image/goe_camera.h"
 #include "maths/goe_angle.h"
 #include "maths/goe_rotation.h"
 #include "maths/goe_scalar.h"
@@ -52,6 +53,7 @@ float goe_motion_heading_deg(const goe_motion_t *motion) {
     return s >= 0.0f ? 180.0f - half_deg : -180.0f - half_deg;
 }
 
+/* Position of a camera, NED. */
 static void camera_position(const goe_camera_t *camera, const goe_pose_t *pose, const float body_to_ned[9],
                             float position[3]) {
     float arm[3];
@@ -110,6 +112,23 @@ static void place_camera(goe_motion_t *motion, const float position[3]) {
 }
 
 #if GOE_AUGMENTED
+#if GOE_CAMERAS_MAX > 1
+/* Adds the way from the arm of the previous image's camera to that of this one: it is no motion of the aircraft. */
+static void add_arm(const goe_motion_t *motion, const goe_camera_t *previous, const goe_view_t *view,
+                    const float body_to_ned[9], float before_m[2]) {
+    float arm_m[3];
+    if (!previous) {
+        return;
+    }
+    const float offset_m[3] = {view->camera->offset_m[0] - previous->offset_m[0],
+                               view->camera->offset_m[1] - previous->offset_m[1],
+                               view->camera->offset_m[2] - previous->offset_m[2]};
+    goe_rotation_apply(body_to_ned, offset_m, arm_m);
+    before_m[0] += motion->heading_cos * arm_m[1] - motion->heading_sin * arm_m[0];
+    before_m[1] += motion->heading_cos * arm_m[0] + motion->heading_sin * arm_m[1];
+}
+#endif
+
 /* Counts images in a row that confirm the velocity; another image ends the row. */
 static void count_steady(goe_motion_t *motion, bool confirmed) {
     motion->leaps = 0;
@@ -233,11 +252,14 @@ bool goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe
     float position[3];
     bool leapt = false;
 #if GOE_AUGMENTED
-    const float before_m[2] = {motion->dx_m, motion->dz_m};
+    float before_m[2] = {motion->dx_m, motion->dz_m};
     const int64_t before_us = motion->time_us;
 #endif
     goe_rotation_from_quaternion(pose->attitude, body_to_ned);
     camera_position(view->camera, pose, body_to_ned, position);
+#if GOE_AUGMENTED && GOE_CAMERAS_MAX > 1
+    add_arm(motion, goe_camera_of(settings, motion->camera), view, body_to_ned, before_m);
+#endif
     motion->reset_count = pose->reset_count;
     motion->time_us = pose->time_us;
 #if GOE_CAMERAS_MAX > 1

@@ -60,9 +60,9 @@ static goe_status_t check_numbers(const goe_image_t *image, uint32_t attitude, b
     if (image->box.sides != 0) {
         pixel = goe_larger_bits(pixel, largest_side(&image->box));
     }
-    uint32_t position = goe_largest_of_three(pose->position_ned_m);
+    uint32_t position = largest_of(pose->position_ned_m, 3);
     if (reset && goe_is_set(&pose->reset_delta_known)) {
-        position = goe_larger_bits(position, goe_largest_of_three(pose->reset_delta_ned_m));
+        position = goe_larger_bits(position, largest_of(pose->reset_delta_ned_m, 3));
     }
     if (goe_larger_bits(goe_larger_bits(height, attitude), goe_larger_bits(position, pixel)) >= GOE_INFINITY_BITS) {
         return GOE_NOT_FINITE;

@@ -10,47 +10,47 @@
 #define COSINE_MIN 0.5f    /* cosine of twice the lean: beyond 30 degrees a box hardly separates width and height */
 #define DIRECTION_MIN 0.1f /* least length of a vertical in the image, focal lengths: from above it has no direction */
 #define WIDE (GOE_SIDE_LEFT | GOE_SIDE_RIGHT)
+#define LEVEL (GOE_SIDE_TOP | GOE_SIDE_BOTTOM)
 #define CUT_SIGMAS 3.0f /* of a side's slow error, by which a detector may place a cut side inside the border */
 
 GOE_STATIC_ASSERT(GOE_SIDE_LEFT == 1u << GOE_BOX_LEFT && GOE_SIDE_TOP == 1u << GOE_BOX_TOP &&
                       GOE_SIDE_RIGHT == 1u << GOE_BOX_RIGHT && GOE_SIDE_BOTTOM == 1u << GOE_BOX_BOTTOM,
                   every_side_has_its_bit);
 
-/* Whether a side is near the border; distances are in image widths. Nothing is near a border that is not known (size 0). */
-static bool is_near(float px, float size_px, float distance_px) {
-    return size_px > 0.0f && (px < distance_px || px > size_px - 1.0f - distance_px);
-}
-
-static unsigned near_border(const goe_camera_t *camera, const goe_sides_t *sides, float share) {
-    const float distance_px = share * camera->width_px;
-    unsigned set = 0;
+/* Compares each side with the border of the image: removes usable sides at it, and notes the sides that it may cut. A detector draws a cut
+ * side up to some sigma inside the border. The slow error is that of a box that ends at the border. A border that is not known (size 0) cuts
+ * nothing. */
+static void compare_with_border(const goe_camera_t *camera, unsigned seen, float noise_rel, goe_sides_t *sides) {
+    const float border_px = camera->border_rel * camera->width_px;
+    const float cut_px = goe_larger(border_px, camera->truncation_rel * camera->width_px);
+    unsigned at_border = 0;
+    unsigned cut = seen ^ GOE_SIDES_ALL;
+    unsigned doubtful = 0;
     for (unsigned i = 0; i < GOE_BOX_SIDES; i++) {
-        const float size_px = (i & 1u) ? camera->height_px : camera->width_px;
-        set |= is_near(sides->px[i], size_px, distance_px) ? 1u << i : 0u;
+        const unsigned opposite = i ^ 2u;
+        const float last_px = ((i & 1u) ? camera->height_px : camera->width_px) - 1.0f;
+        const float px = sides->px[i];
+        const float other_px = sides->px[opposite];
+        const float inside_px = i < opposite ? px : last_px - px;
+        const float size_px = i < opposite ? other_px : last_px - other_px;
+        const unsigned bit = last_px > 0.0f ? 1u << i : 0u;
+        at_border |= inside_px < border_px || inside_px > last_px - border_px ? bit : 0u;
+        cut |= inside_px < cut_px ? bit : 0u;
+        doubtful |= (seen >> opposite & 1u) != 0u && inside_px < CUT_SIGMAS * noise_rel * size_px ? bit : 0u;
     }
-    return set;
+    sides->usable = (uint8_t)(seen & ~at_border);
+    sides->cut = (uint8_t)cut;
+    sides->doubtful = (uint8_t)(doubtful & sides->usable);
 }
 
-/* Returns top and bottom if the border may cut them: a detector draws a cut side up to some sigma inside it. The slow error is that of the
- * box that ends at the border. Left and right are judged for the whole box, by `cut`. */
-static unsigned may_be_cut(const goe_camera_t *camera, const goe_sides_t *sides, float noise_rel) {
-    const float share = CUT_SIGMAS * noise_rel;
-    const float top_px = sides->px[GOE_BOX_TOP];
-    const float bottom_px = sides->px[GOE_BOX_BOTTOM];
-    const float last_px = camera->height_px - 1.0f;
-    if (!(last_px > 0.0f) || !goe_sides_see(sides, GOE_SIDE_TOP | GOE_SIDE_BOTTOM)) {
-        return 0u;
-    }
-    return (top_px < share * bottom_px ? GOE_SIDE_TOP : 0u) |
-           (last_px - bottom_px < share * (last_px - top_px) ? GOE_SIDE_BOTTOM : 0u);
-}
-
-/* Ends of the obstacle, left or right, that lie at these sides of the image: the camera may be rolled, even upside down. down: the vertical,
- * in the camera's axes. */
-static unsigned ends_at(const float down[2], unsigned sides) {
+/* Notes which ends of the obstacle the border may cut. The camera may be rolled, even upside down. down: the vertical, in its axes. */
+static void find_ends(const float down[2], goe_sides_t *sides) {
     const bool rolled = goe_absolute(down[0]) > goe_absolute(down[1]);
-    const unsigned ends = (rolled ? sides >> 1 : sides) & WIDE; /* top for left */
-    return (rolled ? down[0] > 0.0f : down[1] < 0.0f) ? (ends << 2 | ends >> 2) & WIDE : ends;
+    const unsigned open = sides->cut | sides->doubtful;
+    const unsigned ends = (rolled ? open >> 1 : open) & WIDE; /* top for left */
+    const bool turned = rolled ? down[0] > 0.0f : down[1] < 0.0f;
+    sides->ends = (uint8_t)(turned ? (ends << 2 | ends >> 2) & WIDE : ends);
+    sides->truncated = (sides->cut & (rolled ? GOE_SIDES_ALL : WIDE)) != 0u;
 }
 
 /* A side that is not measured may have any value: the visible part ends at the image's border. */
@@ -66,24 +66,19 @@ static void end_at_border(const goe_camera_t *camera, goe_sides_t *sides) {
 void goe_sides_read(const goe_camera_t *camera, goe_view_t *view, goe_faults_t *faults) {
     const goe_box_t *box = &view->image->box;
     goe_sides_t *sides = &view->sides;
+    const unsigned seen = box->sides & GOE_SIDES_ALL;
     memcpy(sides->px, goe_box_sides(box), sizeof sides->px);
-    sides->usable = (uint8_t)(box->sides & GOE_SIDES_ALL);
-    const bool swapped = (goe_sides_see(sides, GOE_SIDE_LEFT | GOE_SIDE_RIGHT) && !(box->left_px < box->right_px)) ||
-                         (goe_sides_see(sides, GOE_SIDE_TOP | GOE_SIDE_BOTTOM) && !(box->top_px < box->bottom_px));
-    if (swapped) {
+    if (((seen & WIDE) == WIDE && !(box->left_px < box->right_px)) ||
+        ((seen & LEVEL) == LEVEL && !(box->top_px < box->bottom_px))) {
         goe_fault_count(faults, GOE_SWAPPED);
-        sides->usable = 0;
+        return;
     }
-    const unsigned doubtful = may_be_cut(camera, sides, view->box_noise_rel);
-    sides->usable = (uint8_t)(sides->usable & ~near_border(camera, sides, camera->border_rel));
-    sides->doubtful = (uint8_t)(sides->usable & doubtful);
-    if (!swapped && (sides->usable & (sides->usable - 1u)) == 0u) { /* at most one usable side */
+    compare_with_border(camera, seen, view->box_noise_rel, sides);
+    find_ends(&view->camera_to_trajectory[3], sides);
+    if ((sides->usable & (sides->usable - 1u)) == 0u) { /* at most one usable side */
         goe_fault_count(faults, GOE_BOX_INCOMPLETE);
     }
     end_at_border(camera, sides);
-    const unsigned open = (sides->usable ^ GOE_SIDES_ALL) | near_border(camera, sides, camera->truncation_rel);
-    sides->ends = (uint8_t)ends_at(&view->camera_to_trajectory[3], open);
-    sides->cut = (uint8_t)open;
 }
 
 /* --------------------------------------------------------------------------------------------------------- points -- */

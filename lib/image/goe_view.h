@@ -30,9 +30,10 @@ typedef enum { GOE_BOX_LEFT, GOE_BOX_TOP, GOE_BOX_RIGHT, GOE_BOX_BOTTOM, GOE_BOX
 typedef struct {
     float px[GOE_BOX_SIDES]; /* in the raw image */
     uint8_t usable;          /* mask of GOE_SIDE_... */
-    uint8_t doubtful;        /* mask: usable top and bottom that the image's border may cut */
-    uint8_t cut;             /* mask: sides that are missing, or near the image's border */
-    uint8_t ends; /* mask: the obstacle's left and right end, if the border may cut them; the camera may be rolled */
+    uint8_t doubtful;        /* mask: sides that the border may cut, by the error of a detector */
+    uint8_t cut;             /* mask: sides that are missing, or near the border */
+    uint8_t ends;            /* mask: the obstacle's left and right end, if the border may cut them */
+    bool truncated;          /* whether the box has the error of a cut one */
 } goe_sides_t;
 
 /* Whether all of these sides (GOE_SIDE_...) are measured. */
@@ -45,7 +46,7 @@ typedef struct {
     const goe_image_t *image;        /* as the caller gave it */
     const goe_motion_t *motion;      /* the motion of the track up to this image */
     const goe_camera_t *camera;      /* the one that took it */
-    float box_noise_rel;             /* setting; 0 for the window method */
+    float box_noise_rel;             /* setting */
     const float *camera_to_body;     /* rotation matrices, row by row */
     float camera_to_trajectory[9];
 } goe_view_t;

@@ -66,7 +66,7 @@ void goe_ground_read(goe_filter_t *filter, const goe_navigation_t *navigation, c
     goe_datum_t *datum = &filter->datum;
     const float down_m = camera_down_m(view);
     const float ground_m = view->motion->height_m + down_m;
-    const bool lacks_height = goe_ground_lacks_height(view->image);
+    const bool lacks_height = goe_ground_lacks_height(view);
     if (!filter->has_datum) {
         datum->ground_m = ground_m;
         datum->sd_m = UNKNOWN_SD_M;

@@ -9,9 +9,11 @@
 /* Takes an image's height, and the change of down. since_s: time since the previous image. */
 void goe_ground_read(goe_filter_t *filter, const goe_navigation_t *navigation, const goe_view_t *view, float since_s);
 
-/* Whether an image with a bounding box lacks a height: a field that was not set is 0, and nobody flies at exactly 0. */
-static inline bool goe_ground_lacks_height(const goe_image_t *image) {
-    return image->box.sides != 0 && goe_magnitude(image->pose.height_m) == 0u;
+/* Whether an image with a bounding box, or without a detection, lacks a height: a field that was not set is 0, and nobody flies at exactly
+ * 0. */
+static inline bool goe_ground_lacks_height(const goe_view_t *view) {
+    const goe_image_t *image = view->image;
+    return goe_magnitude(image->pose.height_m) == 0u && (image->box.sides != 0 || !view->seen);
 }
 
 /* Moves the ground by a jump of the autopilot's down. */

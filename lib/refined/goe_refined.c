@@ -27,7 +27,8 @@
 #define GAP_MAX_US 1000000000u /* a longer gap between images counts as this one */
 #define TOO_SOON_SHARE 0.08f   /* share of the time constant: sooner, box differences are linearization errors */
 #define LOST_S 0.5f            /* time without rows after which a known range does not count as known */
-#define VAGUE2 4.0f /* limit of (sigma of 1/Z0 times the way along Z)^2, which is below 1 for an obstacle ahead */
+#define VAGUE2 4.0f   /* limit of (sigma of 1/Z0 times the way along Z)^2, which is below 1 for an obstacle ahead */
+#define LATELY_S 0.5f /* after it, what another camera showed of the obstacle's ends no longer counts */
 #define DOUBTED_SIGMAS2 4.0f /* squared sigmas of a growth above which nothing is clear, for DOUBTED_S */
 #define DOUBTED_S 2.0f       /* s: as the errors of boxes fade in a second, the next growth may be smaller by chance */
 #define NEVER_S 1.0e6f       /* longer than any correlation time */
@@ -115,6 +116,24 @@ static void find_rows(goe_filter_t *filter, goe_observation_t *obs, goe_rows_t *
     goe_model_recall(filter, obs, rows);
 }
 
+/* Notes an image with rows. Returns the ends of the obstacle that no image shows: another camera may have shown them lately, or all of it. */
+static unsigned open_ends(goe_filter_t *filter, const goe_observation_t *obs) {
+    unsigned open = obs->sides->ends;
+    note_use(filter, obs->number);
+#if GOE_CAMERAS_MAX > 1
+    bool whole = false;
+    filter->ends[obs->number] = (uint8_t)open;
+    for (size_t i = 0; i < GOE_CAMERAS_MAX; i++) {
+        if (filter->used_s[i] < LATELY_S) {
+            whole = whole || filter->ends[i] == 0u;
+            open |= filter->ends[i];
+        }
+    }
+    open = whole ? 0u : open;
+#endif
+    return open;
+}
+
 static bool measure(goe_filter_t *filter, const goe_observation_t *obs, goe_rows_t *rows, goe_verdict_t *verdict,
                     float change[GOE_UNKNOWNS]) {
     *verdict = goe_gate_apply(obs->settings, filter, rows);
@@ -125,10 +144,9 @@ static bool measure(goe_filter_t *filter, const goe_observation_t *obs, goe_rows
         return false;
     }
     filter->answer.outdated = true;
-    filter->answer.cut = obs->sides->ends;
+    filter->answer.cut = (uint8_t)open_ends(filter, obs);
     filter->measured.dx_m = obs->camera_m.x;
     filter->measured.dz_m = obs->camera_m.z;
-    note_use(filter, obs->number);
     doubt(filter, obs);
     verdict->rows += goe_ground_row(filter, obs, rows);
     const float nis = goe_model_update(filter, 1.0f / rows->white_rad, rows, change);
@@ -275,6 +293,7 @@ bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, co
     const float since_s = goe_time_between_s(filter->time_us, view->motion->time_us, GAP_MAX_US);
     const bool too_soon = comes_too_soon(filter, &settings->detector, view, since_s);
     goe_ground_read(filter, &settings->navigation, view, goe_filter_has_started(filter) && !too_soon ? since_s : 0.0f);
+    filter->answer.cut |= view->sides.ends; /* an image that gives no rows takes none away */
     if (too_soon || !open_image(filter, settings, view, &obs, swapped)) {
         return false;
     }

@@ -39,8 +39,7 @@ float goe_touch_size(const goe_observation_t *obs, size_t side, float extent) {
 }
 
 float goe_touch_cut_variance(const goe_observation_t *obs, float size) {
-    const unsigned cut = (obs->sides->cut & (GOE_SIDE_LEFT | GOE_SIDE_RIGHT)) | obs->sides->ends;
-    return cut != 0u ? goe_square(obs->settings->detector.truncation_noise_rel * size) : 0.0f;
+    return obs->sides->truncated ? goe_square(obs->settings->detector.truncation_noise_rel * size) : 0.0f;
 }
 
 float goe_touch_white_variance(const goe_observation_t *obs, size_t side, float size) {

@@ -197,6 +197,34 @@ static void what_goes_on_toward_the_course_is_not_clear(void) {
     }
 }
 
+/* [GOE_DECISION_UNKNOWN]
+ * GIVEN an obstacle that is cut, or outgrew its range, WHEN it lies behind the axis to the right of T but ahead on the course THEN it is not
+ * clear; WHEN the course leads away from it THEN it is. */
+static void ahead_is_along_the_course(void) {
+    for (int cut = 0; cut < 2; cut++) {
+        place(60.0);
+        estimator.estimate.z_m = -1.0f;
+        estimator.filter.answer.cut = cut == 1 ? GOE_SIDE_LEFT : 0u;
+        estimator.filter.answer.outgrown_s = cut == 1 ? 0.0f : 1.0f;
+        intent.velocity_ned_m_s[0] = 10.0f;
+        intent.velocity_ned_m_s[1] = 2.0f;
+        TEST_ASSERT_EQUAL_INT(GOE_DECISION_UNKNOWN, decide());
+        intent.velocity_ned_m_s[1] = -2.0f;
+        TEST_ASSERT_EQUAL_INT(GOE_DECISION_CLEAR, decide());
+    }
+}
+
+/* [goe_intent_t.margin_m] GIVEN a creeping aircraft within the largest margin WHEN the image is old THEN the decision stays "act". */
+static void the_largest_margin_is_none_too_large(void) {
+    place(60.0);
+    intent.margin_m = 9990.0f;
+    intent.velocity_ned_m_s[0] = -0.5f;
+    for (int since_s = 0; since_s < 1000; since_s += 90) {
+        intent.since_image_s = (float)since_s;
+        TEST_ASSERT_EQUAL_INT(GOE_DECISION_ACT, decide());
+    }
+}
+
 /* GIVEN an obstacle that is passed far aside WHEN the camera is silent THEN it is clear for two seconds after the latest image, and not
  * known after that; one ahead is still acted on. */
 static void a_silent_camera_clears_nothing(void) {
@@ -374,6 +402,8 @@ int main(void) {
     RUN_TEST(a_wrong_position_clears_nothing);
     RUN_TEST(a_silent_camera_clears_nothing);
     RUN_TEST(what_goes_on_toward_the_course_is_not_clear);
+    RUN_TEST(ahead_is_along_the_course);
+    RUN_TEST(the_largest_margin_is_none_too_large);
     RUN_TEST(a_violation_at_a_creeping_speed_is_one_of_now);
     RUN_TEST(a_widened_margin_counts_at_every_speed);
     RUN_TEST(doubt_and_age_widen);

@@ -230,7 +230,7 @@ static void a_sides_error_is_a_share_of_the_box(void) {
                 const unsigned ends = first == 0u ? GOE_SIDE_TOP | GOE_SIDE_BOTTOM : 0u; /* of an upright side */
                 sides.usable = (uint8_t)(alone == 1 ? 1u << side | ends : GOE_SIDES_ALL);
                 for (int cut = 0; cut < 2; cut++) {
-                    sides.cut = (uint8_t)(GOE_SIDE_TOP | (cut == 1 ? GOE_SIDE_LEFT : 0u));
+                    sides.truncated = cut == 1;
                     sighting.settings.detector.truncation_noise_rel = 0.8f;
                     make_rows();
                     const double expected = pixel * pixel + (1.0e-4 + (cut == 1 ? 0.64 : 0.0)) * size * size;

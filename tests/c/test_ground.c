@@ -113,7 +113,7 @@ static double sum_sd(void) {
 static void read_height(float height_m, float sunk_m) {
     const float since_s = goe_filter_has_started(&filter) ? STEP_S : 0.0f;
     image.pose.position_ned_m[2] = sunk_m;
-    motion.height_m = height_m;
+    image.pose.height_m = motion.height_m = height_m;
     filter.due_s += since_s;
     goe_ground_read(&filter, &settings.navigation, &view, since_s);
     look();
@@ -155,6 +155,22 @@ static batch_t solve_batch(const double off_m[], size_t count, double white_m, d
     const double *last = a[count - 1];
     const batch_t batch = {last[READINGS] / last[count - 1], last[READINGS + 1] / last[count - 1]};
     return batch;
+}
+
+/* [goe_pose_t.height_m]
+ * GIVEN images without an altimeter, whose height is 0, WHEN they show a box or nothing THEN that is no height. WHEN they show points THEN it
+ * is one. */
+static void a_height_of_0_is_none(void) {
+    for (int seen = 0; seen < 2; seen++) {
+        for (unsigned sides = 0; sides <= GOE_SIDE_LEFT; sides++) {
+            goe_filter_clear(&filter);
+            view.seen = seen == 1;
+            image.box.sides = (uint8_t)sides;
+            image.pose.height_m = motion.height_m = 0.0f;
+            goe_ground_read(&filter, &settings.navigation, &view, 0.0f);
+            TEST_ASSERT_EQUAL_UINT8(seen == 1 && sides == 0u ? 1u : 0u, filter.datum.readings);
+        }
+    }
 }
 
 /* [goe_pose_t.height_m]
@@ -574,6 +590,7 @@ static void a_jump_of_down_is_no_scatter(void) {
 
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(a_height_of_0_is_none);
     RUN_TEST(exact_heights_are_taken_at_once);
     RUN_TEST(exact_heights_correct_a_drift_of_down);
     RUN_TEST(readings_give_the_mean_and_no_more);

@@ -52,7 +52,7 @@ static void see(double ahead, double wider, double taller) {
     }
     sides.usable = GOE_SIDES_ALL;
     sides.cut = 0;
-    sides.ends = 0;
+    sides.truncated = false;
     sides.doubtful = 0;
 }
 
@@ -118,16 +118,17 @@ static void a_size_that_the_border_made_is_no_growth(void) {
         see(0.9, 1.0, 2.0);
         TEST_ASSERT_TRUE(growth() > 9.0);
         const double uncut = growth();
+        sides.truncated = true;
         sides.cut = (uint8_t)upright[i];
         CHECK_CLOSE(1.0e-4 * uncut, uncut, growth());
         sides.cut = (uint8_t)(upright[i] | GOE_SIDE_TOP);
         TEST_ASSERT_TRUE(growth() < 1.0);
         sides.cut = GOE_SIDE_BOTTOM; /* of a camera that is rolled */
-        sides.ends = (uint8_t)upright[i];
         TEST_ASSERT_TRUE(growth() < 1.0);
         see(0.9, 2.0, 1.0);
         sides.usable = GOE_SIDE_LEFT | GOE_SIDE_RIGHT;
         TEST_ASSERT_TRUE(growth() > 9.0);
+        sides.truncated = true;
         sides.cut = (uint8_t)upright[i];
         TEST_ASSERT_TRUE(growth() < 1.0);
     }

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "check.h"
+#include "goe_guard.h"
 #include "scene.h"
 
 #define IMAGES 56
@@ -342,6 +343,53 @@ static void a_cut_box_is_better_than_none(void) {
     TEST_ASSERT_TRUE(used_by_other >= LOOKS - last - 2);
 }
 
+/* One more image of a camera, `step` periods after the approach. The border cuts its box at these sides. */
+static unsigned open_after(int step, uint8_t camera, unsigned sides) {
+    goe_image_t image;
+    look_ahead((int64_t)(LOOKS + step) * PERIOD_US, &image);
+    image.camera = camera;
+    detect_mast(FIRST_M - (double)image.pose.position_ned_m[0], 0.0, &image.box);
+    image.box.left_px = (sides & GOE_SIDE_LEFT) != 0u ? 0.0f : image.box.left_px;
+    image.box.right_px = (sides & GOE_SIDE_RIGHT) != 0u ? (float)SIZE_PX - 1.0f : image.box.right_px;
+    image.box.top_px = (sides & GOE_SIDE_TOP) != 0u ? 0.0f : image.box.top_px;
+    image.box.bottom_px = (sides & GOE_SIDE_BOTTOM) != 0u ? (float)SIZE_PX - 1.0f : image.box.bottom_px;
+    (void)goe_update(&estimator, &image, &estimate);
+    return estimator.filter.answer.cut;
+}
+
+/* [GOE_CAMERAS_MAX, GOE_DECISION_UNKNOWN]
+ * GIVEN cameras that cut the obstacle THEN each end counts that one of them cuts, unless another one shows all of the obstacle; what a
+ * camera showed half a second ago no longer counts. */
+static void an_end_is_open_that_a_camera_cuts(void) {
+    (void)approach(WHOLE_BEFORE, 0.0, 1000);
+    TEST_ASSERT_EQUAL_HEX(0u, open_after(1, 0, 0u));
+    TEST_ASSERT_EQUAL_HEX(0u, open_after(1, 1, GOE_SIDE_LEFT)); /* camera 0 shows all of it */
+    TEST_ASSERT_EQUAL_HEX(GOE_SIDE_RIGHT | GOE_SIDE_LEFT, open_after(2, 0, GOE_SIDE_RIGHT));
+    TEST_ASSERT_EQUAL_HEX(GOE_SIDE_RIGHT | GOE_SIDE_LEFT, open_after(2, 1, GOE_SIDE_LEFT));
+    TEST_ASSERT_EQUAL_HEX(GOE_SIDE_LEFT, open_after(8, 1, GOE_SIDE_LEFT));
+    TEST_ASSERT_EQUAL_HEX(0u, open_after(9, 0, 0u));
+    TEST_ASSERT_EQUAL_HEX(GOE_SIDE_RIGHT | GOE_SIDE_LEFT, open_after(10, 0, GOE_SIDES_ALL)); /* gives no rows */
+    TEST_ASSERT_FALSE(estimate.fresh);
+}
+
+/* [goe_camera_t.offset_m] GIVEN two cameras far apart on the aircraft WHEN they take turns THEN the way from one to the other is no jump of
+ * the autopilot's position. */
+static void the_way_between_two_cameras_is_no_jump(void) {
+    (void)approach(EMPTY_BETWEEN, 0.0, 1000);
+    estimator.settings.more_cameras[0].offset_m[1] = 30.0f;
+    for (int k = LOOKS + 1; k < LOOKS + 20; k++) {
+        for (int i = 0; i < 2; i++) {
+            goe_image_t image;
+            look_ahead((int64_t)k * PERIOD_US, &image);
+            image.camera = (uint8_t)i;
+            goe_guard_seal(&estimator);
+            (void)goe_update(&estimator, &image, &estimate);
+            TEST_ASSERT_EQUAL_UINT8(0u, estimator.motion.leaps);
+            CHECK_SAME(0.0f, estimator.motion.origin_ne_m[1]);
+        }
+    }
+}
+
 /* ---------------------------------------------------------------------------------------------------- honest sigmas -- */
 
 #define FLIGHTS 150
@@ -413,6 +461,8 @@ int main(void) {
     RUN_TEST(the_boxes_of_both_cameras_are_used);
     RUN_TEST(images_of_one_time_come_in_the_order_of_the_cameras);
     RUN_TEST(a_cut_box_is_better_than_none);
+    RUN_TEST(an_end_is_open_that_a_camera_cuts);
+    RUN_TEST(the_way_between_two_cameras_is_no_jump);
     RUN_TEST(the_sigmas_of_two_cameras_are_true);
     return UNITY_END();
 }

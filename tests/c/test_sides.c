@@ -108,10 +108,10 @@ static void a_side_at_the_border_is_not_measured(void) {
 }
 
 /* [detector.box_noise_rel]
- * GIVEN a top or a bottom that is nearer to the border than 3 times the slow error of a box which ends there THEN the border may have cut
- * it: it is doubtful; left and right never are. A side that is not measured is not doubtful. Where one of them is not measured, the box's
- * height is not known, and without slow error or without the image's height there is no such distance. */
-static void a_top_or_bottom_that_may_be_cut_is_doubtful(void) {
+ * GIVEN a side that is nearer to the border than 3 times the slow error of a box which ends there THEN the border may have cut it: it is
+ * doubtful, and so are the obstacle's ends. A side that is not measured is not doubtful. Where the opposite one is not measured, the box's
+ * size is not known, and without slow error or without the image's size there is no such distance. */
+static void a_side_that_may_be_cut_is_doubtful(void) {
     const unsigned wide = GOE_SIDE_LEFT | GOE_SIDE_RIGHT;
     static const struct {
         float left_px, top_px, right_px, bottom_px, noise_rel;
@@ -119,8 +119,12 @@ static void a_top_or_bottom_that_may_be_cut_is_doubtful(void) {
     } cases[] = {
         {200.0f, 101.0f, 600.0f, 500.0f, 0.0666667f, 0u}, /* 3 times, of 500 px: 100 px */
         {200.0f, 99.0f, 600.0f, 500.0f, 0.0666667f, GOE_SIDE_TOP},
-        {101.0f, 299.0f, 898.0f, 698.0f, 0.0666667f, 0u},
-        {101.0f, 299.0f, 898.0f, 700.0f, 0.0666667f, GOE_SIDE_BOTTOM},
+        {201.0f, 299.0f, 798.0f, 698.0f, 0.0666667f, 0u},
+        {201.0f, 299.0f, 798.0f, 700.0f, 0.0666667f, GOE_SIDE_BOTTOM},
+        {99.0f, 200.0f, 500.0f, 600.0f, 0.0666667f, GOE_SIDE_LEFT}, /* of 500 px: 100 px */
+        {101.0f, 200.0f, 500.0f, 600.0f, 0.0666667f, 0u},
+        {500.0f, 200.0f, 900.0f, 600.0f, 0.0666667f, GOE_SIDE_RIGHT}, /* of 499 px */
+        {500.0f, 200.0f, 898.0f, 600.0f, 0.0666667f, 0u},
         {200.0f, 20.0f, 600.0f, 780.0f, 0.0666667f, GOE_SIDE_TOP | GOE_SIDE_BOTTOM},
         {200.0f, 5.0f, 600.0f, 795.0f, 0.0666667f, 0u}, /* at the border: not measured */
         {200.0f, 20.0f, 600.0f, 780.0f, 0.0f, 0u},
@@ -129,8 +133,9 @@ static void a_top_or_bottom_that_may_be_cut_is_doubtful(void) {
         view.box_noise_rel = cases[i].noise_rel;
         see(cases[i].left_px, cases[i].top_px, cases[i].right_px, cases[i].bottom_px, GOE_SIDES_ALL);
         TEST_ASSERT_EQUAL_HEX(cases[i].doubtful, view.sides.doubtful);
-        TEST_ASSERT_EQUAL_HEX(i == 5 ? wide : GOE_SIDES_ALL, view.sides.usable);
-        TEST_ASSERT_EQUAL_HEX(0u, view.sides.ends);
+        TEST_ASSERT_EQUAL_HEX(cases[i].top_px < 10.0f ? wide : GOE_SIDES_ALL, view.sides.usable);
+        TEST_ASSERT_EQUAL_HEX(cases[i].doubtful & wide, view.sides.ends);
+        TEST_ASSERT_FALSE(view.sides.truncated);
     }
     view.box_noise_rel = 0.0666667f;
     see(200.0f, 299.0f, 600.0f, 700.0f, wide | GOE_SIDE_BOTTOM);
@@ -164,6 +169,10 @@ static void a_side_near_the_border_is_cut(void) {
     TEST_ASSERT_EQUAL_HEX(GOE_SIDE_RIGHT, view.sides.cut);
     see(200.0f, 200.0f, 600.0f, 780.0f, GOE_SIDES_ALL);
     TEST_ASSERT_EQUAL_HEX(GOE_SIDE_BOTTOM, view.sides.cut);
+    TEST_ASSERT_FALSE(view.sides.truncated);
+    see(960.0f, 200.0f, 980.0f, 600.0f, GOE_SIDES_ALL); /* the left end is at the right border */
+    TEST_ASSERT_EQUAL_HEX(GOE_SIDE_RIGHT, view.sides.cut);
+    TEST_ASSERT_TRUE(view.sides.truncated);
 }
 
 /* [camera.mount_roll_deg]
@@ -279,7 +288,7 @@ int main(void) {
     RUN_TEST(a_bit_that_is_no_side_is_none);
     RUN_TEST(a_side_at_the_border_is_not_measured);
     RUN_TEST(a_missing_side_ends_at_the_border);
-    RUN_TEST(a_top_or_bottom_that_may_be_cut_is_doubtful);
+    RUN_TEST(a_side_that_may_be_cut_is_doubtful);
     RUN_TEST(a_border_that_is_not_known_is_none);
     RUN_TEST(a_side_near_the_border_is_cut);
     RUN_TEST(a_cut_side_hides_the_end_that_lies_there);

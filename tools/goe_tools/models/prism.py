@@ -144,21 +144,17 @@ def measured_sides(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Sides (K, 4), NaN if out of order or at the border, and whether the border cuts the box (K,).
 
-    rolled: (K,) whether the image leans by more than 45 degrees: top and bottom are then at the obstacle's left and right.
+    rolled: (K,) whether the image leans by more than 45 degrees: top and bottom then show the obstacle's ends.
     """
     sides = np.array(box_px, float)
     with np.errstate(invalid="ignore"):
         swapped = (sides[:, BOX_LEFT] >= sides[:, BOX_RIGHT]) | (sides[:, BOX_TOP] >= sides[:, BOX_BOTTOM])
         sides[swapped] = np.nan
-        size = np.array(image_size_px)[AXIS]
-
-        def near(share: float) -> np.ndarray:
-            distance = share * image_size_px[0]
-            return (size > 0) & ((sides < distance) | (sides > size - 1 - distance))
-
-        cut = near(errors.truncation_rel)
-        sides[near(errors.border_rel)] = np.nan
-    cut |= ~np.isfinite(sides)
+        last = np.array(image_size_px)[AXIS] - 1
+        inside = np.where([True, True, False, False], sides, last - sides)  # from the border that may cut the side
+        border, truncated = np.array([errors.border_rel, errors.truncation_rel]) * image_size_px[0]
+        cut = ~np.isfinite(sides) | ((last > 0) & (inside < max(border, truncated)))
+        sides[(last > 0) & ((inside < border) | (inside > last - border))] = np.nan
     return sides, cut[:, [BOX_LEFT, BOX_RIGHT]].any(1) | (rolled & cut[:, [BOX_TOP, BOX_BOTTOM]].any(1))
 
 
