@@ -22,7 +22,7 @@ GOE_STATIC_ASSERT(GOE_SIDE_LEFT == 1u << GOE_BOX_LEFT && GOE_SIDE_TOP == 1u << G
  * nothing. */
 static void compare_with_border(const goe_camera_t *camera, unsigned seen, float noise_rel, goe_sides_t *sides) {
     const float border_px = camera->border_rel * camera->width_px;
-    const float cut_px = goe_larger(border_px, camera->truncation_rel * camera->width_px);
+    const float cut_px = camera->truncation_rel * camera->width_px;
     unsigned at_border = 0;
     unsigned cut = seen ^ GOE_SIDES_ALL;
     unsigned doubtful = 0;
@@ -33,13 +33,14 @@ static void compare_with_border(const goe_camera_t *camera, unsigned seen, float
         const float other_px = sides->px[opposite];
         const float inside_px = i < opposite ? px : last_px - px;
         const float size_px = i < opposite ? other_px : last_px - other_px;
+        const float farther_px = goe_larger(px, last_px - px); /* from the border that is farther away */
         const unsigned bit = last_px > 0.0f ? 1u << i : 0u;
-        at_border |= inside_px < border_px || inside_px > last_px - border_px ? bit : 0u;
-        cut |= inside_px < cut_px ? bit : 0u;
+        at_border |= farther_px > last_px - border_px ? bit : 0u;
+        cut |= farther_px > last_px - cut_px ? bit : 0u;
         doubtful |= (seen >> opposite & 1u) != 0u && inside_px < CUT_SIGMAS * noise_rel * size_px ? bit : 0u;
     }
     sides->usable = (uint8_t)(seen & ~at_border);
-    sides->cut = (uint8_t)cut;
+    sides->cut = (uint8_t)(cut | at_border);
     sides->doubtful = (uint8_t)(doubtful & sides->usable);
 }
 

@@ -151,10 +151,13 @@ def measured_sides(
         swapped = (sides[:, BOX_LEFT] >= sides[:, BOX_RIGHT]) | (sides[:, BOX_TOP] >= sides[:, BOX_BOTTOM])
         sides[swapped] = np.nan
         last = np.array(image_size_px)[AXIS] - 1
-        inside = np.where([True, True, False, False], sides, last - sides)  # from the border that may cut the side
-        border, truncated = np.array([errors.border_rel, errors.truncation_rel]) * image_size_px[0]
-        cut = ~np.isfinite(sides) | ((last > 0) & (inside < max(border, truncated)))
-        sides[(last > 0) & ((inside < border) | (inside > last - border))] = np.nan
+
+        def near(share: float) -> np.ndarray:
+            distance = share * image_size_px[0]
+            return (last > 0) & ((sides < distance) | (sides > last - distance))
+
+        cut = near(max(errors.border_rel, errors.truncation_rel)) | ~np.isfinite(sides)
+        sides[near(errors.border_rel)] = np.nan
     return sides, cut[:, [BOX_LEFT, BOX_RIGHT]].any(1) | (rolled & cut[:, [BOX_TOP, BOX_BOTTOM]].any(1))
 
 
