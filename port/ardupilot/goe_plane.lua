@@ -3,8 +3,8 @@ goe_plane.lua: ArduPlane flies past what goe_companion has found. SPDX-License-I
 
 The companion (reaction mode "off", reports on) sends GOE_HAZARD for each obstacle and GOE_STATUS once a second. An obstacle with
 an order makes this script fly to the order's target in GUIDED, and back into the mode before when the obstacle is passed. Only
-from AUTO and CRUISE; GO_AROUND only while landing in AUTO. A landing is not gone on with after a side: from there the way to
-the runway is another one. Whoever chooses another mode meanwhile is not fought.
+from AUTO and CRUISE; GO_AROUND only while landing in AUTO, or after a side: then it raises the target. A landing is not gone on with
+after a side: from there the way to the runway is another one. Whoever chooses another mode meanwhile is not fought.
 
 Passed is an obstacle that the companion still reports, without an order any more. If it was given up, after HOLD, or if the
 companion falls silent, the aircraft stays at the target, circling, and a text warns the pilot: what is not seen may lie ahead.
@@ -64,6 +64,7 @@ local own_system = param:get("MAV_SYSID") or param:get("SYSID_THISMAV") or 1
 local mode_before -- while this script has changed the mode
 local from_landing = false -- it was landing then
 local overruled = false
+local held -- lat, lon of the latest target that was flown to
 local standing -- the order: named, action, lat, lon, down; over_ms: since then the companion gives none.
 -- named: by its place in the table, each obstacle that the order was about: number; is_past: it is reported without an order
 local received_ms = uint32_t(0)
@@ -411,15 +412,26 @@ local function forbids(place)
     return fence_forbids_height(up_m) or fence_forbids_place(place)
 end
 
--- Where the order leads to; nil: nowhere, or not where an aircraft may be led to.
-local function target()
+-- The origin, at the height of the order; nil: one of them is not known.
+local function origin_at_height()
     local place = ahrs:get_origin()
-    if not place then
+    if not place or not (math.abs(standing.down) < DOWN_FAR_M) then
         return nil
     end
     place:alt(place:alt() - math.floor(100 * standing.down))
-    place:lat(standing.lat)
-    place:lng(standing.lon)
+    return place
+end
+
+-- Where the order leads to; nil: nowhere, or not where an aircraft may be led to. A go-around after a side keeps the place of the side,
+-- because the layer found the way there clear. It raises the height, because the layer counts on the climb.
+local function target()
+    local place = origin_at_height()
+    if not place then
+        return nil
+    end
+    local at = standing.action == GO_AROUND and held or standing
+    place:lat(at.lat)
+    place:lng(at.lon)
     local why = forbids(place)
     if why then
         say_once("order not flown: " .. why)
@@ -435,16 +447,16 @@ local function fly_to_target()
     local place = target()
     if place and vehicle:set_target_location(place) then
         sent_ms = millis()
+        held = { lat = place:lat(), lon = place:lng() }
     end
 end
 
 -- Above home, over the obstacle's top; nil: the autopilot's own height for an aborted landing.
 local function height_to_climb_m()
-    local place, here = ahrs:get_origin(), ahrs:get_location()
-    if not place or not here or not ahrs:home_is_set() or not (math.abs(standing.down) < DOWN_FAR_M) then
+    local place, here = origin_at_height(), ahrs:get_location()
+    if not place or not here or not ahrs:home_is_set() then
         return nil
     end
-    place:alt(place:alt() - math.floor(100 * standing.down))
     local up_m = 0.01 * (place:alt() - ahrs:get_home():alt())
     local rise_m = 0.01 * (place:alt() - here:alt())
     if rise_m < 1 or rise_m > ABOVE_M or fence_forbids_height(up_m) then
@@ -467,7 +479,7 @@ local function begin_order()
     if standing.action == GO_AROUND then
         go_around()
     elseif (mode == AUTO or mode == CRUISE) and not vehicle:is_taking_off() and target() and vehicle:set_mode(GUIDED) then
-        mode_before, from_landing = mode, is_landing
+        mode_before, from_landing, held = mode, is_landing, nil
         say(TEXT_WARNING, "flying past an obstacle")
         fly_to_target()
     elseif is_landing then -- to its target no side may be flown: up at least
@@ -485,8 +497,6 @@ local function follow_order()
         mode_before = nil
         overruled = true
         say(TEXT_INFO, "left to whoever chose the mode")
-    elseif standing.action == GO_AROUND then
-        return
     elseif millis() - sent_ms > RENEW_MS then
         fly_to_target()
     end

@@ -430,6 +430,31 @@ def test_a_side_breaks_a_landing_off(plane: Plane) -> None:
     assert any("broke off landing" in text for text in plane.texts)
 
 
+@pytest.mark.parametrize(
+    ("down", "parameters", "up"),
+    [
+        (-60.0, {}, 6000),
+        (math.nan, {}, None),
+        (-190.0, {}, None),  # too far above
+        (-60.0, {"FENCE_ENABLE": 1, "FENCE_TYPE": 1, "FENCE_ALT_MAX": 50}, None),
+    ],
+)
+def test_a_go_around_after_a_side_climbs_at_the_place_of_the_side(
+    plane: Plane, down: float, parameters: dict[str, float], up: int | None
+) -> None:
+    """The top becomes known: the layer expects a climb, and the way to the side was clear."""
+    plane.landing = True
+    plane.parameters |= parameters
+    plane.send(plane.hazard())
+    plane.run(1.0, status=LEFT)
+    plane.landing = False
+    plane.send(plane.hazard(action=GO_AROUND, down=down, lat=474000900, lon=85460900))
+    plane.run(3.0, status=GO_AROUND)
+    assert plane.modes == [GUIDED] and plane.commands == []
+    assert plane.places[-1] == (474000000, 85460000, 48800 + (3550 if up is None else up))
+    assert {place[:2] for place in plane.places} == {(474000000, 85460000)}
+
+
 def test_a_landing_is_broken_off_where_no_side_may_be_flown(plane: Plane) -> None:
     plane.landing = True
     plane.own_alt = ORIGIN[2] + 1500  # below GOEP_ALT_MIN
