@@ -65,8 +65,11 @@ local mode_before -- while this script has changed the mode
 local from_landing = false -- it was landing then
 local overruled = false
 local held -- lat, lon of the latest target that was flown to
-local standing -- the order: named, action, lat, lon, down; over_ms: since then the companion gives none.
--- named: by its place in the table, each obstacle that the order was about: number; is_past: it is reported without an order
+local standing -- the order: named, doubts, action, lat, lon, down; over_ms: since then the companion gives none.
+-- named: by its place in the table, each obstacle that the order was about: number; is_past: it is reported without an order;
+-- heard_ms, renumbered: when it was last reported with one, and the companion's count then.
+-- doubts: for each obstacle that was not past when its place got another number, that count
+local renumbered = 0 -- tracks with a new number, as the companion counted them last
 local received_ms = uint32_t(0)
 local sent_ms = uint32_t(0)
 local silence_reported = false
@@ -198,6 +201,14 @@ local key = read_key()
 
 -- ------------------------------------------------------------------------------------------------------------- what it says
 
+-- Another number at a place is the same track, renumbered, or another obstacle. A track is reported without a pause.
+local function doubt_another(before, number, doubts)
+    if before and before.number ~= number and not before.is_past then
+        local has_paused = millis() - before.heard_ms > SILENCE_MS
+        doubts[#doubts + 1] = has_paused and math.huge or before.renumbered
+    end
+end
+
 local function take_hazard(payload)
     local lat, lon, _, _, down = string.unpack("<i4i4fff", payload, 13)
     local action, flags = string.unpack("<BB", payload, 66)
@@ -215,12 +226,28 @@ local function take_hazard(payload)
     if action ~= GO_AROUND and (lat == NOTHING_KNOWN or lon == NOTHING_KNOWN or not (math.abs(down) < DOWN_FAR_M)) then
         return
     end
-    local named = standing and standing.named or {}
-    named[place] = { number = number, is_past = false }
-    standing = { named = named, action = action, lat = lat, lon = lon, down = down }
+    local named, doubts = standing and standing.named or {}, standing and standing.doubts or {}
+    doubt_another(named[place], number, doubts)
+    named[place] = { number = number, is_past = false, heard_ms = millis(), renumbered = renumbered }
+    standing = { named = named, doubts = doubts, action = action, lat = lat, lon = lon, down = down }
+end
+
+-- A doubt is over if a track has got a new number since then. Otherwise it is never over: the obstacle was given up.
+local function judge_doubts()
+    local kept = {}
+    for _, count in ipairs(standing.doubts) do
+        if count >= renumbered then
+            kept[#kept + 1] = math.huge
+        end
+    end
+    standing.doubts = kept
 end
 
 local function take_status(payload)
+    renumbered = string.unpack("<H", payload, 15)
+    if standing then
+        judge_doubts()
+    end
     if not standing then
         return
     elseif string.unpack("<B", payload, 30) ~= 0 then
@@ -509,7 +536,7 @@ local function are_all_past()
             return false
         end
     end
-    return true
+    return #standing.doubts == 0
 end
 
 local function is_passed()

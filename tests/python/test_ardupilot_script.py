@@ -134,6 +134,7 @@ class Plane:
     waiting: list[tuple[bytes, int]] = field(default_factory=list)
     stamp: int = 1000000000000
     link_id: int = 0
+    renumbered: int = 0  # tracks with a new number, as the companion counts them
 
     def __post_init__(self) -> None:
         self.lua = lua53.LuaRuntime(encoding=None, unpack_returned_tuples=True)
@@ -232,7 +233,8 @@ class Plane:
         )  # fmt: skip
 
     def status(self, action: int) -> Any:
-        return self.goe.MAVLink_goe_status_message(5000, *[0] * 10, 65535, 65535, 1, action, 3, 0)
+        counts = [0] * 5 + [self.renumbered] + [0] * 4
+        return self.goe.MAVLink_goe_status_message(5000, *counts, 65535, 65535, 1, action, 3, 0)
 
     def pass_by(self) -> None:
         """The order ends: the obstacle is reported without an order, shortly after the status reports the end."""
@@ -370,6 +372,45 @@ def test_the_order_is_past_with_each_obstacle_that_it_was_about(plane: Plane, gi
     plane.run(7.0, status=0)
     assert plane.modes == [GUIDED] + ([] if given_up else [AUTO])
     assert sum("circling" in text for text in plane.texts) == given_up
+
+
+@pytest.mark.parametrize(
+    ("renumbered", "pause_s", "goes_back"),
+    [
+        (1, 0.2, True),
+        (0, 0.2, False),  # the first obstacle was given up, and another one has its place
+        (-1, 0.2, False),  # a restarted companion counts from 0
+        (1, 5.0, False),  # a track is reported all the time: a new number after a pause is another obstacle
+    ],
+)
+def test_another_number_at_a_place_is_another_obstacle_unless_its_track_was_renumbered(
+    plane: Plane, renumbered: int, pause_s: float, goes_back: bool
+) -> None:
+    plane.renumbered = 3
+    plane.run(1.0, status=0)
+    plane.send(plane.hazard())
+    plane.run(1.1, status=LEFT)
+    plane.send(plane.hazard())
+    plane.run(pause_s, status=LEFT)
+    plane.renumbered += renumbered
+    plane.send(plane.hazard(id=8))
+    plane.run(2.0, status=LEFT)
+    plane.send(plane.hazard(id=8, action=0, flags=0))
+    plane.run(7.0, status=0)
+    assert plane.modes == [GUIDED] + ([AUTO] if goes_back else [])
+    assert sum("circling" in text for text in plane.texts) == (not goes_back)
+
+
+def test_an_obstacle_that_is_passed_may_lose_its_place_to_another_one(plane: Plane) -> None:
+    plane.send(plane.hazard())
+    plane.run(2.0, status=LEFT)
+    plane.send(plane.hazard(action=0, flags=0))
+    plane.run(0.2)
+    plane.send(plane.hazard(id=8))
+    plane.run(2.0, status=LEFT)
+    plane.send(plane.hazard(id=8, action=0, flags=0))
+    plane.run(2.0, status=0)
+    assert plane.modes == [GUIDED, AUTO]
 
 
 def test_an_order_that_comes_back_goes_on(plane: Plane) -> None:
