@@ -62,8 +62,9 @@ local any_polygon = parameter(4, "POLYGON", 0) -- 1: fly orders although no scri
 local own_system = param:get("MAV_SYSID") or param:get("SYSID_THISMAV") or 1
 
 local mode_before -- while this script has changed the mode
+local mode_led -- in which the order is flown: GUIDED, or AUTO after a go-around
 local from_landing = false -- it was landing then
-local overruled = false
+local overruled = false -- another mode was chosen: until the order ends
 local held -- lat, lon of the latest target that was flown to
 local standing -- the order: named, doubts, action, lat, lon, down; over_ms: since then the companion gives none.
 -- named: by its place in the table, each obstacle that the order was about: number; is_past: it is reported without an order;
@@ -245,12 +246,13 @@ end
 
 local function take_status(payload)
     renumbered = string.unpack("<H", payload, 15)
-    if standing then
-        judge_doubts()
-    end
+    local has_ended = string.unpack("<B", payload, 30) == 0
     if not standing then
+        overruled = overruled and not has_ended -- the order ended in a silence
         return
-    elseif string.unpack("<B", payload, 30) ~= 0 then
+    end
+    judge_doubts()
+    if not has_ended then
         standing.over_ms = nil
     elseif not standing.over_ms then
         standing.over_ms = millis()
@@ -492,12 +494,13 @@ local function height_to_climb_m()
     return up_m
 end
 
+-- Once; the landing sequence goes on from there.
 local function go_around()
-    if vehicle:get_mode() == AUTO and vehicle:is_landing() then
+    if not mode_led and vehicle:get_mode() == AUTO and vehicle:is_landing() then
         say(TEXT_WARNING, "go around")
         gcs:run_command_int(DO_GO_AROUND, { p1 = height_to_climb_m() })
+        mode_led = AUTO
     end
-    overruled = true -- once; the landing sequence goes on from there
 end
 
 local function begin_order()
@@ -506,7 +509,8 @@ local function begin_order()
     if standing.action == GO_AROUND then
         go_around()
     elseif (mode == AUTO or mode == CRUISE) and not vehicle:is_taking_off() and target() and vehicle:set_mode(GUIDED) then
-        mode_before, from_landing, held = mode, is_landing, nil
+        mode_before, from_landing, held = mode, is_landing or mode_led == AUTO, nil
+        mode_led = GUIDED
         say(TEXT_WARNING, "flying past an obstacle")
         fly_to_target()
     elseif is_landing then -- to its target no side may be flown: up at least
@@ -518,12 +522,12 @@ local function follow_order()
     if overruled then
         return
     end
-    if not mode_before then
-        begin_order()
-    elseif vehicle:get_mode() ~= GUIDED then
-        mode_before = nil
+    if mode_led and vehicle:get_mode() ~= mode_led then
+        mode_before, mode_led = nil, nil
         overruled = true
         say(TEXT_INFO, "left to whoever chose the mode")
+    elseif not mode_before then
+        begin_order()
     elseif millis() - sent_ms > RENEW_MS then
         fly_to_target()
     end
@@ -544,6 +548,10 @@ local function is_passed()
     return are_all_past() and not from_landing and (action == LEFT or action == RIGHT or action == CLIMB)
 end
 
+local function forget_order()
+    standing, mode_before, mode_led, overruled = nil, nil, nil, false
+end
+
 local function end_order()
     if mode_before and vehicle:get_mode() == GUIDED then
         if is_passed() then
@@ -555,7 +563,8 @@ local function end_order()
             say(TEXT_WARNING, "not surely past, circling: pilot to decide")
         end
     end
-    standing, mode_before, overruled, said = nil, nil, false, {}
+    forget_order()
+    said = {}
 end
 
 -- Its report without an order may come after the word that there is none.
@@ -577,13 +586,13 @@ end
 local function update()
     local is_busy = receive()
     if enable:get() < 1 or not arming:is_armed() then
-        standing, mode_before, overruled = nil, nil, false
+        forget_order()
     elseif standing then
         local silent = watch_silence()
         if is_over() then
             end_order()
         elseif silent and not mode_before then
-            standing = nil
+            standing, mode_led = nil, nil
         elseif not standing.over_ms then
             follow_order()
         end

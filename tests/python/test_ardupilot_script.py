@@ -496,6 +496,59 @@ def test_a_go_around_after_a_side_climbs_at_the_place_of_the_side(
     assert {place[:2] for place in plane.places} == {(474000000, 85460000)}
 
 
+def test_a_side_after_a_go_around_is_flown(plane: Plane) -> None:
+    """The go-around leads over a top that is not known. The layer then finds a side that is clear."""
+    plane.landing = True
+    plane.send(plane.hazard(action=GO_AROUND))
+    plane.run(1.0, status=GO_AROUND)
+    plane.landing = False  # the autopilot climbs
+    plane.send(plane.hazard())
+    plane.run(1.0, status=LEFT)
+    assert plane.commands == [DO_GO_AROUND] and plane.modes == [GUIDED] and len(plane.places) >= 1
+    plane.pass_by()
+    assert plane.mode == GUIDED
+    assert any("broke off landing" in text for text in plane.texts)
+
+
+@pytest.mark.parametrize("mode", [LOITER, AUTO])
+def test_a_mode_that_was_chosen_after_a_go_around_is_not_fought(plane: Plane, mode: int) -> None:
+    plane.landing = True
+    plane.send(plane.hazard(action=GO_AROUND))
+    plane.run(1.0, status=GO_AROUND)
+    plane.mode, plane.landing = LOITER, False
+    plane.run(0.5, status=GO_AROUND)
+    plane.mode = mode
+    plane.send(plane.hazard())
+    plane.run(2.0, status=LEFT)
+    assert plane.modes == [] and plane.commands == [DO_GO_AROUND]
+    assert any("whoever" in text for text in plane.texts)
+
+
+def test_a_go_around_before_the_autopilot_lands_is_commanded_when_it_does(plane: Plane) -> None:
+    for landing in (False, True):
+        plane.landing = landing
+        plane.send(plane.hazard(action=GO_AROUND))
+        plane.run(1.0, status=GO_AROUND)
+        assert plane.commands == [DO_GO_AROUND] * landing
+
+
+def test_silence_after_an_order_that_a_pilot_overruled_hides_no_later_order(plane: Plane) -> None:
+    plane.send(plane.hazard())
+    plane.run(1.0, status=LEFT)
+    plane.mode = LOITER
+    plane.run(1.0, status=LEFT)
+    plane.run(5.0)
+    plane.mode = AUTO
+    plane.send(plane.hazard())
+    plane.run(2.0, status=LEFT)
+    assert plane.modes == [GUIDED]  # the same order is still the pilot's
+    plane.run(5.0)
+    plane.run(2.0, status=0)
+    plane.send(plane.hazard())
+    plane.run(1.0, status=LEFT)
+    assert plane.modes == [GUIDED, GUIDED]
+
+
 def test_a_landing_is_broken_off_where_no_side_may_be_flown(plane: Plane) -> None:
     plane.landing = True
     plane.own_alt = ORIGIN[2] + 1500  # below GOEP_ALT_MIN
