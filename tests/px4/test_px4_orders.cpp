@@ -270,6 +270,76 @@ static void an_order_in_hold_resumes_nothing() {
     TEST_ASSERT_FALSE(follow(ALL, true));
 }
 
+/* A side precedes a go-around over a top that is not known. */
+static void a_side_is_flown_in_landing() {
+    for (const goe_flight_action_t action : {GOE_FLIGHT_LEFT, GOE_FLIGHT_RIGHT, GOE_FLIGHT_HOLD}) {
+        for (const uint8_t mode : {MISSION, HOLD, LAND}) {
+            setUp();
+            assessment.action = action;
+            vehicle.nav_state = mode;
+            vehicle.lands = true;
+            TEST_ASSERT_TRUE(follow());
+            TEST_ASSERT_EQUAL(vehicle_command_s::VEHICLE_CMD_DO_REPOSITION, command.command);
+            accept(HOLD);
+            vehicle.lands = false;
+            for (int i = 0; i < 20; i++) {
+                TEST_ASSERT_FALSE(follow());
+            }
+            TEST_ASSERT_FALSE(orders.overruled());
+            assessment.action = GOE_FLIGHT_GO_AROUND; /* the top becomes known */
+            assessment.target_ned_m[2] = -40.f;
+            TEST_ASSERT_TRUE(follow());
+            TEST_ASSERT_EQUAL(vehicle_command_s::VEHICLE_CMD_DO_REPOSITION, command.command);
+            TEST_ASSERT_TRUE(__builtin_isnan(command.param5) && __builtin_isnan(command.param6));
+            CHECK_CLOSE(0, 529, command.param7);
+        }
+    }
+}
+
+static void in_landing_a_side_that_may_not_be_flown_is_a_go_around() {
+    for (const bool has_origin : {false, true}) {
+        for (const uint8_t mode : {MISSION, LAND}) {
+            setUp();
+            vehicle.nav_state = mode;
+            vehicle.lands = true;
+            vehicle.origin_known = has_origin;
+            const int32_t react = has_origin ? GOE_REACT_GO_AROUND : ALL;
+            TEST_ASSERT_TRUE(follow(react));
+            TEST_ASSERT_EQUAL(vehicle_command_s::VEHICLE_CMD_DO_GO_AROUND, command.command);
+            TEST_ASSERT_TRUE(orders.flown());
+            accept(mode == LAND ? HOLD : MISSION);
+            for (const bool lands : {true, false}) {
+                vehicle.lands = lands;
+                for (int i = 0; i < 20; i++) {
+                    TEST_ASSERT_FALSE(follow(react));
+                }
+            }
+            assessment.action = GOE_FLIGHT_NONE;
+            TEST_ASSERT_FALSE(follow(react, true));
+        }
+    }
+}
+
+/* From next to the runway it would lead to the same landing. */
+static void no_mission_is_resumed_after_a_side_in_landing() {
+    vehicle.lands = true;
+    TEST_ASSERT_TRUE(follow(ALL, true));
+    accept(HOLD);
+    vehicle.lands = false;
+    TEST_ASSERT_FALSE(follow(ALL, true));
+    assessment.action = GOE_FLIGHT_NONE;
+    for (int i = 0; i < 20; i++) {
+        TEST_ASSERT_FALSE(follow(ALL, true));
+    }
+    assessment.action = GOE_FLIGHT_LEFT; /* later in the mission */
+    vehicle.nav_state = MISSION;
+    TEST_ASSERT_TRUE(follow(ALL, true));
+    accept(HOLD);
+    TEST_ASSERT_FALSE(follow(ALL, true));
+    assessment.action = GOE_FLIGHT_NONE;
+    TEST_ASSERT_TRUE(follow(ALL, true));
+}
+
 static void a_go_around_is_given_in_landing() {
     assessment.action = GOE_FLIGHT_GO_AROUND;
     vehicle.nav_state = LAND;
@@ -716,6 +786,9 @@ int main() {
     RUN_TEST(the_mission_is_not_resumed_before_the_obstacle_is_passed);
     RUN_TEST(the_slot_is_that_of_the_latest_order);
     RUN_TEST(an_order_in_hold_resumes_nothing);
+    RUN_TEST(a_side_is_flown_in_landing);
+    RUN_TEST(in_landing_a_side_that_may_not_be_flown_is_a_go_around);
+    RUN_TEST(no_mission_is_resumed_after_a_side_in_landing);
     RUN_TEST(a_go_around_is_given_in_landing);
     RUN_TEST(a_go_around_climbs_as_high_as_the_top_requires);
     RUN_TEST(a_go_around_that_is_high_enough_is_left_to_px4);

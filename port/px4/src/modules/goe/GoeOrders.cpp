@@ -28,15 +28,22 @@ bool in_mission_or_hold(const GoeOrders::Vehicle &vehicle) {
 }
 
 bool may_command(goe_flight_action_t action, const GoeOrders::Vehicle &vehicle, int32_t react) {
+    const bool in_land = vehicle.nav_state == vehicle_status_s::NAVIGATION_STATE_AUTO_LAND;
     if (!vehicle.armed) {
         return false;
     }
     if (action == GOE_FLIGHT_GO_AROUND) {
-        return (react & GOE_REACT_GO_AROUND) != 0 &&
-               (in_mission_or_hold(vehicle) || vehicle.nav_state == vehicle_status_s::NAVIGATION_STATE_AUTO_LAND);
+        return (react & GOE_REACT_GO_AROUND) != 0 && (in_mission_or_hold(vehicle) || in_land);
     }
     return is_place(action) && (react & GOE_REACT_REPOSITION) != 0 && vehicle.origin_known &&
-           in_mission_or_hold(vehicle);
+           (in_mission_or_hold(vehicle) || (in_land && vehicle.lands));
+}
+
+/* While the aircraft lands, a side that may not be flown becomes a go-around: the landing leads into the obstacle. */
+goe_flight_action_t flown_action(goe_flight_action_t action, const GoeOrders::Vehicle &vehicle, int32_t react) {
+    const bool is_up = vehicle.lands && is_place(action) && !may_command(action, vehicle, react) &&
+                       may_command(GOE_FLIGHT_GO_AROUND, vehicle, react);
+    return is_up ? GOE_FLIGHT_GO_AROUND : action;
 }
 
 void start(vehicle_command_s &command, uint32_t number, const GoeOrders::Vehicle &vehicle) {
@@ -55,6 +62,7 @@ void GoeOrders::await(uint32_t command, const Vehicle &vehicle) {
     _awaited = command;
     _sent_us = vehicle.now_us;
     _given = true;
+    _breaks_off = _breaks_off || vehicle.lands;
 }
 
 void GoeOrders::reposition(const goe_flight_assessment_t &assessment, const Vehicle &vehicle,
@@ -76,7 +84,6 @@ void GoeOrders::go_around(float altitude_m, const Vehicle &vehicle, vehicle_comm
     start(command, vehicle_command_s::VEHICLE_CMD_DO_GO_AROUND, vehicle);
     command.param1 = vehicle.altitude_known ? altitude_m : 0.f;
     await(command.command, vehicle);
-    _goes_around = true;
 }
 
 /* Upwards, where PX4 holds. It flies straight on until it is almost that high. */
@@ -88,7 +95,7 @@ void GoeOrders::raise(float altitude_m, const Vehicle &vehicle, vehicle_command_
     command.param5 = command.param6 = static_cast<double>(NAN);
     command.param7 = altitude_m;
     await(command.command, vehicle);
-    _raised = _goes_around = true;
+    _raised = _breaks_off = true;
 }
 
 void GoeOrders::set_mission(const Vehicle &vehicle, vehicle_command_s &command) {
@@ -125,7 +132,7 @@ void GoeOrders::watch_mode(const Vehicle &vehicle) {
 
 void GoeOrders::begin(goe_flight_action_t action) {
     if (_action == GOE_FLIGHT_NONE) {
-        _has_led = _overruled = _given = _goes_around = _raised = false;
+        _has_led = _overruled = _given = _breaks_off = _raised = false;
     }
     _action = action;
     _wants_mission = false;
@@ -141,7 +148,7 @@ bool GoeOrders::may_resume(const Vehicle &vehicle) const {
 bool GoeOrders::is_past(const Vehicle &vehicle) const { return vehicle.obstacle_known && _action != GOE_FLIGHT_HOLD; }
 
 bool GoeOrders::end(const Vehicle &vehicle, bool resume, vehicle_command_s &command) {
-    _wants_mission = resume && _has_led && !_overruled && !_goes_around && is_past(vehicle) &&
+    _wants_mission = resume && _has_led && !_overruled && !_breaks_off && is_past(vehicle) &&
                      _mode_before == vehicle_status_s::NAVIGATION_STATE_AUTO_MISSION;
     _resumes_left = RESUMES_MAX;
     _action = GOE_FLIGHT_NONE;
@@ -188,10 +195,10 @@ bool GoeOrders::go_on_around(const goe_flight_assessment_t &assessment, const Ve
 bool GoeOrders::go_on(const goe_flight_assessment_t &assessment, const Vehicle &vehicle, int32_t react, bool is_new,
                       vehicle_command_s &command) {
     watch_mode(vehicle);
-    if (_overruled || !may_command(assessment.action, vehicle, react)) {
+    if (_overruled || !may_command(_action, vehicle, react)) {
         return false;
     }
-    if (assessment.action == GOE_FLIGHT_GO_AROUND) {
+    if (_action == GOE_FLIGHT_GO_AROUND) {
         return go_on_around(assessment, vehicle, is_new, command);
     }
     const bool due = is_new || !_given || is_unanswered(vehicle) || has_moved(assessment);
@@ -206,10 +213,11 @@ bool GoeOrders::follow(const goe_flight_assessment_t &assessment, const Vehicle 
     if (assessment.action == GOE_FLIGHT_NONE) {
         return _action == GOE_FLIGHT_NONE ? repeat_resume(vehicle, command) : end(vehicle, resume, command);
     }
-    const bool is_new = assessment.action != _action;
+    const goe_flight_action_t action = flown_action(assessment.action, vehicle, react);
+    const bool is_new = action != _action;
     _slot = assessment.avoided;
     if (is_new) {
-        begin(assessment.action);
+        begin(action);
     }
     return go_on(assessment, vehicle, react, is_new, command);
 }

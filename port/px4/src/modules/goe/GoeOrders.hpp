@@ -10,9 +10,10 @@
 
 /* Left, right, climb and hold become DO_REPOSITION with a change of mode to Hold; again when the target moves by 5 m, and until
  * PX4 acknowledges it. Go around becomes DO_GO_AROUND, and when PX4 has taken that, DO_REPOSITION upwards if its height is too low
- * for the obstacle's top. Only while armed, in Mission or Hold (go around: also in Land). A pilot or
- * a failsafe that chooses another mode has priority: no command follows until the end of the order. The mission continues only
- * when the obstacle is known to be passed. */
+ * for the obstacle's top. Only while armed, in Mission or Hold, and to break off a landing in Land. A side that may not be flown
+ * breaks a landing off like go around. A pilot or a failsafe that chooses another mode has priority: no command follows until the
+ * end of the order. The mission continues only when the obstacle is known to be passed, and never after a landing that was broken
+ * off. */
 class GoeOrders {
   public:
     /* Where the aircraft is and how PX4 flies it. */
@@ -62,11 +63,11 @@ class GoeOrders {
     bool is_unanswered(const Vehicle &vehicle) const;
     void set_mission(const Vehicle &vehicle, vehicle_command_s &command);
 
-    goe_flight_action_t _action{GOE_FLIGHT_NONE};
+    goe_flight_action_t _action{GOE_FLIGHT_NONE}; /* as it is flown */
     int8_t _slot{-1};
     uint8_t _mode_before{0};
     bool _given{false}, _has_led{false}, _overruled{false}, _wants_mission{false};
-    bool _goes_around{false}, _raised{false}; /* since the order began */
+    bool _breaks_off{false}, _raised{false}; /* since the order began: a landing; the altitude where PX4 holds */
     uint8_t _resumes_left{0};
     uint32_t _awaited{0}; /* command whose acknowledgement is awaited; 0: none */
     uint64_t _sent_us{0};
