@@ -119,15 +119,30 @@ static const char *find_hindrance(const orders_t *orders, goe_flight_action_t ac
     return NULL;
 }
 
+/* While the autopilot lands, a side that is hindered becomes a go-around: the landing leads into the obstacle. */
+static goe_flight_action_t find_flown(const orders_t *orders, goe_flight_action_t action) {
+    const bool is_up = orders->autopilot->landing && is_place(action) && find_hindrance(orders, action) != NULL &&
+                       find_hindrance(orders, GOE_FLIGHT_GO_AROUND) == NULL;
+    return is_up ? GOE_FLIGHT_GO_AROUND : action;
+}
+
 /* --------------------------------------------------------------------------------------------------------------- px4 -- */
+
+/* PX4 flies DO_GO_AROUND only while it lands. After a side it holds: there the target rises, and its place, which the flight layer found
+ * clear, stays. */
+static bool is_raised(const orders_t *orders) {
+    return orders->flown == GOE_FLIGHT_GO_AROUND && orders->placed && orders->autopilot->custom_mode == PX4_AUTO_LOITER;
+}
 
 static void reposition(orders_t *orders, const goe_flight_assessment_t *assessment, int64_t now_us) {
     mavlink_message_t message;
     orders->command = MAV_CMD_DO_REPOSITION;
     orders->sent_us = now_us;
-    orders->sent = true;
-    orders->target_lat_e7 = assessment->target_lat_e7;
-    orders->target_lon_e7 = assessment->target_lon_e7;
+    orders->sent = orders->placed = true;
+    if (orders->flown != GOE_FLIGHT_GO_AROUND) {
+        orders->target_lat_e7 = assessment->target_lat_e7;
+        orders->target_lon_e7 = assessment->target_lon_e7;
+    }
     orders->target_alt_m = orders->autopilot->origin_alt_m - assessment->target_ned_m[2];
     (void)mavlink_msg_command_int_pack(orders->wire->system, orders->wire->component, &message,
                                        orders->autopilot->system, MAV_COMP_ID_AUTOPILOT1, MAV_FRAME_GLOBAL_INT,
@@ -138,8 +153,10 @@ static void reposition(orders_t *orders, const goe_flight_assessment_t *assessme
 }
 
 static bool has_moved(const orders_t *orders, const goe_flight_assessment_t *assessment, int64_t now_us) {
-    const float aside_m = mode_watch_apart_m(assessment->target_lat_e7, assessment->target_lon_e7,
-                                             orders->target_lat_e7, orders->target_lon_e7);
+    const float aside_m = orders->flown == GOE_FLIGHT_GO_AROUND
+                              ? 0.0f
+                              : mode_watch_apart_m(assessment->target_lat_e7, assessment->target_lon_e7,
+                                                   orders->target_lat_e7, orders->target_lon_e7);
     const float up_m = orders->autopilot->origin_alt_m - assessment->target_ned_m[2] - orders->target_alt_m;
     return now_us - orders->sent_us >= TARGET_EVERY_US && hypotf(aside_m, up_m) > TARGET_MOVED_M;
 }
@@ -166,10 +183,11 @@ static void go_around(orders_t *orders, const goe_flight_assessment_t *assessmen
 }
 
 static void follow_px4(orders_t *orders, const goe_flight_assessment_t *assessment, bool at_once, int64_t now_us) {
-    if (assessment->action == GOE_FLIGHT_GO_AROUND) {
+    const bool is_placed = is_place(orders->flown) || is_raised(orders);
+    if (!is_placed) {
         go_around(orders, assessment, at_once, now_us);
-    } else if (is_place(assessment->action) && (at_once || is_unanswered(orders, MAV_CMD_DO_REPOSITION, now_us) ||
-                                                has_moved(orders, assessment, now_us))) {
+    } else if (at_once || is_unanswered(orders, MAV_CMD_DO_REPOSITION, now_us) ||
+               has_moved(orders, assessment, now_us)) {
         reposition(orders, assessment, now_us);
     }
 }
@@ -252,7 +270,7 @@ static void break_off_landing(orders_t *orders, const goe_flight_assessment_t *a
 
 static void follow_arduplane(orders_t *orders, const goe_flight_assessment_t *assessment, const goe_mavlink_own_t *own,
                              bool at_once, int64_t now_us) {
-    if (assessment->action == GOE_FLIGHT_GO_AROUND) {
+    if (orders->flown == GOE_FLIGHT_GO_AROUND) {
         go_around(orders, assessment, at_once, now_us);
     } else {
         break_off_landing(orders, assessment, now_us);
@@ -263,7 +281,7 @@ static void follow_arduplane(orders_t *orders, const goe_flight_assessment_t *as
 /* ---------------------------------------------------------------------------------------------------------- silence -- */
 
 static void watch_pilot(orders_t *orders) {
-    const bool leads = orders->action != GOE_FLIGHT_GO_AROUND;
+    const bool leads = orders->flown != GOE_FLIGHT_GO_AROUND || orders->placed;
     const bool is_px4 = orders->config->reaction_mode == REACTION_PX4;
     if (orders->overruled || !orders->sent) {
         return;
@@ -404,7 +422,7 @@ static void keep(orders_t *orders) {
 
 static void begin_first(orders_t *orders) {
     mode_watch_begin(&orders->watch, orders->autopilot, find_mode_before(orders));
-    orders->broke_off = false;
+    orders->broke_off = orders->placed = false;
     orders->sent = orders->left.active && orders->watch.mode_before == orders->left.mode_before &&
                    orders->autopilot->custom_mode == PX4_AUTO_LOITER;
     orders->left.active = false;
@@ -484,11 +502,15 @@ void orders_follow(orders_t *orders, const goe_flight_assessment_t *assessment, 
         begin(orders, assessment);
     }
     if (assessment->action == GOE_FLIGHT_NONE) {
+        orders->flown = GOE_FLIGHT_NONE;
         go_on_resuming(orders, now_us);
         follow_left(orders, now_us);
         return;
     }
-    const bool at_once = watch(orders, assessment->action, is_new) || is_new;
+    const goe_flight_action_t flown = find_flown(orders, assessment->action);
+    const bool is_other = is_new || flown != orders->flown;
+    orders->flown = flown;
+    const bool at_once = watch(orders, flown, is_other) || is_other;
     if (orders->silenced) {
         return;
     }
@@ -520,6 +542,7 @@ void orders_take(orders_t *orders, const mavlink_message_t *message) {
     screen_show(orders->screen, SCREEN_SILENCE, MAV_SEVERITY_WARNING, "GOE: autopilot refuses the order");
     put_log(orders, "refused", "");
     if (answer.result == MAV_RESULT_DENIED || answer.result == MAV_RESULT_UNSUPPORTED) {
+        orders->placed = orders->placed && orders->watch.led;
         orders->denied = orders->silenced = true; /* it will not think better of it; others may be tried again */
         orders->command = 0;
     }

@@ -2,10 +2,12 @@
  *
  * px4:        If reaction.modes names the present mode, an order becomes DO_REPOSITION, repeated until it is acknowledged and sent again
  *             when the target has moved. After the order the companion requests the previous mode if the obstacle is known to be passed;
- *             otherwise the autopilot keeps loitering.
+ *             otherwise the autopilot keeps loitering. A go-around becomes DO_GO_AROUND; in Hold, after another order, it
+ *             raises the target, because PX4 flies DO_GO_AROUND only while it lands.
  * arduplane:  ADSB_VEHICLE for all obstacles while the order is active; the autopilot chooses the reaction.
  *
- * The conditions for an order (armed, mode, origin) are checked while it is active. If the pilot chooses another mode (mode_watch.h),
+ * The conditions for an order (armed, mode, origin) are checked while it is active. While the autopilot lands, an order that they prevent
+ * becomes a go-around, if they do not prevent that. If the pilot chooses another mode (mode_watch.h),
  * no command is sent until all orders have ended. */
 #ifndef ORDERS_H
 #define ORDERS_H
@@ -26,12 +28,14 @@ typedef struct {
     const goe_flight_t *flight;
 
     goe_flight_action_t action;           /* active order */
+    goe_flight_action_t flown;            /* the same, as it is sent: in a landing a hindered side is a go-around */
     int slot;                             /* of its obstacle, or that of the latest order; -1: none, or given up */
     bool overruled;                       /* a pilot chose another mode: nothing is sent until all orders have ended */
     bool denied;                          /* the autopilot denied or does not support a command of this order */
     const char *hindrance;                /* condition that prevents commands now; null: none */
     bool silenced;                        /* overruled, denied, or there is a hindrance */
     bool sent;                            /* a command or traffic was sent since the first of the active orders */
+    bool placed;                          /* px4: a target was sent since then, and PX4 has not denied it */
     int32_t target_lat_e7, target_lon_e7; /* target that was sent last */
     float target_alt_m;
     int64_t sent_us;    /* own time of the latest command */

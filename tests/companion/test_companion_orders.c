@@ -471,6 +471,71 @@ static void a_go_around_carries_the_height_that_the_top_requires(void) {
     CHECK_SAME(0.0f, mavlink_msg_command_long_get_param1(&latest));
 }
 
+/* The top becomes known. PX4 flies DO_GO_AROUND only while it lands: in Hold the aircraft would circle level. */
+static void a_go_around_after_a_side_raises_the_target(void) {
+    for (int early = 0; early < 2; early++) { /* also before Hold is reported */
+        tearDown();
+        setUp();
+        autopilot.landing = true;
+        autopilot.origin_alt_m = 400.0f;
+        decide(GOE_FLIGHT_LEFT);
+        go_on(1, MISSION);
+        if (early == 0) {
+            answer(MAV_CMD_DO_REPOSITION, MAV_RESULT_ACCEPTED);
+            go_on(20, LOITER);
+        }
+        (void)count_commands(0);
+        decide(GOE_FLIGHT_GO_AROUND);
+        assessment.target_lat_e7 += 10000; /* straight on, past the side */
+        assessment.target_ned_m[2] = -45.0f;
+        go_on(early == 0 ? 1 : 20, LOITER);
+        TEST_ASSERT_TRUE(count_commands(MAV_CMD_DO_REPOSITION) >= 1);
+        TEST_ASSERT_EQUAL_INT32(474000000, mavlink_msg_command_int_get_x(&latest));
+        CHECK_SAME(445.0f, mavlink_msg_command_int_get_z(&latest));
+        answer(MAV_CMD_DO_REPOSITION, MAV_RESULT_ACCEPTED);
+        go_on(40, LOITER);
+        TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_REPOSITION));
+        TEST_ASSERT_FALSE(orders.silenced);
+        go_on(20, MISSION); /* a pilot's choice */
+        TEST_ASSERT_TRUE(orders.overruled);
+    }
+}
+
+static void a_go_around_after_a_side_that_was_denied_is_one(void) {
+    autopilot.landing = true;
+    decide(GOE_FLIGHT_LEFT);
+    go_on(1, MISSION);
+    answer(MAV_CMD_DO_REPOSITION, MAV_RESULT_DENIED);
+    decide(GOE_FLIGHT_GO_AROUND);
+    go_on(1, MISSION);
+    TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_GO_AROUND));
+    answer(MAV_CMD_DO_GO_AROUND, MAV_RESULT_ACCEPTED);
+    go_on(60, MISSION);
+    TEST_ASSERT_FALSE(orders.overruled);
+}
+
+/* The landing leads into the obstacle: up at least. */
+static void in_landing_a_side_that_is_hindered_is_a_go_around(void) {
+    for (int has_origin = 0; has_origin < 2; has_origin++) {
+        const uint32_t mode = has_origin ? LAND : MISSION;
+        tearDown();
+        setUp();
+        autopilot.custom_mode = mode;
+        autopilot.landing = true;
+        autopilot.origin_given = has_origin != 0;
+        decide(GOE_FLIGHT_RIGHT);
+        go_on(1, mode);
+        TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_GO_AROUND));
+        answer(MAV_CMD_DO_GO_AROUND, MAV_RESULT_ACCEPTED);
+        go_on(40, mode);
+        TEST_ASSERT_FALSE(orders.silenced);
+        autopilot.base_mode = 0;
+        go_on(1, mode);
+        TEST_ASSERT_TRUE(orders.silenced);
+    }
+    TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_GO_AROUND));
+}
+
 /* ------------------------------------------------------------------------------------------------------- arduplane -- */
 
 static void fly_arduplane(void) {
@@ -735,6 +800,9 @@ int main(void) {
     RUN_TEST(a_late_acknowledgement_gives_the_mode_its_time);
     RUN_TEST(another_action_may_be_accepted_where_one_was_denied);
     RUN_TEST(a_go_around_carries_the_height_that_the_top_requires);
+    RUN_TEST(a_go_around_after_a_side_raises_the_target);
+    RUN_TEST(a_go_around_after_a_side_that_was_denied_is_one);
+    RUN_TEST(in_landing_a_side_that_is_hindered_is_a_go_around);
     RUN_TEST(a_side_breaks_a_landing_off);
     RUN_TEST(a_side_outside_a_landing_is_traffic_alone);
     RUN_TEST(every_obstacle_is_traffic);
