@@ -53,7 +53,7 @@ static void put_log(orders_t *orders, const char *what, const char *why) {
     row.left.boot_us = orders->boot_us;
     row.left.action = (unsigned)orders->action;
     row.left.mode_before = orders->watch.mode_before;
-    row.left.active = orders->active.active && !orders->overruled;
+    row.left.active = orders->active.active && !orders->overruled && !orders->from_landing;
     order_log_put(orders->log, &row);
 }
 
@@ -207,7 +207,8 @@ static bool is_obstacle_known(const orders_t *orders) {
            (obstacle.valid & GOE_HAS_POSITION) != 0u;
 }
 
-/* Back into the previous mode, once the obstacle is behind. An obstacle that is only out of view may be ahead there. */
+/* Back into the previous mode, once the obstacle is behind. An obstacle that is only out of view may be ahead there. A landing would be
+ * continued from next to the runway. */
 static void resume(orders_t *orders, goe_flight_action_t ended, int64_t now_us) {
     const bool is_past = is_obstacle_known(orders) &&
                          (ended == GOE_FLIGHT_LEFT || ended == GOE_FLIGHT_RIGHT || ended == GOE_FLIGHT_CLIMB);
@@ -216,8 +217,9 @@ static void resume(orders_t *orders, goe_flight_action_t ended, int64_t now_us) 
         orders->autopilot->custom_mode != PX4_AUTO_LOITER) {
         return;
     }
-    if (!is_past) {
-        event("the obstacle is not known to be passed: the autopilot stays where it loiters");
+    if (!is_past || orders->from_landing) {
+        event("%s: the autopilot stays where it loiters",
+              is_past ? "a landing was broken off" : "the obstacle is not known to be passed");
         return;
     }
     orders->resumes_left = RESUMES_MAX;
@@ -481,6 +483,13 @@ static void forget_after_restart(orders_t *orders) {
     }
 }
 
+/* Of an order. Without an obstacle of its own, another one may take the slot. */
+static void note_obstacle_and_landing(orders_t *orders, const goe_flight_assessment_t *assessment) {
+    const bool was_from_landing = orders->action != GOE_FLIGHT_NONE && orders->from_landing;
+    orders->from_landing = was_from_landing || orders->autopilot->landing;
+    orders->slot = assessment->avoided < 0 ? -1 : (int)(uint8_t)assessment->avoided;
+}
+
 void orders_follow(orders_t *orders, const goe_flight_assessment_t *assessment, const goe_mavlink_own_t *own,
                    int64_t now_us) {
     if (orders->config->reaction_mode == REACTION_OFF) {
@@ -489,9 +498,7 @@ void orders_follow(orders_t *orders, const goe_flight_assessment_t *assessment, 
     forget_after_restart(orders);
     const bool is_new = assessment->action != orders->action;
     if (assessment->action != GOE_FLIGHT_NONE) {
-        orders->slot = assessment->avoided < 0
-                           ? -1
-                           : (int)(uint8_t)assessment->avoided; /* without one, another obstacle may take the slot */
+        note_obstacle_and_landing(orders, assessment);
     }
     orders->assessment = *assessment;
     orders->unix_us = (int64_t)own->unix_usec;

@@ -501,6 +501,30 @@ static void a_go_around_after_a_side_raises_the_target(void) {
     }
 }
 
+/* From next to the runway the mode before would lead to the same landing. */
+static void no_landing_is_resumed(void) {
+    know_obstacle(true);
+    for (int around = 0; around < 2; around++) {
+        autopilot.custom_mode = MISSION;
+        autopilot.landing = true;
+        decide(around ? GOE_FLIGHT_GO_AROUND : GOE_FLIGHT_LEFT);
+        go_on(1, MISSION);
+        answer(around ? MAV_CMD_DO_GO_AROUND : MAV_CMD_DO_REPOSITION, MAV_RESULT_ACCEPTED);
+        autopilot.landing = false;
+        decide(GOE_FLIGHT_LEFT);
+        go_on(5, LOITER);
+        answer(MAV_CMD_DO_REPOSITION, MAV_RESULT_ACCEPTED);
+        go_on(30, LOITER);
+        decide(GOE_FLIGHT_NONE);
+        go_on(30, LOITER);
+        TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_SET_MODE));
+    }
+    ordered_again(); /* later in the mission */
+    decide(GOE_FLIGHT_NONE);
+    go_on(1, LOITER);
+    TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_SET_MODE));
+}
+
 static void a_go_around_after_a_side_that_was_denied_is_one(void) {
     autopilot.landing = true;
     decide(GOE_FLIGHT_LEFT);
@@ -743,6 +767,13 @@ static void the_log_shows_whether_an_order_is_active(void) {
     TEST_ASSERT_FALSE(order_log_read(folder, &read));
     decide(GOE_FLIGHT_NONE);
     go_on(1, MISSION);
+    autopilot.landing = true; /* a landing is not resumed either */
+    decide(GOE_FLIGHT_LEFT);
+    go_on(1, MISSION);
+    TEST_ASSERT_FALSE(order_log_read(folder, &read));
+    autopilot.landing = false;
+    decide(GOE_FLIGHT_NONE);
+    go_on(1, MISSION);
     decide(GOE_FLIGHT_LEFT);
     go_on(1, MISSION);
     TEST_ASSERT_TRUE(order_log_read(folder, &read));
@@ -802,6 +833,7 @@ int main(void) {
     RUN_TEST(a_go_around_carries_the_height_that_the_top_requires);
     RUN_TEST(a_go_around_after_a_side_raises_the_target);
     RUN_TEST(a_go_around_after_a_side_that_was_denied_is_one);
+    RUN_TEST(no_landing_is_resumed);
     RUN_TEST(in_landing_a_side_that_is_hindered_is_a_go_around);
     RUN_TEST(a_side_breaks_a_landing_off);
     RUN_TEST(a_side_outside_a_landing_is_traffic_alone);
