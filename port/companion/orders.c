@@ -255,8 +255,8 @@ static void send_traffic(orders_t *orders, const goe_mavlink_own_t *own, bool at
     for (int slot = 0; slot < GOE_FLIGHT_SLOTS; slot++) {
         send_one(orders, slot, own);
     }
-    if (!orders->sent) {
-        orders->sent = true;
+    if (!orders->has_traffic) {
+        orders->sent = orders->has_traffic = true;
         put_log(orders, "traffic", "");
     }
 }
@@ -272,10 +272,13 @@ static void break_off_landing(orders_t *orders, const goe_flight_assessment_t *a
 
 static void follow_arduplane(orders_t *orders, const goe_flight_assessment_t *assessment, const goe_mavlink_own_t *own,
                              bool at_once, int64_t now_us) {
-    if (orders->flown == GOE_FLIGHT_GO_AROUND) {
+    const bool is_up = orders->flown == GOE_FLIGHT_GO_AROUND;
+    if (is_up) {
         go_around(orders, assessment, at_once, now_us);
     } else {
         break_off_landing(orders, assessment, now_us);
+    }
+    if (!is_up || orders->has_traffic) { /* when traffic ends, ArduPlane flies back towards the obstacle */
         send_traffic(orders, own, at_once, now_us);
     }
 }
@@ -424,7 +427,7 @@ static void keep(orders_t *orders) {
 
 static void begin_first(orders_t *orders) {
     mode_watch_begin(&orders->watch, orders->autopilot, find_mode_before(orders));
-    orders->broke_off = orders->placed = false;
+    orders->broke_off = orders->placed = orders->has_traffic = false;
     orders->sent = orders->left.active && orders->watch.mode_before == orders->left.mode_before &&
                    orders->autopilot->custom_mode == PX4_AUTO_LOITER;
     orders->left.active = false;

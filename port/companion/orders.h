@@ -41,6 +41,7 @@ typedef struct {
     int64_t sent_us;    /* own time of the latest command */
     int64_t traffic_us; /* own time of the latest traffic messages */
     bool from_landing;  /* the autopilot was landing since the first of the active orders: no mode is resumed */
+    bool has_traffic;   /* arduplane: traffic was sent since then */
     bool broke_off;     /* arduplane: an abort of the present landing was requested */
     uint16_t command;   /* command whose acknowledgement is awaited; 0: none */
     mode_watch_t watch;

@@ -601,6 +601,26 @@ static void a_side_breaks_a_landing_off(void) {
     TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_GO_AROUND));
 }
 
+/* Without traffic ArduPlane's avoidance ends, and it flies back towards the obstacle. */
+static void a_go_around_after_a_side_keeps_the_traffic(void) {
+    fly_arduplane();
+    autopilot.landing = true;
+    go_on(5, AUTO);
+    answer(MAV_CMD_DO_GO_AROUND, MAV_RESULT_ACCEPTED);
+    autopilot.landing = false;
+    go_on(10, AVOID);
+    (void)count_traffic();
+    decide(GOE_FLIGHT_GO_AROUND);
+    go_on(20, AVOID);
+    TEST_ASSERT_EQUAL_INT(8, count_traffic());
+    decide(GOE_FLIGHT_NONE);
+    go_on(20, AVOID);
+    decide(GOE_FLIGHT_GO_AROUND); /* the first of its orders */
+    (void)count_traffic();
+    go_on(20, AUTO);
+    TEST_ASSERT_EQUAL_INT(0, count_traffic());
+}
+
 static void a_side_outside_a_landing_is_traffic_alone(void) {
     fly_arduplane();
     go_on(20, AUTO);
@@ -836,6 +856,7 @@ int main(void) {
     RUN_TEST(no_landing_is_resumed);
     RUN_TEST(in_landing_a_side_that_is_hindered_is_a_go_around);
     RUN_TEST(a_side_breaks_a_landing_off);
+    RUN_TEST(a_go_around_after_a_side_keeps_the_traffic);
     RUN_TEST(a_side_outside_a_landing_is_traffic_alone);
     RUN_TEST(every_obstacle_is_traffic);
     RUN_TEST(a_pilots_mode_ends_traffic);
