@@ -53,7 +53,7 @@ static void put_log(orders_t *orders, const char *what, const char *why) {
     row.left.boot_us = orders->boot_us;
     row.left.action = (unsigned)orders->action;
     row.left.mode_before = orders->watch.mode_before;
-    row.left.active = orders->active.active && !orders->overruled && !orders->from_landing;
+    row.left.active = orders->active.active && !orders->overruled && !orders->gave_up && !orders->from_landing;
     order_log_put(orders->log, &row);
 }
 
@@ -210,7 +210,7 @@ static bool is_obstacle_known(const orders_t *orders) {
 /* Back into the previous mode, once the obstacle is behind. An obstacle that is only out of view may be ahead there. A landing would be
  * continued from next to the runway. */
 static void resume(orders_t *orders, goe_flight_action_t ended, int64_t now_us) {
-    const bool is_past = is_obstacle_known(orders) &&
+    const bool is_past = is_obstacle_known(orders) && !orders->gave_up &&
                          (ended == GOE_FLIGHT_LEFT || ended == GOE_FLIGHT_RIGHT || ended == GOE_FLIGHT_CLIMB);
     orders->resumes_left = 0;
     if (orders->config->reaction_resume == 0 || orders->silenced || orders->watch.mode_before == PX4_AUTO_LOITER ||
@@ -486,10 +486,11 @@ static void forget_after_restart(orders_t *orders) {
     }
 }
 
-/* Of an order. Without an obstacle of its own, another one may take the slot. */
+/* Of an order, since its begin. After an obstacle was given up, another one may take its slot. */
 static void note_obstacle_and_landing(orders_t *orders, const goe_flight_assessment_t *assessment) {
-    const bool was_from_landing = orders->action != GOE_FLIGHT_NONE && orders->from_landing;
-    orders->from_landing = was_from_landing || orders->autopilot->landing;
+    const bool goes_on = orders->action != GOE_FLIGHT_NONE;
+    orders->gave_up = (goes_on && orders->gave_up) || assessment->avoided < 0;
+    orders->from_landing = (goes_on && orders->from_landing) || orders->autopilot->landing;
     orders->slot = assessment->avoided < 0 ? -1 : (int)(uint8_t)assessment->avoided;
 }
 

@@ -40,6 +40,7 @@ typedef struct {
     float target_alt_m;
     int64_t sent_us;    /* own time of the latest command */
     int64_t traffic_us; /* own time of the latest traffic messages */
+    bool gave_up;       /* the layer gave up an obstacle since then: it is not known to be passed */
     bool from_landing;  /* the autopilot was landing since the first of the active orders: no mode is resumed */
     bool has_traffic;   /* arduplane: traffic was sent since then */
     bool broke_off;     /* arduplane: an abort of the present landing was requested */

@@ -282,6 +282,23 @@ static void another_obstacle_in_the_slot_is_not_the_one_that_was_avoided(void) {
     TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_SET_MODE));
 }
 
+/* The same if the order is later about another obstacle, and that one is passed. */
+static void an_obstacle_that_was_given_up_is_not_forgotten(void) {
+    know_obstacle(true);
+    ordered();
+    assessment.avoided = -1;
+    go_on(1, LOITER);
+    assessment.avoided = 0;
+    go_on(20, LOITER);
+    decide(GOE_FLIGHT_NONE);
+    go_on(30, LOITER);
+    TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_SET_MODE));
+    ordered_again();
+    decide(GOE_FLIGHT_NONE);
+    go_on(1, LOITER);
+    TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_SET_MODE));
+}
+
 /* With one heartbeat a second the mode is known late: the loiter of the previous order is not the mode before the new one, and the
  * mission that returns is not a pilot's choice. */
 static void a_second_order_within_a_heartbeat_of_the_first(void) {
@@ -851,6 +868,7 @@ int main(void) {
     RUN_TEST(a_late_acknowledgement_gives_the_mode_its_time);
     RUN_TEST(another_action_may_be_accepted_where_one_was_denied);
     RUN_TEST(a_go_around_carries_the_height_that_the_top_requires);
+    RUN_TEST(an_obstacle_that_was_given_up_is_not_forgotten);
     RUN_TEST(a_go_around_after_a_side_raises_the_target);
     RUN_TEST(a_go_around_after_a_side_that_was_denied_is_one);
     RUN_TEST(no_landing_is_resumed);

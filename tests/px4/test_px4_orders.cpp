@@ -261,6 +261,30 @@ static void the_slot_is_that_of_the_latest_order() {
     TEST_ASSERT_EQUAL(-1, orders.slot());
 }
 
+/* The layer gives up the obstacle of an order. Later the order is about another one, and that one is passed. */
+static void an_obstacle_that_was_given_up_is_not_forgotten() {
+    TEST_ASSERT_TRUE(follow(ALL, true));
+    accept(HOLD);
+    TEST_ASSERT_FALSE(follow(ALL, true));
+    for (const int8_t avoided : {-1, 2}) {
+        assessment.avoided = avoided;
+        TEST_ASSERT_FALSE(follow(ALL, true));
+    }
+    assessment.action = GOE_FLIGHT_NONE;
+    assessment.avoided = -1;
+    for (int i = 0; i < 20; i++) {
+        TEST_ASSERT_FALSE(follow(ALL, true));
+    }
+    vehicle.nav_state = MISSION;
+    assessment.action = GOE_FLIGHT_LEFT; /* the next order */
+    assessment.avoided = 2;
+    TEST_ASSERT_TRUE(follow(ALL, true));
+    accept(HOLD);
+    TEST_ASSERT_FALSE(follow(ALL, true));
+    assessment.action = GOE_FLIGHT_NONE;
+    TEST_ASSERT_TRUE(follow(ALL, true));
+}
+
 static void an_order_in_hold_resumes_nothing() {
     vehicle.nav_state = HOLD;
     TEST_ASSERT_TRUE(follow());
@@ -785,6 +809,7 @@ int main() {
     RUN_TEST(the_mission_is_resumed_after_a_target_that_moved);
     RUN_TEST(the_mission_is_not_resumed_before_the_obstacle_is_passed);
     RUN_TEST(the_slot_is_that_of_the_latest_order);
+    RUN_TEST(an_obstacle_that_was_given_up_is_not_forgotten);
     RUN_TEST(an_order_in_hold_resumes_nothing);
     RUN_TEST(a_side_is_flown_in_landing);
     RUN_TEST(in_landing_a_side_that_may_not_be_flown_is_a_go_around);

@@ -132,7 +132,7 @@ void GoeOrders::watch_mode(const Vehicle &vehicle) {
 
 void GoeOrders::begin(goe_flight_action_t action) {
     if (_action == GOE_FLIGHT_NONE) {
-        _has_led = _overruled = _given = _breaks_off = _raised = false;
+        _has_led = _overruled = _given = _breaks_off = _raised = _gave_up = false;
     }
     _action = action;
     _wants_mission = false;
@@ -145,7 +145,9 @@ bool GoeOrders::may_resume(const Vehicle &vehicle) const {
 
 /* The layer ends an order when the obstacle is behind, or the course back is clear of it, and its position is still known; or when
  * its track has ended. An obstacle that is only out of view may be ahead in the mission. */
-bool GoeOrders::is_past(const Vehicle &vehicle) const { return vehicle.obstacle_known && _action != GOE_FLIGHT_HOLD; }
+bool GoeOrders::is_past(const Vehicle &vehicle) const {
+    return vehicle.obstacle_known && !_gave_up && _action != GOE_FLIGHT_HOLD;
+}
 
 bool GoeOrders::end(const Vehicle &vehicle, bool resume, vehicle_command_s &command) {
     _wants_mission = resume && _has_led && !_overruled && !_breaks_off && is_past(vehicle) &&
@@ -219,6 +221,7 @@ bool GoeOrders::follow(const goe_flight_assessment_t &assessment, const Vehicle 
     if (is_new) {
         begin(action);
     }
+    _gave_up = _gave_up || assessment.avoided < 0; /* also if the order is about another obstacle later */
     return go_on(assessment, vehicle, react, is_new, command);
 }
 

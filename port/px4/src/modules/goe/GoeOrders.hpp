@@ -67,6 +67,7 @@ class GoeOrders {
     int8_t _slot{-1};
     uint8_t _mode_before{0};
     bool _given{false}, _has_led{false}, _overruled{false}, _wants_mission{false};
+    bool _gave_up{false};                    /* since the order began: the layer, an obstacle of it */
     bool _breaks_off{false}, _raised{false}; /* since the order began: a landing; the altitude where PX4 holds */
     uint8_t _resumes_left{0};
     uint32_t _awaited{0}; /* command whose acknowledgement is awaited; 0: none */
