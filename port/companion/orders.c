@@ -408,21 +408,31 @@ static uint32_t find_mode_before(orders_t *orders) {
     return may_be_old ? orders->watch.mode_before : autopilot->custom_mode;
 }
 
-/* What a restarted companion needs to go back. */
-static void keep(orders_t *orders) {
-    const mavlink_local_position_ned_t *own = &orders->autopilot->position;
-    const float speed_m_s = hypotf(own->vx, own->vy);
+/* What a restarted companion needs to go back: the obstacle of the order, and the course. */
+static void keep_obstacle(orders_t *orders) {
     goe_flight_obstacle_t obstacle;
-    orders->active.active = true;
-    if (speed_m_s > 0.0f) {
-        orders->active.course_ne[0] = own->vx / speed_m_s;
-        orders->active.course_ne[1] = own->vy / speed_m_s;
-    }
     if (goe_flight_obstacle(orders->flight, orders->slot, &obstacle) == GOE_FLIGHT_OK) {
         orders->active.obstacle_ne_m[0] = obstacle.center_ned_m[0];
         orders->active.obstacle_ne_m[1] = obstacle.center_ned_m[1];
         orders->active.radius_m = obstacle.radius_m;
     }
+}
+
+static void keep(orders_t *orders) {
+    const mavlink_local_position_ned_t *own = &orders->autopilot->position;
+    const float speed_m_s = hypotf(own->vx, own->vy);
+    orders->active.active = true;
+    if (speed_m_s > 0.0f) {
+        orders->active.course_ne[0] = own->vx / speed_m_s;
+        orders->active.course_ne[1] = own->vy / speed_m_s;
+    }
+    keep_obstacle(orders);
+}
+
+/* The order is about another obstacle now, or its obstacle was given up. */
+static void turn(orders_t *orders) {
+    keep_obstacle(orders);
+    put_log(orders, "turn", orders->slot < 0 ? "the obstacle was given up" : "");
 }
 
 static void begin_first(orders_t *orders) {
@@ -501,6 +511,7 @@ void orders_follow(orders_t *orders, const goe_flight_assessment_t *assessment, 
     }
     forget_after_restart(orders);
     const bool is_new = assessment->action != orders->action;
+    const int slot_before = orders->slot;
     if (assessment->action != GOE_FLIGHT_NONE) {
         note_obstacle_and_landing(orders, assessment);
     }
@@ -511,6 +522,8 @@ void orders_follow(orders_t *orders, const goe_flight_assessment_t *assessment, 
         end(orders, now_us);
     } else if (is_new) {
         begin(orders, assessment);
+    } else if (orders->slot != slot_before) {
+        turn(orders);
     }
     if (assessment->action == GOE_FLIGHT_NONE) {
         orders->flown = GOE_FLIGHT_NONE;

@@ -826,6 +826,35 @@ static void the_log_shows_whether_an_order_is_active(void) {
     (void)rmdir(folder);
 }
 
+/* A restarted companion waits for the obstacle that the order was about last, and for none that was given up. */
+static void the_log_follows_the_obstacle_of_the_order(void) {
+    char folder[] = "/tmp/goe_orders_XXXXXX", path[64];
+    order_log_t log = {NULL};
+    order_left_t read;
+    TEST_ASSERT_NOT_NULL(mkdtemp(folder));
+    (void)snprintf(path, sizeof path, "%s/orders.csv", folder);
+    TEST_ASSERT_TRUE(order_log_open(&log, folder));
+    orders.log = &log;
+    know_obstacle(true);
+    flight.slot[0].center_ne_m[0] = 200.0f;
+    flight.slot[3] = flight.slot[0];
+    flight.slot[3].center_ne_m[0] = 300.0f;
+    ordered();
+    TEST_ASSERT_TRUE(order_log_read(folder, &read));
+    CHECK_SAME(200.0f, read.obstacle_ne_m[0]);
+    assessment.avoided = 3;
+    go_on(1, LOITER);
+    TEST_ASSERT_TRUE(order_log_read(folder, &read));
+    CHECK_SAME(300.0f, read.obstacle_ne_m[0]);
+    assessment.avoided = -1;
+    go_on(1, LOITER);
+    TEST_ASSERT_FALSE(order_log_read(folder, &read));
+    orders.log = NULL;
+    order_log_close(&log);
+    (void)remove(path);
+    (void)rmdir(folder);
+}
+
 /* GIVEN a companion that is restarted twice without a new order in between THEN the second log still contains the order and its end. */
 static void an_order_that_was_taken_over_is_in_the_next_log(void) {
     char folder[] = "/tmp/goe_orders_XXXXXX", path[64];
@@ -858,6 +887,7 @@ int main(void) {
     RUN_TEST(an_order_that_was_taken_over_is_in_the_next_log);
     RUN_TEST(a_recovery_into_another_mode_is_the_autopilots);
     RUN_TEST(the_log_shows_whether_an_order_is_active);
+    RUN_TEST(the_log_follows_the_obstacle_of_the_order);
     RUN_TEST(what_hinders_an_order_may_end);
     RUN_TEST(an_order_that_is_disarmed_is_not_repeated);
     RUN_TEST(nothing_is_sent_on_the_ground);
