@@ -418,15 +418,13 @@ static void keep_obstacle(orders_t *orders) {
     }
 }
 
-static void keep(orders_t *orders) {
+static void keep_course(orders_t *orders) {
     const mavlink_local_position_ned_t *own = &orders->autopilot->position;
     const float speed_m_s = hypotf(own->vx, own->vy);
-    orders->active.active = true;
     if (speed_m_s > 0.0f) {
         orders->active.course_ne[0] = own->vx / speed_m_s;
         orders->active.course_ne[1] = own->vy / speed_m_s;
     }
-    keep_obstacle(orders);
 }
 
 /* The order is about another obstacle now, or its obstacle was given up. */
@@ -435,11 +433,18 @@ static void turn(orders_t *orders) {
     put_log(orders, "turn", orders->slot < 0 ? "the obstacle was given up" : "");
 }
 
+/* The first of the active orders. Its course is the way to go back to: later orders come while the aircraft turns, and an order after a
+ * restart while it circles. */
 static void begin_first(orders_t *orders) {
     mode_watch_begin(&orders->watch, orders->autopilot, find_mode_before(orders));
     orders->broke_off = orders->placed = orders->has_traffic = false;
     orders->sent = orders->left.active && orders->watch.mode_before == orders->left.mode_before &&
                    orders->autopilot->custom_mode == PX4_AUTO_LOITER;
+    if (orders->sent) {
+        orders->active = orders->left;
+    } else {
+        keep_course(orders);
+    }
     orders->left.active = false;
     orders->overruled = false;
 }
@@ -465,7 +470,8 @@ static void begin(orders_t *orders, const goe_flight_assessment_t *assessment) {
           (double)assessment->hazard.dcpa_m, (double)assessment->hazard.tcpa_s, assessment->late ? ", late" : "");
     show_order(orders, assessment);
     orders->action = assessment->action;
-    keep(orders);
+    orders->active.active = true;
+    keep_obstacle(orders);
     put_log(orders, "order", assessment->late ? "late" : "");
 }
 

@@ -752,9 +752,11 @@ static void take_over(float north_m, int64_t since_us) {
 static void a_restarted_companion_goes_back_to_the_mode_before(void) {
     know_obstacle(true);
     take_over(100.0f, 3000000);
+    autopilot.position.vy = 20.0f;
     TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_SET_MODE));
     decide(GOE_FLIGHT_LEFT);
     go_on(20, LOITER);
+    CHECK_SAME(1.0f, orders.active.course_ne[0]); /* of the logged order, and not of the circle */
     answer(MAV_CMD_DO_REPOSITION, MAV_RESULT_ACCEPTED);
     go_on(20, LOITER);
     decide(GOE_FLIGHT_NONE);
@@ -839,6 +841,7 @@ static void the_log_follows_the_obstacle_of_the_order(void) {
     flight.slot[0].center_ne_m[0] = 200.0f;
     flight.slot[3] = flight.slot[0];
     flight.slot[3].center_ne_m[0] = 300.0f;
+    autopilot.position.vx = 20.0f;
     ordered();
     TEST_ASSERT_TRUE(order_log_read(folder, &read));
     CHECK_SAME(200.0f, read.obstacle_ne_m[0]);
@@ -846,6 +849,14 @@ static void the_log_follows_the_obstacle_of_the_order(void) {
     go_on(1, LOITER);
     TEST_ASSERT_TRUE(order_log_read(folder, &read));
     CHECK_SAME(300.0f, read.obstacle_ne_m[0]);
+    autopilot.position.vx = 0.0f;
+    autopilot.position.vy = 20.0f; /* turned */
+    decide(GOE_FLIGHT_RIGHT);      /* another order goes back to the line of the first one */
+    go_on(1, LOITER);
+    TEST_ASSERT_TRUE(order_log_read(folder, &read));
+    TEST_ASSERT_EQUAL_UINT(GOE_FLIGHT_RIGHT, read.action);
+    CHECK_SAME(1.0f, read.course_ne[0]);
+    CHECK_SAME(0.0f, read.course_ne[1]);
     assessment.avoided = -1;
     go_on(1, LOITER);
     TEST_ASSERT_FALSE(order_log_read(folder, &read));
