@@ -70,7 +70,7 @@ local standing -- the order: named, doubts, action, lat, lon, down; over_ms: sin
 -- named: by its place in the table, each obstacle that the order was about: number; is_past: it is reported without an order;
 -- heard_ms, renumbered: when it was last reported with one, and the companion's count then.
 -- doubts: for each obstacle that was not past when its place got another number, that count
-local renumbered = 0 -- tracks with a new number, as the companion counted them last
+local renumbered = math.huge -- tracks with a new number, as the companion counted them last; before that, none is known to have one
 local received_ms = uint32_t(0)
 local sent_ms = uint32_t(0)
 local silence_reported = false

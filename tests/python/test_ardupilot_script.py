@@ -401,6 +401,17 @@ def test_another_number_at_a_place_is_another_obstacle_unless_its_track_was_renu
     assert sum("circling" in text for text in plane.texts) == (not goes_back)
 
 
+def test_before_the_first_status_another_number_is_another_obstacle(plane: Plane) -> None:
+    plane.renumbered = 3
+    for number in (7, 8):
+        plane.send(plane.hazard(id=number))
+        plane.run(0.2)
+    plane.run(2.0, status=LEFT)
+    plane.send(plane.hazard(id=8, action=0, flags=0))
+    plane.run(7.0, status=0)
+    assert plane.modes == [GUIDED]
+
+
 def test_an_obstacle_that_is_passed_may_lose_its_place_to_another_one(plane: Plane) -> None:
     plane.send(plane.hazard())
     plane.run(2.0, status=LEFT)
