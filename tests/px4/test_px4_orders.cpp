@@ -733,6 +733,24 @@ static void an_approach_is_broken_off() {
     flight.end();
 }
 
+/* The top of a mast is above the image: a side precedes a go-around over it. */
+static void an_approach_to_a_mast_of_unknown_height_leaves_it_aside() {
+    start_towards_one(LAND, true, ALL);
+    scene_make_cylinder(&flight.flown.scene);
+    flight.flown.scene.height_m = 300.0;
+    flight.flown.scene.altitude_m = 25.0;
+    unsigned commands = 0;
+    for (int i = 0; i < 140 && commands == 0; i++) {
+        commands = fly_on(0.1);
+    }
+    TEST_ASSERT_EQUAL(1, commands);
+    TEST_ASSERT_EQUAL(vehicle_command_s::VEHICLE_CMD_DO_REPOSITION, command.command);
+    const uint8_t action = flight.status().action;
+    TEST_ASSERT_TRUE(action == GOE_FLIGHT_LEFT || action == GOE_FLIGHT_RIGHT);
+    TEST_ASSERT_TRUE(flight.status().flown);
+    flight.end();
+}
+
 static void fly_into_a_go_around() {
     start_towards_one(LAND, true, ALL);
     for (int i = 0; i < 140 && fly_on(0.1) == 0; i++) {
@@ -831,6 +849,7 @@ int main() {
     RUN_TEST(what_cannot_be_assessed_ends_no_order);
     RUN_TEST(the_status_reports_a_pilot_and_refusals);
     RUN_TEST(an_order_that_nobody_flies_is_reported_as_such);
+    RUN_TEST(an_approach_to_a_mast_of_unknown_height_leaves_it_aside);
     RUN_TEST(an_approach_is_broken_off);
     RUN_TEST(an_approach_that_is_broken_off_climbs_over_the_obstacle);
     RUN_TEST(an_approach_that_px4_breaks_off_high_enough_gets_no_second_command);
