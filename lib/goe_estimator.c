@@ -341,9 +341,7 @@ static GOE_NOINLINE void refuse(goe_estimator_t *estimator, goe_status_t status,
 
 /* Whether all outputs are valid, and the camera's position, which places the next image, is finite. */
 static bool is_sound(const goe_estimator_t *estimator, const goe_estimate_t *estimate) {
-    const uint32_t place =
-        goe_larger_bits(goe_magnitude(estimator->motion.dx_m), goe_magnitude(estimator->motion.dz_m));
-    return goe_guard_estimate(estimate) && place < GOE_INFINITY_BITS;
+    return goe_guard_estimate(estimate) && goe_guard_finite(&estimator->motion.dx_m, 2);
 }
 
 /* Ends the track: its memory was changed from outside. */

@@ -226,13 +226,24 @@ void goe_footprint_recall(goe_filter_t *filter, const goe_observation_t *obs, go
     }
 }
 
+static float attitude_of(const float a[GOE_COLUMNS], const float b[GOE_COLUMNS]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
 void goe_footprint_learn(goe_filter_t *filter, goe_rows_t *rows) {
-    const float white = rows->white_rad;
+    static const float none[GOE_COLUMNS] = {0.0f};
     for (size_t i = 0; i < rows->remembered; i++) {
         const float *row = rows->matrix->row[i];
-        const float weight = rows->weight[i];
-        const float attitude = white * white * (row[0] * row[0] + row[1] * row[1] + row[2] * row[2]);
-        goe_side_memory_learn(&filter->side[rows->side[i]], row, weight, attitude);
+        const float *opposite = none;
+        for (size_t j = 0; j < rows->remembered; j++) {
+            if (j != i && rows->axis[j] == rows->axis[i]) {
+                opposite = rows->matrix->row[j];
+            }
+        }
+        const float own2 = attitude_of(row, row);
+        const float all2 = own2 + attitude_of(opposite, opposite) + 1.0f / goe_square(rows->white_rad);
+        goe_side_memory_learn(&filter->side[rows->side[i]], row, rows->weight[i], own2 / all2, opposite,
+                              attitude_of(row, opposite) / all2);
     }
 }
 

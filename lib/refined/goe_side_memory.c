@@ -27,19 +27,19 @@ void goe_side_memory_recall(const goe_side_memory_t *side, float row[GOE_COLUMNS
     *variance += goe_absolute(side->variance);
 }
 
-void goe_side_memory_learn(goe_side_memory_t *side, const float row[GOE_COLUMNS], float weight, float common) {
+void goe_side_memory_learn(goe_side_memory_t *side, const float row[GOE_COLUMNS], float weight, float own,
+                           const float opposite[GOE_COLUMNS], float both) {
     if (!(weight > 0.0f)) {
         return;
     }
     const float variance = goe_absolute(side->variance);
-    const float share = variance * weight * weight / (1.0f + common);
-    const float gain = share / weight;
-    const float *by = &row[GOE_STATE_COLUMN];
+    const float gain = variance * weight * (1.0f - own);
+    const float opposite_gain = variance * weight * both;
     for (size_t i = 0; i < GOE_UNKNOWNS; i++) {
-        side->by[i] += gain * by[i];
+        side->by[i] += gain * row[GOE_STATE_COLUMN + i] - opposite_gain * opposite[GOE_STATE_COLUMN + i];
     }
-    side->value += gain * row[GOE_RESIDUAL];
-    side->variance = variance - share * variance;
+    side->value += gain * row[GOE_RESIDUAL] - opposite_gain * opposite[GOE_RESIDUAL];
+    side->variance = variance - gain * variance * weight;
 }
 
 void goe_side_memory_follow(goe_side_memory_t *side, const float change[GOE_UNKNOWNS]) {

@@ -13,9 +13,10 @@ void goe_side_memory_fade(goe_side_memory_t *side, float fade, float variance);
 /* Removes the known part of the error from a row's residual and derivatives, and adds the variance of the rest. */
 void goe_side_memory_recall(const goe_side_memory_t *side, float row[GOE_COLUMNS], float *variance);
 
-/* Updates the error by a row. row: after the gate, times its weight; common: variance, in units of the row's, of the part that all rows of
- * the image share (attitude, position). */
-void goe_side_memory_learn(goe_side_memory_t *side, const float row[GOE_COLUMNS], float weight, float common);
+/* Updates the error by a row, after the gate, times its weight. The rows of an image share the error of its attitude and position, which is
+ * no error of a side: its estimate, own times the row plus both times that of the opposite side, is removed. */
+void goe_side_memory_learn(goe_side_memory_t *side, const float row[GOE_COLUMNS], float weight, float own,
+                           const float opposite[GOE_COLUMNS], float both);
 
 /* After the state has changed: relates the error to the new state. */
 void goe_side_memory_follow(goe_side_memory_t *side, const float change[GOE_UNKNOWNS]);

@@ -209,6 +209,45 @@ static void each_side_has_its_own_memory(void) {
     }
 }
 
+/* [(R30)] GIVEN two sides along one axis THEN the memory of each learns what the exact update of both, with the error that they share, says of
+ * it; a side along the other axis does not matter. */
+static void opposite_sides_learn_together(void) {
+    static goe_filter_t filter;
+    const double variance[2] = {1.0, 0.5};
+    const double white[2] = {0.3, 0.8};
+    const double residual[2] = {3.0, -1.0};
+    const double common = 4.0 * (0.09 + 0.16 + 1.44);
+    memset(&filter, 0, sizeof filter);
+    goe_rows_clear(&sighting.rows, &sighting.matrix);
+    memset(&sighting.matrix, 0, sizeof sighting.matrix);
+    sighting.rows.count = sighting.rows.remembered = 3;
+    sighting.rows.white_rad = 2.0f;
+    for (size_t i = 0; i < 3; i++) {
+        const size_t of = i < 2 ? i : 0;
+        const double weight = 1.0 / sqrt(variance[of] + white[of]);
+        const float turns[3] = {(float)(0.3 * weight), (float)(-0.4 * weight), (float)(1.2 * weight)};
+        memcpy(sighting.matrix.row[i], turns, sizeof turns);
+        sighting.rows.axis[i] = (uint8_t)(i == 2 ? GOE_ALONG_Y : GOE_ALONG_X);
+        sighting.rows.side[i] = (uint8_t)(i == 0 ? GOE_BOX_LEFT : (i == 1 ? GOE_BOX_RIGHT : GOE_BOX_TOP));
+        sighting.rows.weight[i] = (float)weight;
+        sighting.matrix.row[i][GOE_RESIDUAL] = (float)(weight * residual[of]);
+        filter.side[sighting.rows.side[i]].variance = (float)variance[of];
+    }
+    goe_footprint_learn(&filter, &sighting.rows);
+    const double s00 = variance[0] + white[0] + common;
+    const double s11 = variance[1] + white[1] + common;
+    const double determinant = s00 * s11 - common * common;
+    const double left = variance[0] * (s11 * residual[0] - common * residual[1]) / determinant;
+    const double right = variance[1] * (s00 * residual[1] - common * residual[0]) / determinant;
+    CHECK_CLOSE(1.0e-5, left, filter.side[GOE_BOX_LEFT].value);
+    CHECK_CLOSE(1.0e-5, right, filter.side[GOE_BOX_RIGHT].value);
+    CHECK_CLOSE(1.0e-5, variance[0] - variance[0] * variance[0] * s11 / determinant,
+                filter.side[GOE_BOX_LEFT].variance);
+    CHECK_CLOSE(1.0e-5, variance[1] - variance[1] * variance[1] * s00 / determinant,
+                filter.side[GOE_BOX_RIGHT].variance);
+    CHECK_CLOSE(1.0e-5, variance[0] * residual[0] / s00, filter.side[GOE_BOX_TOP].value);
+}
+
 /* GIVEN a side whose opposite one is not visible THEN its error, a share of the box's size, is that of the box as it is predicted; and
  * that of a box which the border cuts is larger by the setting. */
 static void a_sides_error_is_a_share_of_the_box(void) {
@@ -889,6 +928,7 @@ int main(void) {
     RUN_TEST(a_jump_of_the_filter_moves_the_datum);
     RUN_TEST(an_own_position_error_moves_all_rows);
     RUN_TEST(each_side_has_its_own_memory);
+    RUN_TEST(opposite_sides_learn_together);
     RUN_TEST(a_sides_error_is_a_share_of_the_box);
     RUN_TEST(a_start_matches_one_box);
     RUN_TEST(a_start_needs_one_side);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "check.h"
+#include "refined/goe_footprint.h"
 
 #define IMAGES 16
 #define CASES 200
@@ -97,7 +98,7 @@ static void filter(const series_t *of, double *x, double *variance) {
         const double by = (double)row[GOE_STATE_COLUMN + GOE_BEARING];
         information += by * by;
         change[GOE_BEARING] = (float)(by * (double)row[GOE_RESIDUAL] / information);
-        goe_side_memory_learn(&side, row, weight, 0.0f);
+        goe_side_memory_learn(&side, row, weight, 0.0f, row, 0.0f);
         state += (double)change[GOE_BEARING];
         goe_side_memory_follow(&side, change);
     }
@@ -141,6 +142,85 @@ static void it_is_as_good_as_all_images_at_once(void) {
     }
 }
 
+/* ----------------------------------------------------------------------------------------------------- common error -- */
+
+#define LONG 60
+#define FLIGHTS 600
+
+/* One flight: two opposite sides with errors of their own, slow and white, and an error that is common to both and new in each image. The
+ * slow errors have a sigma of 1, a time constant of 12 images, and x is seen by the difference of the sides alone, as a range is by the
+ * growth of a box. Returns the squared error of x, in sigmas. */
+static double fly_with_common_error(double common, double white) {
+    static goe_filter_t filter;
+    goe_rows_t rows;
+    goe_matrix_t matrix;
+    const double fade = exp(-1.0 / 12.0);
+    double slow[2] = {check_random_normal(&any), check_random_normal(&any)};
+    double state = 0.0;
+    double information = 0.01; /* the prior: 0 +- 10 */
+    const double x = 10.0 * check_random_normal(&any);
+    memset(&filter, 0, sizeof filter);
+    memset(&rows, 0, sizeof rows);
+    rows.matrix = &matrix;
+    rows.count = rows.remembered = 2;
+    rows.white_rad = (float)common;
+    rows.side[1] = GOE_BOX_RIGHT;
+    for (int k = 0; k < LONG; k++) {
+        const double shared = common * check_random_normal(&any);
+        const double slope = 0.05 + 0.05 * k / LONG;
+        double by[2], residual[2], size2 = 1.0 / (common * common), by_common = 0.0, residual_common = 0.0;
+        float change[GOE_UNKNOWNS] = {0.0f};
+        double added = 0.0, right = 0.0;
+        memset(&matrix, 0, sizeof matrix);
+        for (int i = 0; i < 2; i++) {
+            float *row = matrix.row[i];
+            float own = (float)(white * white);
+            goe_side_memory_t *side = &filter.side[rows.side[i]];
+            const double sign = i == 0 ? -slope : slope;
+            slow[i] = fade * slow[i] + sqrt(1.0 - fade * fade) * check_random_normal(&any);
+            const double measured = sign * x + slow[i] + white * check_random_normal(&any) + shared;
+            row[0] = 1.0f;
+            row[GOE_STATE_COLUMN + GOE_BEARING] = (float)sign;
+            row[GOE_RESIDUAL] = (float)(measured - sign * state);
+            goe_side_memory_fade(side, (float)fade, 1.0f);
+            goe_side_memory_recall(side, row, &own);
+            rows.weight[i] = 1.0f / sqrtf(own);
+            for (int c = 0; c < (int)GOE_COLUMNS; c++) {
+                row[c] *= rows.weight[i];
+            }
+            by[i] = (double)row[GOE_STATE_COLUMN + GOE_BEARING];
+            residual[i] = (double)row[GOE_RESIDUAL];
+            size2 += (double)row[0] * (double)row[0];
+            by_common += (double)row[0] * by[i];
+            residual_common += (double)row[0] * residual[i];
+            added += by[i] * by[i];
+            right += by[i] * residual[i];
+        }
+        information += added - by_common * by_common / size2;
+        change[GOE_BEARING] = (float)((right - by_common * residual_common / size2) / information);
+        goe_footprint_learn(&filter, &rows);
+        state += (double)change[GOE_BEARING];
+        goe_footprint_follow(&filter, change);
+    }
+    return (state - x) * (state - x) * information;
+}
+
+/* [navigation.attitude_white_sd_deg, (R30)]
+ * GIVEN an error that both sides share, small or large against their own, THEN the variance of x is true: it is no error of a side, and
+ * what is left of it in the memories does not count as one. */
+static void a_common_error_is_none_of_a_side(void) {
+    static const double commons[] = {0.05, 0.3, 1.0, 3.0};
+    for (size_t i = 0; i < sizeof commons / sizeof commons[0]; i++) {
+        double sum = 0.0;
+        any = check_random_start("common");
+        for (int n = 0; n < FLIGHTS; n++) {
+            sum += fly_with_common_error(commons[i], 0.2);
+        }
+        check_report("mean squared error in sigmas", sum / FLIGHTS);
+        TEST_ASSERT_TRUE(sum / FLIGHTS > 0.65 && sum / FLIGHTS < 1.25);
+    }
+}
+
 /* [(R30)] GIVEN a row that was refused THEN nothing is learned from it. */
 static void a_refused_row_teaches_nothing(void) {
     goe_side_memory_t side;
@@ -152,7 +232,7 @@ static void a_refused_row_teaches_nothing(void) {
     }
     goe_side_memory_fade(&side, 1.0f, 0.01f);
     before = side;
-    goe_side_memory_learn(&side, row, 0.0f, 0.0f);
+    goe_side_memory_learn(&side, row, 0.0f, 0.0f, row, 0.0f);
     TEST_ASSERT_EQUAL_MEMORY(&before, &side, sizeof side);
 }
 
@@ -168,7 +248,7 @@ static void a_side_measured_late_starts_afresh(void) {
     goe_side_memory_recall(&side, row, &variance);
     TEST_ASSERT_EQUAL_FLOAT(0.1f, variance);
     row[GOE_RESIDUAL] = 1.0f;
-    goe_side_memory_learn(&side, row, 3.0f, 0.0f);
+    goe_side_memory_learn(&side, row, 3.0f, 0.0f, row, 0.0f);
     TEST_ASSERT_TRUE(side.variance > 0.0f && side.variance < 0.1f);
 }
 
@@ -176,6 +256,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_side_measured_late_starts_afresh);
     RUN_TEST(it_is_as_good_as_all_images_at_once);
+    RUN_TEST(a_common_error_is_none_of_a_side);
     RUN_TEST(a_refused_row_teaches_nothing);
     return UNITY_END();
 }
