@@ -509,7 +509,8 @@ goe_flight_status_t goe_flight_timesync(goe_flight_t *flight, uint32_t offset_us
  *   - A detection that is not finite or out of range is ignored and counted; of a bad kind, the kind alone.
  *   - A detection with a known id updates the slot with that id.
  *   - A detection with a new id takes over the track whose predicted position fits its box best, if no other detection of the call
- *     fits better. That track has no detection in this image so far. Before the image's last call it had none in the image
+ *     fits better. If another camera detected the track last, the box must also be about as wide as the track's outline, at most three
+ *     times wider or narrower. That track has no detection in this image so far. Before the image's last call it had none in the image
  *     before, either: a later call may contain its own id.
  *   - Any other detection waits until it is confirmed.
  * Calls whose exposures are at most 5 ms apart are one image. After its last detection, the other tracks of its camera are

@@ -12,6 +12,7 @@
 #define ALIKE 3.0f /* a box this many times as wide or high as the latest one shows another object */
 #define PIXEL_MAX 32000.0f
 #define SIZE_MIN_PX 8.0f
+#define AWAY_MIN_M 1.0f /* nearer than this, a width in pixels says nothing */
 #define KIND_MAX_M 1.0e3f
 #define SHORT_M2 1.0e-6f     /* square of a vector that has no direction */
 #define KIND_SHARE_MIN 0.01f /* least sigma over size that the estimator accepts */
@@ -354,15 +355,33 @@ static bool matches(const int16_t a[4], const int16_t b[4]) {
     return similar;
 }
 
+/* Whether a box of another camera is about as wide as the outline in this view. From any side, an outline is at most as wide as the circle
+ * around it. The image border may hide a part of the box. */
+static bool is_as_wide(const goe_flight_slot_t *slot, const goe_flight_camera_t *camera,
+                       const goe_flight_history_pose_t *pose, const int16_t box_px[4]) {
+    const float north_m = slot->center_ne_m[0] - pose->ned_m[0];
+    const float east_m = slot->center_ne_m[1] - pose->ned_m[1];
+    const float away_m = sqrtf(goe_flight_square(north_m) + goe_flight_square(east_m));
+    const float px_per_m = camera->focal_px[0] / goe_flight_larger(away_m, AWAY_MIN_M);
+    const float box = (float)(box_px[2] - box_px[0]);
+    const float circle = goe_flight_larger(2.0f * px_per_m * goe_flight_slot_radius_m(slot), SIZE_MIN_PX);
+    const bool cut =
+        (float)box_px[0] <= camera->border_px || (float)box_px[2] >= camera->size_px[0] - camera->border_px;
+    return (slot->valid & GOE_HAS_WIDTH) != 0u && box <= ALIKE * circle &&
+           (cut || px_per_m * slot->width_m <= ALIKE * box);
+}
+
 float goe_flight_slot_claims(const goe_flight_slot_t *slot, const goe_flight_camera_t cameras[GOE_CAMERAS_MAX],
                              const goe_flight_slot_view_t *view, const int16_t box_px[4]) {
     float pixel[2];
+    const goe_flight_camera_t *camera = &cameras[view->camera];
     const bool comparable = slot->camera == view->camera; /* boxes of two cameras are not comparable */
     if (!(slot->valid & GOE_HAS_POSITION)) {
         const float overlap = goe_flight_candidate_overlap(slot->box_px, box_px);
         return comparable && overlap >= OVERLAP_MIN ? overlap : 0.0f;
     }
-    if ((comparable && !matches(slot->box_px, box_px)) || !predict(slot, &cameras[view->camera], &view->pose, pixel)) {
+    const bool alike = comparable ? matches(slot->box_px, box_px) : is_as_wide(slot, camera, &view->pose, box_px);
+    if (!alike || !predict(slot, camera, &view->pose, pixel)) {
         return 0.0f;
     }
     float claim = 1.0f;

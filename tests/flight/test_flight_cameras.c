@@ -16,7 +16,7 @@ static goe_camera_t mounted[CAMERAS];
 static bool alive[CAMERAS];
 static uint32_t id[CAMERAS];
 
-static const int phase[CAMERAS] = {0, 2};
+static int phase[CAMERAS]; /* sample of the first image */
 static int delay[CAMERAS];
 
 void setUp(void) {
@@ -29,6 +29,8 @@ void setUp(void) {
     }
     id[0] = 7u;
     id[1] = 3u;
+    phase[0] = 0;
+    phase[1] = 2;
     delay[0] = 6; /* the pictures of the second are taken later and come earlier */
     delay[1] = 2;
     mounted[0].mount_yaw_deg = -25.0f;
@@ -159,6 +161,52 @@ static void a_late_image_takes_no_id_over(void) {
     }
 }
 
+/* A box around that of the scene's obstacle at sample k, ten times as wide: of something behind it. */
+static goe_flight_detection_t backdrop(int k) {
+    flown.id = 9u;
+    goe_flight_detection_t detection = flown_detection(&flown, k);
+    const float width_px = detection.box.right_px - detection.box.left_px;
+    detection.box.left_px -= 4.5f * width_px;
+    detection.box.right_px += 4.5f * width_px;
+    return detection;
+}
+
+/* GIVEN an obstacle that one camera tracks WHEN the other one shows a much wider object in the same direction, in a newer image, in one of the
+ * same time or in an older one THEN that is another obstacle, and the track stays with its camera. */
+static void a_wider_object_of_another_camera_is_another_obstacle(void) {
+    for (int late = -1; late <= 1; late++) {
+        setUp();
+        flown.scene.z0_m = 120.0;
+        phase[0] = 2;
+        delay[0] = 4;
+        delay[1] = 4 + late;
+        phase[1] = 2 - late;
+        mounted[1] = mounted[0];
+        goe_settings_t estimator = scene_settings(&flown.scene);
+        estimator.camera = estimator.more_cameras[0] = mounted[0];
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_init(&flown.flight, sizeof flown.flight, &estimator, NULL, NULL));
+        alive[1] = false;
+        for (int k = 0; k < 120; k++) {
+            step(NULL);
+        }
+        TEST_ASSERT_EQUAL(1, slots_used());
+        for (int k = 0; k < 30; k++) {
+            step(NULL);
+            const int exposed = flown.sample - 1 - delay[1];
+            if (exposed % FLOWN_IMAGE_EVERY == phase[1]) {
+                const goe_flight_detection_t seen = backdrop(exposed);
+                goe_flight_frame_t frame = flown_frame(&flown, exposed, &seen, 1);
+                frame.camera = 1;
+                TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(&flown.flight, &frame));
+            }
+        }
+        TEST_ASSERT_EQUAL(2, slots_used());
+        TEST_ASSERT_EQUAL(0, flown.flight.slot[0].camera);
+        TEST_ASSERT_EQUAL_UINT32(id[0], flown.flight.slot[0].id);
+        TEST_ASSERT_EQUAL(0, flown.flight.counters.renumbered);
+    }
+}
+
 /* GIVEN an obstacle that leaves the view of one camera WHEN the images of the other one come later THEN that one takes it over all the same. */
 static void a_late_camera_takes_an_obstacle_over(void) {
     delay[0] = 2;
@@ -265,6 +313,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(an_obstacle_flies_from_one_camera_into_the_other);
     RUN_TEST(a_late_image_takes_no_id_over);
+    RUN_TEST(a_wider_object_of_another_camera_is_another_obstacle);
     RUN_TEST(a_late_camera_takes_an_obstacle_over);
     RUN_TEST(one_id_of_two_cameras_is_two_obstacles);
     RUN_TEST(each_camera_confirms_its_own);
