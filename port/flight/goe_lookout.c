@@ -109,7 +109,8 @@ static void assess(const goe_flight_t *flight, goe_flight_slot_t *slot, const fl
     slot->assessed = true;
 }
 
-float goe_flight_lookout_urgency(const goe_flight_slot_t *slot) {
+/* The worst obstacle has the largest. */
+static float urgency_of(const goe_flight_slot_t *slot) {
     return slot->hazard.conflict_probability / (1.0f + URGENCY_PER_S * slot->hazard.tcpa_s);
 }
 
@@ -119,7 +120,7 @@ int goe_flight_lookout_assess(goe_flight_t *flight, const float own_ned_m[3], ui
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         goe_flight_slot_t *slot = &flight->slot[i];
         assess(flight, slot, own_ned_m, now_us);
-        const float urgency = goe_flight_lookout_urgency(slot);
+        const float urgency = urgency_of(slot);
         if (slot->assessed && urgency > most) {
             most = urgency;
             worst = i;

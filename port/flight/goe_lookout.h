@@ -9,9 +9,6 @@ float goe_flight_lookout_doubt(const goe_flight_t *flight, const goe_flight_slot
 float goe_flight_lookout_age_s(const goe_flight_slot_t *slot, uint32_t now_us);
 float goe_flight_lookout_drift_m(const goe_flight_t *flight, const goe_flight_slot_t *slot, uint32_t now_us);
 
-/* Conflict probability of a slot's hazard / (1 + 0.1 TCPA). The worst obstacle has the largest. */
-float goe_flight_lookout_urgency(const goe_flight_slot_t *slot);
-
 /* Computes the hazard of every slot. own_ned_m: present position of the aircraft. Returns the worst slot; -1 if no slot has a position. */
 int goe_flight_lookout_assess(goe_flight_t *flight, const float own_ned_m[3], uint32_t now_us);
 

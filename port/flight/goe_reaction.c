@@ -21,7 +21,8 @@
 #define TIME_MAX_S 1.0e4f
 #define CLEAR_MAX_M 1000.0f
 #define LATE_VIOLATION                                                                                                 \
-    0.5f /* least conflict probability that causes an order if no action comes in time: likelier than not */
+    0.5f           /* least conflict probability that causes an order if no action comes in time: likelier than not */
+#define ATTEMPTS 3 /* number of hazards against which an assessment looks for an order */
 #define NOBODY (-1)
 #define TO_LEFT (-1)
 #define TO_RIGHT 1
@@ -736,40 +737,22 @@ static bool is_hazard_slot(const look_t *look, int i) {
            slot->hazard.conflict_probability >= look->flight->settings.conflict_probability_max;
 }
 
-/* The worst obstacle. If it is passed, no order avoids it any more: the worst hazard ahead, if there is one. */
-static int worst_ahead(const look_t *look, int worst) {
-    encounter_t e;
-    int ahead = worst;
-    float most = 0.0f;
-    meet(look, worst, &e);
-    for (int i = 0; i < GOE_FLIGHT_SLOTS && !(e.ahead_m > 0.0f); i++) {
-        encounter_t other;
-        const float urgency = goe_flight_lookout_urgency(&look->flight->slot[i]);
-        if (!is_hazard_slot(look, i) || !(urgency > most)) {
-            continue;
-        }
-        meet(look, i, &other);
-        if (other.ahead_m > 0.0f) {
-            most = urgency;
-            ahead = i;
-        }
-    }
-    return ahead;
-}
-
-/* The worst obstacle, or another one that leaves less time. */
-static int most_pressing(const look_t *look, int worst) {
-    encounter_t e;
-    int pressing = worst;
-    meet(look, worst, &e);
-    float least_s = slack_s(look, &e);
+/* The hazard ahead that leaves the least time; NOBODY if there is none.
+ *   unlikely  slots that are left out, as bits
+ *   least     least conflict probability of the hazard */
+static int most_pressing(const look_t *look, uint32_t unlikely, float least) {
+    int pressing = NOBODY;
+    float least_s = TIME_MAX_S;
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
-        if (i == worst || !is_hazard_slot(look, i)) {
+        encounter_t e;
+        if (((unlikely >> i) & 1u) != 0u || !is_hazard_slot(look, i) ||
+            !(look->flight->slot[i].hazard.conflict_probability >= least)) {
             continue;
         }
         meet(look, i, &e);
-        if (e.ahead_m > 0.0f && slack_s(look, &e) < least_s) {
-            least_s = slack_s(look, &e);
+        const float left_s = slack_s(look, &e);
+        if (e.ahead_m > 0.0f && (pressing == NOBODY || left_s < least_s)) {
+            least_s = left_s;
             pressing = i;
         }
     }
@@ -814,6 +797,11 @@ static bool is_too_low(const look_t *look, const encounter_t *e) {
     return begins_s + rise_m / settings->climb_m_s > e->earliest_tcpa_s;
 }
 
+/* Least conflict probability that causes an order when no action comes in time. */
+static float late_violation(const goe_flight_settings_t *settings) {
+    return goe_flight_larger(LATE_VIOLATION, settings->conflict_probability_max);
+}
+
 /* Gives the order against one obstacle when it is due. Returns the time that the best action needs. If that time is not left, and the
  * conflict probability is too low for a late order, sets *unlikely and changes nothing; with a null pointer, it only gives no order. */
 static float answer(goe_flight_t *flight, look_t *look, int about, bool *unlikely) {
@@ -834,9 +822,8 @@ static float answer(goe_flight_t *flight, look_t *look, int about, bool *unlikel
         return simplest_s(look, &e);
     }
     const option_t option = choose_steadily(look, about, &e);
-    const float most = option.needed_s > e.earliest_tcpa_s
-                           ? goe_flight_larger(LATE_VIOLATION, settings->conflict_probability_max)
-                           : settings->conflict_probability_max;
+    const float most =
+        option.needed_s > e.earliest_tcpa_s ? late_violation(settings) : settings->conflict_probability_max;
     if (unlikely && violation < most) {
         *unlikely = true;
         return option.needed_s;
@@ -854,6 +841,26 @@ static float answer(goe_flight_t *flight, look_t *look, int about, bool *unlikel
         }
     }
     return option.needed_s;
+}
+
+/* Gives the order against the hazard that leaves the least time. One that is unlikely, and for which it is too late, delays no order against
+ * the next one. The last attempt looks only at hazards that cannot be unlikely, so each assessment examines a limited number of paths. */
+static float answer_hazards(goe_flight_t *flight, look_t *look, int worst) {
+    uint32_t passed_over = 0u;
+    for (int k = 0; k < ATTEMPTS; k++) {
+        const bool last = k + 1 == ATTEMPTS;
+        const int about = most_pressing(look, passed_over, last ? late_violation(&flight->settings) : 0.0f);
+        bool unlikely = false;
+        if (about == NOBODY) {
+            break;
+        }
+        const float needed_s = answer(flight, look, about, &unlikely);
+        if (!unlikely) {
+            return needed_s;
+        }
+        passed_over |= 1u << about;
+    }
+    return answer(flight, look, worst, NULL);
 }
 
 float goe_flight_reaction_decide(goe_flight_t *flight, int worst, const goe_flight_reaction_own_t *own) {
@@ -884,9 +891,5 @@ float goe_flight_reaction_decide(goe_flight_t *flight, int worst, const goe_flig
         r->rising = false;
         return 0.0f;
     }
-    const int ahead = worst_ahead(&look, worst);
-    const int pressing = most_pressing(&look, ahead);
-    bool unlikely = false;
-    const float needed_s = answer(flight, &look, pressing, pressing != ahead ? &unlikely : NULL);
-    return unlikely ? answer(flight, &look, ahead, NULL) : needed_s;
+    return answer_hazards(flight, &look, worst);
 }

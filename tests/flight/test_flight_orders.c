@@ -123,6 +123,23 @@ static void an_unlikely_obstacle_delays_no_order(void) {
     }
 }
 
+/* GIVEN up to two obstacles that are unlikely to be in the way, for which it is too late, and the first of which is the worst WHEN the order
+ * against a sure hazard behind them is due THEN it comes all the same. */
+static void an_unlikely_worst_obstacle_delays_no_order(void) {
+    for (int unsure = 0; unsure <= 2; unsure++) {
+        start(0.0f);
+        put(2, 125.0f, 0.5f, 50.0f);
+        for (int i = 0; i < unsure; i++) {
+            put(i, 60.0f + 10.0f * (float)i, 5.0f, 50.0f);
+            flight.slot[i].covariance_ne_m2[0] = flight.slot[i].covariance_ne_m2[2] = 900.0f;
+            flight.slot[i].hazard.tcpa_sd_s = 1.5f;
+            flight.slot[i].hazard.conflict_probability = 0.4f;
+        }
+        TEST_ASSERT_NOT_EQUAL(GOE_FLIGHT_NONE, decide(0.5));
+        TEST_ASSERT_EQUAL(2, flight.reaction.slot);
+    }
+}
+
 /* GIVEN a passed obstacle that is the worst, because it is next to the aircraft WHEN others are ahead THEN the order against the worst of these
  * comes all the same, and not against one that is no hazard. */
 static void a_passed_obstacle_delays_no_order(void) {
@@ -724,6 +741,7 @@ int main(void) {
     RUN_TEST(a_low_one_blocks_no_side);
     RUN_TEST(the_circle_about_the_target_is_kept_clear);
     RUN_TEST(an_unlikely_obstacle_delays_no_order);
+    RUN_TEST(an_unlikely_worst_obstacle_delays_no_order);
     RUN_TEST(a_passed_obstacle_delays_no_order);
     RUN_TEST(a_circle_is_never_smaller_than_the_turn);
     RUN_TEST(a_wall_of_masts_is_a_reason_to_hold);
