@@ -172,8 +172,11 @@ static float climb_time_s(const look_t *look, float rise_m) {
     return goe_flight_smaller(settings->climb_in_s + rise_m / settings->climb_m_s, TIME_MAX_S);
 }
 
+/* The climb that is left. Over a top that is not known, it ends at the clearance over the height at which the climb began. */
 static float rise_of(const look_t *look, const encounter_t *e) {
-    return e->has_top ? e->rise_m : look->flight->settings.clearance_m;
+    const goe_flight_reaction_t *r = &look->flight->reaction;
+    const float climbed_m = is_up(r->action) ? r->from_ned_m[2] - look->own->ned_m[2] : 0.0f;
+    return e->has_top ? e->rise_m : goe_flight_larger(look->flight->settings.clearance_m - climbed_m, 0.0f);
 }
 
 /* Compares two paths: of clear ones, that of the lower cost is better; otherwise the clearer one. */
@@ -797,6 +800,16 @@ static bool is_too_low(const look_t *look, const encounter_t *e) {
     return begins_s + rise_m / settings->climb_m_s > e->earliest_tcpa_s;
 }
 
+/* Whether another way replaces an active climb: a clear one, if it is against another obstacle or the climb is not clear; or any way, if the
+ * climb is too low. Over a top that is not known, even a low climb is better than a way into an obstacle. */
+static bool replaces_climb(const look_t *look, int about, const encounter_t *e, const option_t *option) {
+    const goe_flight_reaction_t *r = &look->flight->reaction;
+    const bool other = r->slot != about;
+    const bool low = is_too_low(look, e);
+    const bool instead = e->has_top ? low : (other || low) && option->share > 0.0f;
+    return instead || (option->share >= FREE && (other || r->reason == GOE_FLIGHT_REASON_LEAST_BAD));
+}
+
 /* Least conflict probability that causes an order when no action comes in time. */
 static float late_violation(const goe_flight_settings_t *settings) {
     return goe_flight_larger(LATE_VIOLATION, settings->conflict_probability_max);
@@ -829,9 +842,7 @@ static float answer(goe_flight_t *flight, look_t *look, int about, bool *unlikel
         return option.needed_s;
     }
     const bool is_hazard = violation >= most && !is_flying_back(look);
-    const bool clears = r->reason == GOE_FLIGHT_REASON_LEAST_BAD && option.share >= FREE; /* of a blind climb */
-    const bool is_new =
-        r->action == GOE_FLIGHT_NONE || (is_up(r->action) && (r->slot != about || clears || is_too_low(look, &e)));
+    const bool is_new = r->action == GOE_FLIGHT_NONE || (is_up(r->action) && replaces_climb(look, about, &e, &option));
     if (is_due(r, settings, &e, option.needed_s, is_hazard && is_new, look->own->time_us)) {
         const goe_flight_reason_t why = withheld(flight, look->own, look->speed_m_s);
         if (why == GOE_FLIGHT_REASON_NONE) {

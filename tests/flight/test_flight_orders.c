@@ -488,6 +488,30 @@ static void a_go_around_over_an_unknown_top_gives_way(void) {
     }
 }
 
+/* GIVEN a go-around over an unknown top WHEN the aircraft flies it exactly, and perhaps finds a second one late THEN it stays active up to the
+ * obstacle, at the height of the order plus the clearance: the climb is no reason to turn into another obstacle. */
+static void a_go_around_over_an_unknown_top_is_flown_to_its_end(void) {
+    for (int two = 0; two < 2; two++) {
+        start(0.0f);
+        own.approach = true;
+        put_unknown_tops(3);
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_GO_AROUND, decide(0.5));
+        const uint32_t begun_us = own.time_us;
+        while (own.ned_m[0] < 125.0f) {
+            own.ned_m[0] += 0.1f * SPEED_M_S;
+            own.ned_m[2] = own.time_us > begun_us + 2000000u ? fmaxf(own.ned_m[2] - 0.25f, -30.0f) : own.ned_m[2];
+            put_unknown_tops(3);
+            if (two && own.ned_m[0] > 100.0f) { /* it leaves less time */
+                put_wide(3, 145.0f, -0.5f, 50.0f);
+                flight.slot[3].valid = GOE_HAS_POSITION | GOE_HAS_WIDTH;
+                flight.slot[3].hazard.tcpa_s = flight.slot[0].hazard.tcpa_s - 0.1f;
+            }
+            TEST_ASSERT_EQUAL(GOE_FLIGHT_GO_AROUND, decide(0.0));
+            CHECK_CLOSE(0.01, -30.0, flight.reaction.target_ned_m[2]);
+        }
+    }
+}
+
 /* GIVEN an order to a side on approach WHEN a go-around over an unknown top would be in time THEN the side stays. */
 static void no_side_is_left_for_an_unknown_top(void) {
     own.approach = true;
@@ -764,6 +788,7 @@ int main(void) {
     RUN_TEST(a_go_around_over_an_unknown_top_is_the_least_bad);
     RUN_TEST(a_go_around_over_any_unknown_top_is_not_clear);
     RUN_TEST(a_go_around_over_an_unknown_top_gives_way);
+    RUN_TEST(a_go_around_over_an_unknown_top_is_flown_to_its_end);
     RUN_TEST(no_side_is_left_for_an_unknown_top);
     RUN_TEST(a_climb_does_not_lead_into_what_is_behind);
     RUN_TEST(clearance_is_that_of_the_nearest_part_of_the_way);
