@@ -211,10 +211,10 @@ static goe_flight_status_t refuse(goe_flight_t *flight, goe_flight_status_t stat
     return status;
 }
 
-/* Refuses a sample that is not newer. Many of them show that the clock was set back. */
-static goe_flight_status_t refuse_time(goe_flight_t *flight) {
-    flight->history.stale++;
-    if (flight->history.stale >= STALE_MAX) {
+/* Refuses a sample that is not newer. Many of one kind show that the clock was set back, or that one sample had a time of the future. */
+static goe_flight_status_t refuse_time(goe_flight_t *flight, uint8_t *stale) {
+    (*stale)++;
+    if (*stale >= STALE_MAX) {
         (void)goe_flight_restart(flight);
     }
     return refuse(flight, GOE_FLIGHT_BAD_TIME);
@@ -286,7 +286,7 @@ goe_flight_status_t goe_flight_attitude(goe_flight_t *flight, const goe_flight_a
     }
     const goe_flight_history_attitude_t *newest = goe_flight_history_newest_attitude(&flight->history);
     if (newest && !is_newer(flight->history.attitude_count, &newest->time_us, sample->time_us)) {
-        return refuse_time(flight);
+        return refuse_time(flight, &flight->history.attitude_stale);
     }
     if (goe_flight_marks_attitude(&flight->marks, sample->reset) != GOE_FLIGHT_MARKS_SAME) {
         lose_everything(flight);
@@ -296,7 +296,7 @@ goe_flight_status_t goe_flight_attitude(goe_flight_t *flight, const goe_flight_a
     const float q[4] = {sample->q[0] / norm, sample->q[1] / norm, sample->q[2] / norm, sample->q[3] / norm};
     advance(flight, sample->time_us);
     (void)goe_flight_history_add_attitude(&flight->history, sample->time_us, q);
-    flight->history.stale = 0;
+    flight->history.attitude_stale = 0;
     return GOE_FLIGHT_OK;
 }
 
@@ -405,13 +405,13 @@ goe_flight_status_t goe_flight_position(goe_flight_t *flight, const goe_flight_p
     }
     const goe_flight_history_position_t *newest = goe_flight_history_newest_position(&flight->history);
     if (newest && !is_newer(flight->history.position_count, &newest->time_us, sample->time_us)) {
-        return refuse_time(flight);
+        return refuse_time(flight, &flight->history.position_stale);
     }
     follow_reset(flight, sample);
     advance(flight, sample->time_us);
     (void)goe_flight_history_add_position(&flight->history, sample->time_us, sample->position_ned_m);
     goe_flight_travel_take(&flight->travel, sample);
-    flight->history.stale = 0;
+    flight->history.position_stale = 0;
     memcpy(flight->velocity_ned_m_s, sample->velocity_ned_m_s, sizeof flight->velocity_ned_m_s);
     note_ground(flight, sample);
     flight->origin_known = goe_flight_is_set(&sample->origin_known);

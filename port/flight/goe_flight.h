@@ -33,9 +33,9 @@
  *             (4 + 4 GOE_FLIGHT_SLOTS), each against every obstacle. goe_flight_obstacle() 980; goe_flight_sectors() 12,800 with one
  *             obstacle; goe_flight_init() 12,700 for each slot. No loop runs longer than GOE_FLIGHT_SECTORS.
  * Failure     A call that returns a negative status, or GOE_FLIGHT_TOO_NEW, changes nothing except counters, with three exceptions:
- *             after a failed goe_flight_init() *flight cannot be used; the 16th GOE_FLIGHT_BAD_TIME in a row calls
- *             goe_flight_restart(); and a GOE_FLIGHT_TOO_OLD frame still counts for the estimate of the sender's clock, because all
- *             frames look too old after that clock was set back. [F5]
+ *             after a failed goe_flight_init() *flight cannot be used; the 16th GOE_FLIGHT_BAD_TIME in a row of the attitudes, or of
+ *             the positions, calls goe_flight_restart(); and a GOE_FLIGHT_TOO_OLD frame still counts for the estimate of the
+ *             sender's clock, because all frames look too old after that clock was set back. [F5]
  */
 #ifndef GOE_FLIGHT_H
 #define GOE_FLIGHT_H
@@ -72,8 +72,9 @@ typedef enum {
     GOE_FLIGHT_TOO_NEW = 1, /* the poses are older than the frame: keep it and call again after the next sample */
     GOE_FLIGHT_TOO_OLD = -1,   /* older than the history or settings.delay_max_s, or in a gap of samples: drop it */
     GOE_FLIGHT_NO_POSE = -2,   /* no sample of attitude or position since the start or the latest unknown reset */
-    GOE_FLIGHT_BAD_TIME = -3,  /* a sample that is not newer than the previous one. The 16th in a row shows that the
-                                  clock was set back: the layer then calls goe_flight_restart() */
+    GOE_FLIGHT_BAD_TIME = -3,  /* a sample that is not newer than the previous one of its kind. The 16th attitude or the 16th
+                                  position in a row shows that the clock was set back, or that one sample had a time
+                                  of the future: the layer then calls goe_flight_restart() */
     GOE_FLIGHT_NOT_FINITE = -4,
     GOE_FLIGHT_OUT_OF_RANGE = -5, /* a number outside the range stated at its field */
     GOE_FLIGHT_BAD_ATTITUDE = -6, /* the quaternion's norm differs from 1 by more than 1 % */
@@ -330,7 +331,7 @@ typedef struct { /* goe_history.c */
     goe_flight_history_attitude_t attitude[GOE_FLIGHT_SAMPLES];
     goe_flight_history_position_t position[GOE_FLIGHT_SAMPLES];
     uint8_t attitude_next, attitude_count, position_next, position_count;
-    uint8_t stale; /* samples in a row that were not newer */
+    uint8_t attitude_stale, position_stale; /* samples of a kind in a row that were not newer */
 } goe_flight_history_t;
 
 typedef struct { /* goe_marks.c: the autopilot's reset counters */

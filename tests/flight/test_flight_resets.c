@@ -322,10 +322,35 @@ static void a_clock_that_was_set_back_starts_everything_again(void) {
         refused += goe_flight_attitude(&flown.flight, &attitude) == GOE_FLIGHT_BAD_TIME ? 1 : 0;
         refused += goe_flight_position(&flown.flight, &position) == GOE_FLIGHT_BAD_TIME ? 1 : 0;
     }
-    TEST_ASSERT_EQUAL(16, refused);
+    TEST_ASSERT_EQUAL(16 + 15, refused); /* attitudes, positions */
     TEST_ASSERT_EQUAL(1, flown.flight.counters.lost);
     goe_pose_t pose;
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_pose(&flown.flight, attitude.time_us - 50000u, 0u, &pose, NULL));
+}
+
+/* GIVEN one attitude or one position of the future WHEN the samples of the other kind continue THEN everything starts again after 16 samples. */
+static void one_sample_of_the_future_ends_nothing_for_long(void) {
+    for (int kind = 0; kind < 2; kind++) {
+        goe_flight_attitude_t attitude;
+        goe_flight_position_t position;
+        setUp();
+        (void)flown_fly(&flown, 3.0);
+        flown_samples(&flown, flown.sample, &attitude, &position);
+        attitude.time_us += kind == 0 ? 600000000u : 0u;
+        position.time_us += kind == 1 ? 600000000u : 0u;
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_attitude(&flown.flight, &attitude));
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_position(&flown.flight, &position));
+        int refused = 0;
+        for (int k = flown.sample + 1; k < flown.sample + 40; k++) {
+            flown_samples(&flown, k, &attitude, &position);
+            refused += goe_flight_attitude(&flown.flight, &attitude) == GOE_FLIGHT_BAD_TIME ? 1 : 0;
+            refused += goe_flight_position(&flown.flight, &position) == GOE_FLIGHT_BAD_TIME ? 1 : 0;
+        }
+        TEST_ASSERT_EQUAL(16, refused);
+        TEST_ASSERT_EQUAL(1, flown.flight.counters.lost);
+        goe_pose_t pose;
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_pose(&flown.flight, attitude.time_us - 50000u, 0u, &pose, NULL));
+    }
 }
 
 int main(void) {
@@ -346,5 +371,6 @@ int main(void) {
     RUN_TEST(a_reset_of_the_heading_ends_the_tracks);
     RUN_TEST(a_jump_between_lost_images_is_reported_with_the_next_one);
     RUN_TEST(a_clock_that_was_set_back_starts_everything_again);
+    RUN_TEST(one_sample_of_the_future_ends_nothing_for_long);
     return UNITY_END();
 }

@@ -113,7 +113,8 @@ static void check_call(goe_flight_status_t status) {
     check_status(status);
     if (status != GOE_FLIGHT_OK && memory.flight.counters.lost == kept.counters.lost) {
         kept.counters = memory.flight.counters;
-        kept.history.stale = memory.flight.history.stale;
+        kept.history.attitude_stale = memory.flight.history.attitude_stale;
+        kept.history.position_stale = memory.flight.history.position_stale;
         kept.clock = status == GOE_FLIGHT_TOO_OLD ? memory.flight.clock : kept.clock;
         TEST_ASSERT_EQUAL_MEMORY(&kept, &memory.flight, sizeof kept);
     }

@@ -118,7 +118,8 @@ static void after_call(run_t *run, goe_flight_status_t status) {
     FUZZ_CHECK(fuzz_same(memory.before, guard, GUARD_BYTES) && fuzz_same(memory.behind, guard, GUARD_BYTES));
     if (status != GOE_FLIGHT_OK && memory.flight.counters.lost == kept.counters.lost) {
         kept.counters = memory.flight.counters;
-        kept.history.stale = memory.flight.history.stale;
+        kept.history.attitude_stale = memory.flight.history.attitude_stale;
+        kept.history.position_stale = memory.flight.history.position_stale;
         if (status == GOE_FLIGHT_TOO_OLD) { /* such a frame counts for the sender's clock */
             kept.clock = memory.flight.clock;
         }
