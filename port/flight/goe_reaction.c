@@ -62,6 +62,7 @@ typedef struct {
     float speed_m_s;
     float circle_m;  /* radius of the circle around a target; 0: the aircraft flies through it */
     float line_m[2]; /* direction of the order line, or of the course */
+    bool has_course; /* false: the aircraft is too slow, and the order line replaces the course */
 } look_t;
 
 typedef struct {
@@ -115,22 +116,30 @@ static void set_delay(look_t *look, float since_s) {
     look->at.late_m = look->speed_m_s * goe_flight_larger(LATEST * roll_in_s - since_s, EARLY * roll_in_s);
 }
 
-/* Returns false if there is no course. */
-static bool look_around(const goe_flight_t *flight, const goe_flight_reaction_own_t *own, look_t *look) {
+/* Sets course and speed. A slow aircraft with an order has the course of the order line, and the least speed. Returns false if there is no
+ * course. */
+static bool set_course(const goe_flight_t *flight, look_t *look) {
     const float north = flight->velocity_ned_m_s[0];
     const float east = flight->velocity_ned_m_s[1];
     const float speed_m_s = sqrtf(north * north + east * east);
+    look->has_course = speed_m_s > SPEED_MIN_M_S;
+    look->speed_m_s = look->has_course ? speed_m_s : SPEED_MIN_M_S;
+    look->at.course_ne[0] = look->has_course ? north / speed_m_s : flight->reaction.course_ne[0];
+    look->at.course_ne[1] = look->has_course ? east / speed_m_s : flight->reaction.course_ne[1];
+    return look->has_course || flight->reaction.action != GOE_FLIGHT_NONE;
+}
+
+/* Returns false if there is no course. */
+static bool look_around(const goe_flight_t *flight, const goe_flight_reaction_own_t *own, look_t *look) {
     float sine;
     float cosine;
-    if (!(speed_m_s > SPEED_MIN_M_S)) {
+    if (!set_course(flight, look)) {
         return false;
     }
+    const float speed_m_s = look->speed_m_s;
     goe_flight_sincos_deg(flight->settings.bank_deg, &sine, &cosine);
     look->flight = flight;
     look->own = own;
-    look->speed_m_s = speed_m_s;
-    look->at.course_ne[0] = north / speed_m_s;
-    look->at.course_ne[1] = east / speed_m_s;
     memcpy(look->at.ned_m, own->ned_m, sizeof look->at.ned_m);
     look->at.turn_m = speed_m_s * speed_m_s * cosine / (GRAVITY_M_S2 * sine);
     look->at.through_m = look->at.turn_m + speed_m_s * (flight->settings.roll_in_s + flight->settings.reserve_s);
@@ -520,7 +529,8 @@ static void review(goe_flight_t *flight, look_t *look) {
 
 /* --------------------------------------------------------------------------------------------------------------- end -- */
 
-/* Whether an obstacle is on the order line, or between this line and the aircraft, and is not passed. */
+/* Whether an obstacle is on the order line, or between this line and the aircraft, and is not passed. A slow aircraft may become faster: for it
+ * the line has no end. */
 static bool is_in_the_way(const look_t *look, int i, float own_aside_m) {
     const goe_flight_slot_t *slot = &look->flight->slot[i];
     const goe_flight_reaction_t *r = &look->flight->reaction;
@@ -532,7 +542,7 @@ static bool is_in_the_way(const look_t *look, int i, float own_aside_m) {
     float aside_m;
     float from_ahead_m;
     relate(look->own->ned_m, r->course_ne, slot->center_ne_m, &ahead_m, &aside_m);
-    if (ahead_m < -reach_m || (i != r->slot && ahead_m > horizon_m)) {
+    if (ahead_m < -reach_m || (i != r->slot && look->has_course && ahead_m > horizon_m)) {
         return false;
     }
     relate(r->from_ned_m, r->course_ne, slot->center_ne_m, &from_ahead_m, &aside_m);
@@ -893,12 +903,14 @@ float goe_flight_reaction_decide(goe_flight_t *flight, int worst, const goe_flig
     }
     if (active) {
         end_if_over(flight, &look);
+    }
+    if (active && look.has_course) {
         break_off(flight, &look);
         review(flight, &look);
         set_delay(&look, 0.0f);
         rise(flight, &look);
     }
-    if (worst == NOBODY) {
+    if (worst == NOBODY || !look.has_course) {
         r->rising = false;
         return 0.0f;
     }

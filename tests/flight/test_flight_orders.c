@@ -701,6 +701,23 @@ static void a_slow_aircraft_has_a_course(void) {
     }
 }
 
+/* GIVEN an active order WHEN the aircraft stops THEN the order stays active while an obstacle is ahead on its line, its own or a far one, and
+ * ends hold_s after the last one is forgotten. */
+static void the_order_of_an_aircraft_that_stops_ends(void) {
+    put(0, 130.0f, 0.5f, 50.0f);
+    put(1, 600.0f, 0.5f, 50.0f);
+    flight.slot[1].hazard.conflict_probability = 0.0f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
+    flight.velocity_ned_m_s[0] = 0.5f;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(5.0));
+    flight.slot[0].used = false; /* as when its track has ended */
+    flight.reaction.slot = flight.reaction.edge = -1;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(5.0));
+    flight.slot[1].used = false;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(1.8));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, decide(0.3));
+}
+
 /* The side that was flown last is worth half a second. */
 static void the_side_of_before_is_preferred(void) {
     for (int side = -1; side <= 1; side++) {
@@ -756,6 +773,7 @@ int main(void) {
     RUN_TEST(a_climb_is_left_when_it_comes_too_late);
     RUN_TEST(a_climb_stays_active_until_the_top_is_passed);
     RUN_TEST(a_slow_aircraft_has_a_course);
+    RUN_TEST(the_order_of_an_aircraft_that_stops_ends);
     RUN_TEST(the_side_of_before_is_preferred);
     RUN_TEST(a_missing_obstacle_raises_no_climb);
     RUN_TEST(clear_sectors_are_reported_up_to_a_kilometer);
