@@ -10,7 +10,7 @@
 #define PIXEL_SD_MAX_PX 100.0f
 #define UNDETECTED_S 2.0f /* after this time a track without a position, or a passed one, may be evicted */
 #define WORTH_KEPT 0.5f   /* a slot of a higher worth is never evicted */
-#define ORDERED_S 30.0f   /* while an order is active every obstacle is kept this long: the way back leads past it */
+#define ORDERED_S 30.0f   /* while an order is active no track ends sooner: the way back leads past its obstacle */
 #define NOBODY (-1)
 
 /* ------------------------------------------------------------------------------------------------------- detections -- */
