@@ -12,7 +12,10 @@
 #define BUCKET_US 10000000
 #define STRANGE_US 1000000 /* an arrival so far from the least is of another clock, or a stuck message */
 #define STRANGE_MAX 3
-#define ALIKE_US 20000 /* largest difference of the offsets of another clock, and least time between its messages */
+#define STRANGE_MIN_US 200000.0f /* least time from the first to the last of them */
+#define ALIKE_US 20000.0f        /* largest difference of the offsets of another clock on a link without jitter */
+#define SPREADS 3.0f             /* by which it is larger on a link with jitter: number of mean excesses */
+#define LONGER 4.0f              /* by which the time that has passed must exceed it */
 #define FORGOTTEN_US                                                                                                   \
     100000000     /* of a clock that drifts by 50 ppm, an offset of so long ago is off by 5 ms, as much as delay_sd_s */
 #define SETTLED 8 /* number of messages after which the least is close to its final value */
@@ -31,19 +34,20 @@ static void begin(goe_flight_clock_t *clock, uint32_t offset_us, uint32_t arriva
     clock->has_before = false;
 }
 
-/* Counts an arrival that is late by more than a second. Those of a clock that was set back are late by the same time. Messages that were
- * stuck arrive at once, each less late than the one before; so do the parts of one image. before_us is free for the first offset. */
+/* Counts an arrival that is late by more than a second. Those of a clock that was set back are late by the same time, apart from the jitter
+ * of the link. Messages that were stuck, and the parts of one image, arrive faster than they were sent: each is less late than the one
+ * before. The time that has passed must therefore be much longer than what the offsets may differ by. */
 static bool is_another_clock(goe_flight_clock_t *clock, uint32_t offset_us, uint32_t arrival_us) {
-    const int32_t apart_us = goe_flight_between_us(offset_us, clock->before_us);
-    if (clock->strange == 0 || apart_us > ALIKE_US || apart_us < -ALIKE_US) {
-        clock->before_us = offset_us;
-        clock->has_before = false;
+    const float alike_us = ALIKE_US + SPREADS * clock->excess_us;
+    const int32_t apart_us = goe_flight_between_us(offset_us, clock->strange_offset_us);
+    if (clock->strange == 0 || goe_flight_absolute((float)apart_us) > alike_us) {
+        clock->strange_offset_us = offset_us;
         clock->strange_us = arrival_us;
-        clock->strange = 1;
-    } else if (goe_flight_between_us(arrival_us, clock->strange_us) >= clock->strange * ALIKE_US) {
-        clock->strange++;
+        clock->strange = 0;
     }
-    return clock->strange >= STRANGE_MAX;
+    clock->strange = (uint8_t)(clock->strange < UINT8_MAX ? clock->strange + 1 : UINT8_MAX);
+    const int32_t passed_us = goe_flight_between_us(arrival_us, clock->strange_us);
+    return clock->strange >= STRANGE_MAX && (float)passed_us >= goe_flight_larger(STRANGE_MIN_US, LONGER * alike_us);
 }
 
 static void learn(goe_flight_clock_t *clock, uint32_t offset_us, uint32_t arrival_us) {
@@ -88,7 +92,7 @@ static uint32_t offset_of(goe_flight_clock_t *clock, const goe_flight_frame_t *f
         return clock->offset_us;
     }
     learn(clock, offset_us, frame->arrival_us);
-    if (clock->count > 0) {
+    if (clock->count > 0 && clock->strange == 0) {
         follow_spread(clock, offset_us);
     }
     const float unsettled_us = clock->count < SETTLED ? clock->excess_us : 0.0f;

@@ -357,12 +357,12 @@ typedef struct { /* goe_travel.c */
 
 typedef struct { /* goe_clock.c: sender's clock to autopilot's */
     uint32_t offset_us;    /* autopilot's minus sender's, by goe_flight_timesync(); or the least in this interval */
-    uint32_t before_us;    /* the least in the previous interval; while strange is not 0, the offset of the first strange arrival */
+    uint32_t before_us;    /* the least in the previous interval */
     uint32_t bucket_us;    /* start of this interval */
-    uint32_t strange_us;   /* time of the first strange arrival */
+    uint32_t strange_us, strange_offset_us; /* time and offset of the first strange arrival */
     float excess_us;       /* running mean of the delays above the least */
     float synced_sd_us;
-    uint8_t count, strange; /* of this filter; arrivals in a row that are late by more than a second, all by the same time */
+    uint8_t count, strange; /* of this filter; arrivals in a row that are late by more than a second, all by a similar time */
     goe_flag_t has_before, synced;
 } goe_flight_clock_t;
 

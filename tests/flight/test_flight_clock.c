@@ -224,6 +224,60 @@ static void another_clock_is_believed_with_the_third_message(void) {
     }
 }
 
+/* GIVEN a link whose messages are late by up to most_us WHEN the sender's clock is set back by 2 s THEN that is believed in at most so many
+ * messages, ten a second. */
+static void check_set_back(double most_us, uint32_t messages) {
+    for (int run = 0; run < 50; run++) {
+        uint32_t sd_us;
+        memset(&flight_clock, 0, sizeof flight_clock);
+        for (uint32_t k = 0; k < 150u; k++) {
+            (void)off_us(100000u * k, (uint32_t)check_random_between(&any, 0.0, most_us), &sd_us);
+        }
+        uint32_t k = 150u;
+        int32_t error_us = 0;
+        for (; k < 250u && error_us < 1000000; k++) {
+            error_us = off_us(100000u * k, 2000000u + (uint32_t)check_random_between(&any, 0.0, most_us), &sd_us);
+        }
+        TEST_ASSERT_TRUE(k - 150u <= messages);
+    }
+}
+
+static void a_clock_that_was_set_back_is_believed_on_a_jittery_link(void) {
+    check_set_back(20000.0, 5u);
+    check_set_back(100000.0, 12u);
+    check_set_back(300000.0, 30u);
+}
+
+/* GIVEN messages that were stuck for three seconds THEN they are of no other clock while they come faster than they were sent, at twice or at ten
+ * times the rate, and on a link with much jitter. */
+static void messages_that_come_faster_are_no_other_clock(void) {
+    static const uint32_t step_us[] = {50000u, 10000u};
+    for (int n = 0; n < 4; n++) {
+        const double most_us = n < 2 ? 15000.0 : 300000.0;
+        uint32_t sd_us;
+        uint32_t late_us = 3000000u;
+        memset(&flight_clock, 0, sizeof flight_clock);
+        for (uint32_t k = 0; k < 150u; k++) {
+            (void)off_us(100000u * k, (uint32_t)check_random_between(&any, 0.0, most_us), &sd_us);
+        }
+        for (uint32_t k = 150u; late_us > 100000u; k++) {
+            TEST_ASSERT_INT32_WITHIN(20000, 0, off_us(100000u * k, late_us, &sd_us));
+            late_us -= 100000u - step_us[n % 2];
+        }
+    }
+}
+
+/* GIVEN a least delay of the interval before WHEN a stuck message comes THEN that delay still counts. */
+static void a_stuck_message_discards_no_least_delay(void) {
+    uint32_t sd_us;
+    for (uint32_t k = 0; k < 105u; k++) {
+        (void)off_us(100000u * k, k < 100u ? 0u : 50000u, &sd_us);
+    }
+    TEST_ASSERT_EQUAL_INT32(0, off_us(10500000u, 50000u, &sd_us));
+    TEST_ASSERT_EQUAL_INT32(0, off_us(10600000u, 3000000u, &sd_us));
+    TEST_ASSERT_EQUAL_INT32(0, off_us(13700000u, 50000u, &sd_us));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_clock_that_is_hardly_known_says_so);
@@ -236,6 +290,9 @@ int main(void) {
     RUN_TEST(another_clock_is_noticed);
     RUN_TEST(one_stuck_message_is_no_other_clock);
     RUN_TEST(messages_that_come_at_once_are_no_other_clock);
+    RUN_TEST(a_clock_that_was_set_back_is_believed_on_a_jittery_link);
+    RUN_TEST(messages_that_come_faster_are_no_other_clock);
+    RUN_TEST(a_stuck_message_discards_no_least_delay);
     RUN_TEST(a_clock_is_forgotten_in_a_silence);
     RUN_TEST(a_two_way_offset_outlasts_a_silence);
     RUN_TEST(a_two_way_offset_replaces_the_estimate);
