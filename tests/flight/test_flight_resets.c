@@ -353,6 +353,50 @@ static void one_sample_of_the_future_ends_nothing_for_long(void) {
     }
 }
 
+/* So many samples, without images. */
+static void give_samples(int count) {
+    for (int k = 0; k < count; k++) {
+        goe_flight_attitude_t attitude;
+        goe_flight_position_t position;
+        flown_samples(&flown, flown.sample++, &attitude, &position);
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_attitude(&flown.flight, &attitude));
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_position(&flown.flight, &position));
+    }
+}
+
+static int clear_sectors(void) {
+    uint16_t sector_cm[GOE_FLIGHT_SECTORS];
+    int clear = 0;
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_sectors(&flown.flight, 6000u, sector_cm));
+    for (int i = 0; i < GOE_FLIGHT_SECTORS; i++) {
+        clear += sector_cm[i] == 6001u ? 1 : 0;
+    }
+    return clear;
+}
+
+/* GIVEN an assessment of half an hour ago or more, or none THEN it closes no sector: its time is none of the future. */
+static void an_old_assessment_closes_no_sector(void) {
+    for (int assessed = 0; assessed < 2; assessed++) {
+        setUp();
+        flown.detects = false;
+        flown.scene.speed_mps = 0.0;
+        if (assessed) {
+            (void)flown_fly(&flown, 1.0);
+        }
+        flown.start_us += assessed ? 0u : 2400000000u;
+        for (int k = 0; k < (assessed ? 240 : 0); k++) { /* 40 minutes */
+            flown.start_us += 10000000u;
+            give_samples(1);
+        }
+        flown.start_us += 1000000u; /* no image is exposed in a gap of samples */
+        give_samples(FLOWN_DELAY + 1);
+        for (int k = 0; k < FLOWN_POSE_HZ; k++) {
+            (void)flown_step(&flown);
+        }
+        TEST_ASSERT_TRUE(clear_sectors() > 5);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_known_jump_changes_nothing_but_the_place);
@@ -371,6 +415,7 @@ int main(void) {
     RUN_TEST(a_reset_of_the_heading_ends_the_tracks);
     RUN_TEST(a_jump_between_lost_images_is_reported_with_the_next_one);
     RUN_TEST(a_clock_that_was_set_back_starts_everything_again);
+    RUN_TEST(an_old_assessment_closes_no_sector);
     RUN_TEST(one_sample_of_the_future_ends_nothing_for_long);
     return UNITY_END();
 }
