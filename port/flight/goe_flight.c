@@ -24,6 +24,7 @@
 #define ATTITUDE_SD_MAX_DEG 30.0f
 #define LATITUDE_MAX_E7 890000000
 #define LONGITUDE_MAX_E7 1800000000
+#define SET_BACK_US 1000000     /* a time that is so much older than the newest one is of another clock */
 #define UNASSESSED_US 300000000 /* five minutes */
 #define STALE_MAX 16            /* samples in a row that are not newer: the clock was set back */
 #define POSE_ALIVE_S 0.5f
@@ -243,13 +244,14 @@ static void bury(goe_flight_t *flight, uint32_t now_us) {
     goe_flight_clock_bury(&flight->clock, now_us);
 }
 
-/* Advances base_us, the newest time, which does not wrap. An assessment of long ago counts as one of now: otherwise, its time would look like
- * one of the future after half an hour. */
+/* Advances base_us, the newest time, which does not wrap. After a reset the history is empty, and a time that is a little older is no other
+ * clock. An assessment of long ago counts as one of now: otherwise, its time would look like one of the future after half an hour. */
 static void advance(goe_flight_t *flight, uint32_t time_us) {
     const int32_t on_us = goe_flight_between_us(time_us, (uint32_t)flight->base_us);
-    const bool first = flight->history.attitude_count + flight->history.position_count == 0;
+    const bool empty = flight->history.attitude_count + flight->history.position_count == 0;
+    const bool first = empty && (flight->base_us == 0 || on_us < -SET_BACK_US);
     if (first || on_us > 0) {
-        flight->base_us += first ? (int64_t)(time_us - (uint32_t)flight->base_us) : on_us;
+        flight->base_us += (uint32_t)on_us;
     }
     if (first || goe_flight_between_us((uint32_t)flight->base_us, flight->assessed_us) > UNASSESSED_US) {
         flight->assessed_us = (uint32_t)flight->base_us;
