@@ -21,7 +21,6 @@
 #include "goe_slot.h"
 
 #define SURE_SIGMA 2.0f
-#define MARGIN_MIN_M 1.0f
 #define DISTANCE_MAX_M 1.0e6f
 #define LENGTH_MIN_M2 1.0e-6f
 #define NOBODY (-1)
@@ -94,7 +93,7 @@ void goe_flight_clear_slots(const goe_flight_t *flight, const goe_flight_clear_o
         const float across[2] = {-one->at_m[1], one->at_m[0]};
         one->across_sd_m = sd_along_m(one->variance_m2, across, sqrtf(goe_flight_larger(sight_m2, LENGTH_MIN_M2)));
         one->radius_m = goe_flight_slot_radius_m(slot) + goe_flight_lookout_drift_m(flight, slot, own->time_us);
-        one->margin_m = goe_flight_larger(doubt * flight->settings.margin_m, MARGIN_MIN_M);
+        one->margin_m = goe_flight_larger(doubt * flight->settings.margin_m, GOE_FLIGHT_CLEAR_MARGIN_MIN_M);
         one->counts = goe_flight_clear_counts(flight, i, own->ned_m[2]);
     }
 }

@@ -4,6 +4,8 @@
 
 #include "goe_flight.h"
 
+#define GOE_FLIGHT_CLEAR_MARGIN_MIN_M 1.0f /* fractions of a smaller margin would say nothing */
+
 /* The aircraft, and the frame of its course: x ahead, y right. */
 typedef struct {
     float ned_m[3], course_ne[2];

@@ -267,8 +267,8 @@ typedef struct {
                               the course by clearance_m at two sigma; it rises with the estimate and never sinks while
                               the order is active */
     goe_flight_reason_t reason;
-    float clear_m;         /* LEFT, RIGHT, HOLD: the clear fraction of the order's path (README.md), times margin_m. That is its
-                              least distance from any known outline, minus two sigmas of that obstacle's position in the
+    float clear_m;         /* LEFT, RIGHT, HOLD: the clear fraction of the order's path (README.md), times margin_m, or times 1 m if that
+                              is larger. That is its least distance from any known outline, minus two sigmas of that obstacle's position in the
                               assessment that chooses the path, and minus one sigma in later ones. If that obstacle is suspect,
                               the distance is larger by suspect_factor. At most 2 margin_m and 1000; negative: the path leads
                               into an obstacle. Otherwise 0 */

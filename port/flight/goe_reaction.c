@@ -368,6 +368,12 @@ static option_t choose(const look_t *look, int about, const encounter_t *e, int 
 
 /* ------------------------------------------------------------------------------------------------------------- order -- */
 
+/* The reported distance of a path with this clear fraction. */
+static float clear_of(const goe_flight_t *flight, float share) {
+    const float margin_m = goe_flight_larger(flight->settings.margin_m, GOE_FLIGHT_CLEAR_MARGIN_MIN_M);
+    return goe_flight_clamped(share * margin_m, -CLEAR_MAX_M, CLEAR_MAX_M);
+}
+
 static void order(goe_flight_t *flight, int slot, const look_t *look, const encounter_t *e, const option_t *option) {
     goe_flight_reaction_t *r = &flight->reaction;
     const float *course = look->at.course_ne;
@@ -395,8 +401,7 @@ static void order(goe_flight_t *flight, int slot, const look_t *look, const enco
     r->side = aside ? option->side : r->side;
     r->reason = option->share >= (option->action == GOE_FLIGHT_HOLD ? HOLD_FREE : FREE) ? GOE_FLIGHT_REASON_CLEAR
                                                                                         : GOE_FLIGHT_REASON_LEAST_BAD;
-    r->clear_m =
-        aside ? goe_flight_clamped(option->share * look->flight->settings.margin_m, -CLEAR_MAX_M, CLEAR_MAX_M) : 0.0f;
+    r->clear_m = aside ? clear_of(flight, option->share) : 0.0f;
     r->rising = r->falling = false;
 }
 
@@ -512,7 +517,7 @@ static void review(goe_flight_t *flight, look_t *look) {
         set_delay(look, goe_flight_between_s(look->own->time_us, r->ordered_us));
     }
     const float share = share_of_order(look, r, &nearest);
-    r->clear_m = goe_flight_clamped(share * flight->settings.margin_m, -CLEAR_MAX_M, CLEAR_MAX_M);
+    r->clear_m = clear_of(flight, share);
     if (share < 0.0f) {
         r->reason = GOE_FLIGHT_REASON_LEAST_BAD;
     }

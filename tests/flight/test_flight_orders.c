@@ -744,6 +744,22 @@ static void a_missing_obstacle_raises_no_climb(void) {
     CHECK_CLOSE(0.01, -22.0, flight.reaction.target_ned_m[2]);
 }
 
+/* [goe_flight_assessment_t.clear_m] GIVEN a margin of 0 WHEN the path of an order leads into an obstacle THEN clear_m is negative, and
+ * the reason is the least bad. */
+static void an_order_into_an_obstacle_is_negative_without_a_margin(void) {
+    flight.settings.margin_m = 0.0f;
+    put_wall(20.0f);
+    flight.reaction.action = GOE_FLIGHT_LEFT;
+    flight.reaction.side = -1;
+    flight.reaction.course_ne[0] = flight.reaction.along_ne[0] = 1.0f;
+    flight.reaction.target_ned_m[0] = 20.0f;
+    flight.reaction.target_ned_m[1] = -28.0f;
+    flight.reaction.slot = flight.reaction.edge = -1;
+    (void)decide(0.0);
+    TEST_ASSERT_TRUE(flight.reaction.clear_m < -1.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_REASON_LEAST_BAD, flight.reaction.reason);
+}
+
 /* At most 1000 m are reported, however large the margin. */
 static void clear_sectors_are_reported_up_to_a_kilometer(void) {
     flight.settings.margin_m = 1000.0f;
@@ -776,6 +792,7 @@ int main(void) {
     RUN_TEST(the_order_of_an_aircraft_that_stops_ends);
     RUN_TEST(the_side_of_before_is_preferred);
     RUN_TEST(a_missing_obstacle_raises_no_climb);
+    RUN_TEST(an_order_into_an_obstacle_is_negative_without_a_margin);
     RUN_TEST(clear_sectors_are_reported_up_to_a_kilometer);
     RUN_TEST(a_mast_that_is_not_on_the_course_blocks_a_side);
     RUN_TEST(a_place_that_is_hardly_known_blocks_a_side);
