@@ -277,17 +277,30 @@ static void add_turn(region_t *region, float begin_m, float turn_m, const float 
     }
 }
 
-/* Between the straight legs of both turns away is a triangle. */
+/* Between the straight legs of both turns away is a triangle. If the late turn is a whole circle, its start replaces the end of its arc. If
+ * the early turn is one, all turns are, and there are no straight legs. */
 static void fill_between(region_t *region, const float target_m[2]) {
     const leg_t *early = &region->leg[1];
     const leg_t *late = &region->leg[3];
-    if (region->legs < 5) { /* one of the turns is a whole circle */
+    if (early->whole) {
         return;
     }
     region->has_fan = true;
     memcpy(region->fan_m[0], early->to_m, sizeof early->to_m);
     memcpy(region->fan_m[1], late->to_m, sizeof late->to_m);
     memcpy(region->fan_m[2], target_m, sizeof region->fan_m[2]);
+}
+
+/* A turn that begins later may be a whole circle, because the target is inside it. The first such circle is the outer end of all others. */
+static void add_first_circle(region_t *region, const goe_flight_clear_own_t *own, const float target_m[2]) {
+    const float aside_m = goe_flight_absolute(target_m[1]);
+    const float square = aside_m * (2.0f * own->turn_m - aside_m);
+    const float begin_m = target_m[0] - sqrtf(goe_flight_larger(square, 0.0f));
+    if (square > 0.0f && begin_m > own->early_m && begin_m < own->late_m) {
+        leg_t *circle = add(region);
+        set_arc(circle, begin_m, own->turn_m, target_m);
+        circle->whole = true; /* whatever the rounding */
+    }
 }
 
 /* Both ends of the circle around the target, viewed from the start of the turn. inner_m: the one nearer to the course. */
@@ -341,6 +354,7 @@ static void begin_region(const goe_flight_clear_own_t *own, const goe_flight_cle
         add_turn(region, own->early_m, own->turn_m, way->target_m);
         add_turn(region, own->late_m, own->turn_m, way->target_m);
         fill_between(region, way->target_m);
+        add_first_circle(region, own, way->target_m);
         return;
     }
     if (way->circle_m > 0.0f && !ends_of_circle(early_m, way, inner_m, outer_m)) {

@@ -237,6 +237,34 @@ static void a_turn_away_is_flown_from_every_delay(void) {
     TEST_ASSERT_TRUE(swept > 40 && swept > 20 * missed);
 }
 
+/* GIVEN an aircraft that is slow for its delay WHEN it turns away to circle at once THEN early turns lead to the target and late ones around
+ * it: no path is called clear on the ground of any of them. */
+static void a_turn_away_at_once_is_flown_from_every_delay(void) {
+    int swept = 0;
+    for (int n = 0; n < TRIALS * 10; n++) {
+        any_encounter();
+        own.turn_m = between(15.0, 60.0);
+        own.early_m = between(5.0, 20.0);
+        own.late_m = own.early_m + own.turn_m * between(1.0, 2.5);
+        way.turns_away = true;
+        way.target_m[0] = own.late_m;
+        way.target_m[1] = n % 2 == 0 ? own.turn_m : -own.turn_m;
+        slots[0].at_m[0] = own.late_m + own.turn_m * between(-3.0, 1.0);
+        slots[0].at_m[1] = way.target_m[1] * between(0.0, 2.0);
+        begin_trace();
+        const double step_m = (double)(own.late_m - own.early_m) / BEGINS;
+        for (int i = 0; i <= BEGINS; i++) {
+            here_m[0] = here_m[1] = 0.0;
+            fly_turn((double)own.early_m + step_m * i, (double)way.target_m[0], (double)way.target_m[1]);
+        }
+        if (least_m < 0.25) {
+            TEST_ASSERT_TRUE(spare_m() + (double)slots[0].radius_m < 2.0);
+            swept++;
+        }
+    }
+    TEST_ASSERT_TRUE(swept > 100);
+}
+
 /* Doubt about the place: before it along the nearest distance, on the way past it also across the line of sight: the less of both. */
 static void doubt_about_the_place_is_taken_off(void) {
     for (int n = 0; n < TRIALS; n++) {
@@ -443,6 +471,7 @@ int main(void) {
     RUN_TEST(a_line_may_be_left_at_once);
     RUN_TEST(a_circle_is_flown_about_the_target);
     RUN_TEST(a_turn_away_is_flown_from_every_delay);
+    RUN_TEST(a_turn_away_at_once_is_flown_from_every_delay);
     RUN_TEST(doubt_about_the_place_is_taken_off);
     RUN_TEST(doubt_abeam_of_a_turn_lies_along_its_radius);
     RUN_TEST(the_nearest_is_that_of_the_least_share);
