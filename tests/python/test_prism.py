@@ -217,7 +217,7 @@ def test_residuals_that_are_doubted(built: None, double: bool) -> None:
     """With too small noise settings, rows get a low weight or none, but not so often that the library restarts the
     track."""
     flight = box_flight(BUILDING, BoxOptions(roll_deg=25.0), 1)
-    reference, track = both(flight, ErrorModel(box_noise_px=0.3, box_noise_rel=0.01), double)
+    reference, track = both(flight, ErrorModel(box_noise_px=0.3, box_noise_rel=0.008), double)
     assert reference.doubted.sum() >= 10 and reference.refused.sum() >= 3
     assert_same(reference, track, double)
 

@@ -46,6 +46,7 @@ from ..flights.flight import Flight
 from .altimeter import Altimeter
 from .model import undistort
 from .prism import (
+    AXIS,
     BX,
     PZ,
     STATES,
@@ -380,12 +381,21 @@ class PrismFilter:
         return result
 
     def _learn(self, rows: Rows) -> None:
+        """Of each side; the error of the attitude, which opposite sides share, is estimated and removed."""
+        common = rows.about @ rows.about.T
         for i, side in enumerate(rows.side):
             memory = self.memory[side]
-            gain = memory.variance / (rows.own[i] + rows.about[i] @ rows.about[i])
-            memory.value += gain * rows.residual[i]
-            memory.by = memory.by + gain * rows.slope[i]
-            memory.variance -= gain * memory.variance
+            opposite = [k for k, other in enumerate(rows.side) if k != i and AXIS[other] == AXIS[side]]
+            every = 1 + sum(common[k, k] / rows.own[k] for k in (i, *opposite))
+            gain = memory.variance / rows.own[i]
+            own = gain * (1 - common[i, i] / rows.own[i] / every)
+            memory.value += own * rows.residual[i]
+            memory.by = memory.by + own * rows.slope[i]
+            for k in opposite:
+                both = gain * common[i, k] / rows.own[k] / every
+                memory.value -= both * rows.residual[k]
+                memory.by = memory.by - both * rows.slope[k]
+            memory.variance -= own * memory.variance
             memory.measured = True
 
     def _update(self, rows: Rows, estimate_depth: bool) -> float:
