@@ -146,9 +146,9 @@ typedef enum {
 typedef struct {
     int64_t time_us;         /* any origin; increases (equal: by camera number); not GOE_TIME_UNKNOWN */
     float position_ned_m[3]; /* the vehicle's reference point, each +-1e6; choose an origin within 10 km */
-    float height_m;          /* camera above the ground at the obstacle, +-1e5. Exactly 0 with a box, or without a
-                              * detection, means "not set". goe averages the readings and moves the height by the changes
-                              * of down; window: each reading as it is */
+    float height_m;          /* camera above the ground at the obstacle, +-1e5. Exactly 0 means "not set", except with
+                              * points alone. goe averages readings and moves the height by changes of down; window:
+                              * each reading as it is */
     float attitude[4];       /* quaternion w, x, y, z from body FRD to NED; its norm is 1 within 1 % */
     uint8_t reset_count;     /* reset counter of the autopilot's filter; it may wrap */
     bool reset_delta_known;  /* whether reset_delta_ned_m is set; read only after a change of reset_count */

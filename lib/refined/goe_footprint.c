@@ -226,6 +226,7 @@ void goe_footprint_recall(goe_filter_t *filter, const goe_observation_t *obs, go
     }
 }
 
+/* Product of the derivatives of two rows by the attitude of the image. */
 static float attitude_of(const float a[GOE_COLUMNS], const float b[GOE_COLUMNS]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }

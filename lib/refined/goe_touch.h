@@ -48,7 +48,6 @@ float goe_touch_coordinate(const goe_camera_t *camera, const goe_sides_t *sides,
 float goe_touch_size(const goe_observation_t *obs, size_t side, float extent);
 
 /* Variance that a box has because the border cuts it at the obstacle's left or right; size: that of the box along a side's coordinate. */
-/*@ requires goe_observation_is_open(obs); */
 float goe_touch_cut_variance(const goe_observation_t *obs, float size);
 
 /* Variance of a side's error that is new in each image, with that of a cut. */

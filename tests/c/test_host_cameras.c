@@ -372,7 +372,7 @@ static void an_end_is_open_that_a_camera_cuts(void) {
     TEST_ASSERT_FALSE(estimate.fresh);
 }
 
-/* [goe_camera_t.offset_m] GIVEN two cameras far apart on the aircraft WHEN they take turns THEN the way from one to the other is no jump of
+/* [GOE_CAMERAS_MAX] GIVEN two cameras far apart on the aircraft WHEN they take turns THEN the way from one to the other is no jump of
  * the autopilot's position. */
 static void the_way_between_two_cameras_is_no_jump(void) {
     (void)approach(EMPTY_BETWEEN, 0.0, 1000);

@@ -148,8 +148,8 @@ static void it_is_as_good_as_all_images_at_once(void) {
 #define FLIGHTS 600
 
 /* One flight: two opposite sides with errors of their own, slow and white, and an error that is common to both and new in each image. The
- * slow errors have a sigma of 1, a time constant of 12 images, and x is seen by the difference of the sides alone, as a range is by the
- * growth of a box. Returns the squared error of x, in sigmas. */
+ * slow errors have a sigma of 1 and a time constant of 12 images. Only the difference of the sides shows x, as the growth of a box shows a
+ * range. Returns the squared error of x, in sigmas. */
 static double fly_with_common_error(double common, double white) {
     static goe_filter_t filter;
     goe_rows_t rows;
@@ -206,8 +206,7 @@ static double fly_with_common_error(double common, double white) {
 }
 
 /* [navigation.attitude_white_sd_deg, (R30)]
- * GIVEN an error that both sides share, small or large against their own, THEN the variance of x is true: it is no error of a side, and
- * what is left of it in the memories does not count as one. */
+ * GIVEN an error that both sides share, small or large against their own, THEN the variance of x is true: it is no error of a side. */
 static void a_common_error_is_none_of_a_side(void) {
     static const double commons[] = {0.05, 0.3, 1.0, 3.0};
     for (size_t i = 0; i < sizeof commons / sizeof commons[0]; i++) {

@@ -176,7 +176,8 @@ def test_orders_are_those_of_the_decision_rule(flown: dict[str, Any]) -> None:
         for r in reports(lines):
             expected = order_after(before, r)
             old = r["age_s"] > 2.0 and before != GO_AROUND  # of detections without an answer
-            outgrown = r["order"] == UNCERTAIN and expected in (CLEAR, IN_DOUBT) and before != GO_AROUND
+            doubt = before if before == GO_AROUND else UNCERTAIN
+            outgrown = r["order"] == doubt and expected in (CLEAR, IN_DOUBT)
             assert r["order"] == expected or outgrown or (old and r["order"] == UNCERTAIN)
             doubted += outgrown and not old and controls[3] <= FAIR_NOISE_PX
             before = r["order"]

@@ -1,28 +1,25 @@
 """A recursive estimator of a prism from upright bounding boxes, image by image: covariance form, float64.
 
-It follows the library's definitions, but shares no code with it; the library uses a triangular square root of the
-information instead of a covariance. One linearized update per image, at the predicted state x:
+It follows the library's definitions, but shares no code with it: the library uses a square root of the information
+instead of a covariance. One linearized update per image, at the predicted state x:
 
     r = measured - predicted(x)          J = d predicted / d state              (``prism.visible_row_of``)
 
 A side's error has a white part and a correlated part: a first-order Gauss-Markov process with the sigma
-s = box_noise_rel *
-size of the box, which decays by f = exp(-t/tau) from image to image. Given the state, the past residuals determine it:
-m - F (x' - x) if the state becomes x', with the remaining variance V.
+s = box_noise_rel * size of the box, which decays by f = exp(-t/tau) from image to image. Given the state, the past
+residuals determine it: m - F (x' - x) if the state becomes x', with the remaining variance V.
 
     predict     m <- f m    F <- f F    V <- min(f^2 V + (1 - f^2) s^2, s^2)    in the first image V = s^2
     whiten      r <- r - m  J <- J - F  N = V + white
-    update      k = V/(N + common variance of the image's rows)    m <- m + k r    F <- F + k J    V <- V - k V
+    update      m <- m + k r    F <- F + k J    V <- V - k V    k: of the side and the opposite one (``_learn``)
 
 The image's own position error, p per axis, looks like an attitude error of p/Z, Z the distance of the middle along the
 axes: it adds to the white attitude error, which the image's rows share. Its part along Z, which opposite sides share,
 adds 2 (p dr/dZ)^2 to each side's own variance.
 
-The depth d comes last. P is the covariance of the other states if d were known, and z d' the effect of an error d' of
-d on them, so
-
+The depth d comes last. P is the covariance of the other states if d were known, and z d' the effect of an error d' on
+them, so
     covariance of all states = [[P + z z' var(d), z var(d)], [z' var(d), var(d)]]
-
 While the line of sight has turned by an angle whose sine is at most ``DEPTH_TURNED`` since the filter's start, d has
 its prior and is not estimated (a consider parameter, Schmidt): the gain K uses P alone.
 
@@ -33,7 +30,6 @@ updated one.
 
 If the residuals of a track are larger than configured, or correlated from image to image, the filter widens its sigmas:
 it multiplies the variance by ``Scatter.factor``.
-
 Not modeled: the library's reaction to sides that repeatedly do not fit, which is to restart."""
 
 from __future__ import annotations
@@ -382,20 +378,14 @@ class PrismFilter:
 
     def _learn(self, rows: Rows) -> None:
         """Of each side; the error of the attitude, which opposite sides share, is estimated and removed."""
-        common = rows.about @ rows.about.T
+        common, axis = rows.about @ rows.about.T, AXIS[rows.side]
         for i, side in enumerate(rows.side):
-            memory = self.memory[side]
-            opposite = [k for k, other in enumerate(rows.side) if k != i and AXIS[other] == AXIS[side]]
-            every = 1 + sum(common[k, k] / rows.own[k] for k in (i, *opposite))
-            gain = memory.variance / rows.own[i]
-            own = gain * (1 - common[i, i] / rows.own[i] / every)
-            memory.value += own * rows.residual[i]
-            memory.by = memory.by + own * rows.slope[i]
-            for k in opposite:
-                both = gain * common[i, k] / rows.own[k] / every
-                memory.value -= both * rows.residual[k]
-                memory.by = memory.by - both * rows.slope[k]
-            memory.variance -= own * memory.variance
+            memory, pair = self.memory[side], np.flatnonzero(axis == axis[i])
+            share = common[i, pair] / rows.own[pair] / (1 + (common[pair, pair] / rows.own[pair]).sum())
+            gain = memory.variance / rows.own[i] * ((pair == i) - share)
+            memory.value += gain @ rows.residual[pair]
+            memory.by = memory.by + gain @ rows.slope[pair]
+            memory.variance -= gain[pair == i][0] * memory.variance
             memory.measured = True
 
     def _update(self, rows: Rows, estimate_depth: bool) -> float:
