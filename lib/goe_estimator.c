@@ -341,7 +341,8 @@ static GOE_NOINLINE void refuse(goe_estimator_t *estimator, goe_status_t status,
 
 /* Whether all outputs are valid, and the camera's position, which places the next image, is finite. */
 static bool is_sound(const goe_estimator_t *estimator, const goe_estimate_t *estimate) {
-    return goe_guard_estimate(estimate) && goe_guard_finite(&estimator->motion.dx_m, 2);
+    const bool placed = goe_guard_finite(&estimator->motion.dx_m, 2); /* dx_m and dz_m */
+    return placed && goe_guard_estimate(estimate);
 }
 
 /* Ends the track: its memory was changed from outside. */

@@ -116,7 +116,7 @@ GOE_NODISCARD goe_decision_t goe_decide(const goe_estimator_t *estimator, const 
 
 /* Returns the earliest time of the closest approach at two sigma, s: tcpa_s^2 / (tcpa_s + 2 tcpa_sd_s). Returns 0 if hazard is
  * null or not finite.
- * Cost: at most 30 instructions, 16 bytes of stack. */
+ * Cost: at most 70 instructions, 16 bytes of stack. */
 float goe_earliest_tcpa_s(const goe_hazard_t *hazard);
 #endif
 

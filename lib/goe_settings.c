@@ -24,7 +24,6 @@ static const uint8_t kinds[] = {GOE_SETTINGS(KIND)};
 static const struct {
     float low, high, value;
 } ranges[] = {GOE_SETTINGS(RANGE)};
-enum { FX, FY, CX, CY }; /* the list begins with the focal lengths and the principal point */
 #define SETTINGS (sizeof places / sizeof places[0])
 
 GOE_STATIC_ASSERT(sizeof(goe_settings_t) <= UINT16_MAX, a_place_fits_its_type);
@@ -86,23 +85,17 @@ void goe_settings_default(goe_settings_t *settings) {
 #endif
 }
 
-static const char *name_of(size_t setting) {
-    const char *name = names;
-    for (; setting > 0; setting--) {
-        while (*name++ != '\0') {
-        }
-    }
-    return name;
-}
-
 /* Name of the first bad one of the first `count` settings, at `from`; null: none. */
 /*@ requires \valid_read(from + (0 .. sizeof(goe_settings_t) - 1));
     requires count <= sizeof(places) / sizeof(places[0]); */
 static const char *first_bad(const unsigned char *from, size_t count) {
+    const char *name = names;
     for (size_t i = 0; i < count; i++) {
         const float value = read_field(from + places[i], kinds[i]);
-        if (goe_magnitude(value) >= GOE_INFINITY_BITS || !goe_between(value, ranges[i].low, ranges[i].high)) {
-            return name_of(i);
+        if (goe_magnitude(value) >= GOE_INFINITY_BITS || !(value >= ranges[i].low && value <= ranges[i].high)) {
+            return name;
+        }
+        while (*name++ != '\0') {
         }
     }
     return NULL;
@@ -117,15 +110,15 @@ static bool is_beyond(float center_px, float focal_px, float size_px) {
 /* Name of a value that no camera has: a focal length in millimeters, or the principal point of another image size. Null: none. */
 static const char *implausible(const goe_camera_t *camera) {
     if (is_too_short(camera->fx_px, camera->width_px)) {
-        return name_of(FX);
+        return "camera.fx_px";
     }
     if (is_too_short(camera->fy_px, camera->height_px)) {
-        return name_of(FY);
+        return "camera.fy_px";
     }
     if (is_beyond(camera->cx_px, camera->fx_px, camera->width_px)) {
-        return name_of(CX);
+        return "camera.cx_px";
     }
-    return is_beyond(camera->cy_px, camera->fy_px, camera->height_px) ? name_of(CY) : NULL;
+    return is_beyond(camera->cy_px, camera->fy_px, camera->height_px) ? "camera.cy_px" : NULL;
 }
 
 #if GOE_CAMERAS_MAX > 1

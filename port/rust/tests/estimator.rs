@@ -82,12 +82,12 @@ mod filter {
         if cfg!(feature = "window") && cfg!(feature = "target_motion") {
             let width = estimate.width.expect("a width");
             let height = estimate.height.expect("a height");
-            assert_eq!(said, "200.9 +- 53.2 m ahead, 30.4 m to the left");
+            assert_eq!(said, "201.0 +- 53.3 m ahead, 30.4 m to the left");
             assert_eq!(format!("{:.1} {:.1}", width.m, height.m), "6.0 30.0");
         }
         let tenth = fly(&mut Estimator::new(&settings()).expect("good settings"), 10);
         let z = tenth.position.expect("a position").z;
-        assert_eq!(format!("{:.1} +- {:.1}", z.m, z.sd_m), "183.3 +- 29.8");
+        assert_eq!(format!("{:.1} +- {:.1}", z.m, z.sd_m), "183.2 +- 28.2");
     }
 }
 
