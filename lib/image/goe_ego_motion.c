@@ -4,7 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "image/goe_camera.h"
 #include "maths/goe_angle.h"
 #include "maths/goe_rotation.h"
 #include "maths/goe_scalar.h"
@@ -114,12 +113,11 @@ static void place_camera(goe_motion_t *motion, const float position[3]) {
 #if GOE_AUGMENTED
 #if GOE_CAMERAS_MAX > 1
 /* Adds the way from the arm of the previous image's camera to that of this one: it is no motion of the aircraft. */
-static void add_arm(const goe_motion_t *motion, const goe_camera_t *previous, const goe_view_t *view,
+static void add_arm(const goe_motion_t *motion, const goe_settings_t *settings, const goe_view_t *view,
                     const float body_to_ned[9], float before_m[2]) {
+    const size_t number = motion->camera % (size_t)GOE_CAMERAS_MAX;
+    const goe_camera_t *previous = number == 0u ? &settings->camera : &settings->more_cameras[number - 1u];
     float arm_m[3];
-    if (!previous) {
-        return;
-    }
     const float offset_m[3] = {view->camera->offset_m[0] - previous->offset_m[0],
                                view->camera->offset_m[1] - previous->offset_m[1],
                                view->camera->offset_m[2] - previous->offset_m[2]};
@@ -258,7 +256,7 @@ bool goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe
     goe_rotation_from_quaternion(pose->attitude, body_to_ned);
     camera_position(view->camera, pose, body_to_ned, position);
 #if GOE_AUGMENTED && GOE_CAMERAS_MAX > 1
-    add_arm(motion, goe_camera_of(settings, motion->camera), view, body_to_ned, before_m);
+    add_arm(motion, settings, view, body_to_ned, before_m);
 #endif
     motion->reset_count = pose->reset_count;
     motion->time_us = pose->time_us;
