@@ -34,7 +34,7 @@
 #error "GOE_WINDOW_MAX must be 3 to 64"
 #endif
 
-/* Largest number of cameras of one aircraft, 1 to 8. Each additional camera costs some 365 bytes. */
+/* Largest number of cameras of one aircraft, 1 to 8. Each additional camera costs 360 to 384 bytes. */
 #ifndef GOE_CAMERAS_MAX
 #define GOE_CAMERAS_MAX 1
 #endif

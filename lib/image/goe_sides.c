@@ -34,10 +34,10 @@ static void compare_with_border(const goe_camera_t *camera, unsigned seen, float
         const float inside_px = i < opposite ? px : last_px - px;
         const float size_px = i < opposite ? other_px : last_px - other_px;
         const float farther_px = goe_larger(px, last_px - px); /* from the border that is farther away */
-        const unsigned bit = last_px > 0.0f ? 1u << i : 0u;
-        at_border |= farther_px > last_px - border_px ? bit : 0u;
-        cut |= farther_px > last_px - cut_px ? bit : 0u;
-        doubtful |= (seen >> opposite & 1u) != 0u && inside_px < CUT_SIGMAS * noise_rel * size_px ? bit : 0u;
+        const unsigned one = last_px > 0.0f ? 1u << i : 0u;
+        at_border |= farther_px > last_px - border_px ? one : 0u;
+        cut |= farther_px > last_px - cut_px ? one : 0u;
+        doubtful |= (seen >> opposite & 1u) != 0u && inside_px < CUT_SIGMAS * noise_rel * size_px ? one : 0u;
     }
     sides->usable = (uint8_t)(seen & ~at_border);
     sides->cut = (uint8_t)(cut | at_border);
