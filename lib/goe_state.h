@@ -222,8 +222,7 @@ typedef struct {         /* refined/goe_answer.c: data of the latest estimate th
     float outgrown_s;    /* time for which a growth beyond that at the state's range still counts; 0: none */
     goe_flag_t outdated; /* the state has changed since the estimate, other than by time */
     goe_flag_t by_kind;  /* the estimate's range is that of the detector's class */
-    uint8_t
-        cut; /* mask: left and right end of the obstacle, if the border may cut them in the latest box that gave rows */
+    uint8_t cut;         /* mask: the obstacle's left and right end, if no image shows them: the border may cut them */
 } goe_answer_t;
 
 #define GOE_KIND_SIZES 2 /* width, height */

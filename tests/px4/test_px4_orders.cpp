@@ -344,6 +344,18 @@ static void in_landing_a_side_that_may_not_be_flown_is_a_go_around() {
     }
 }
 
+/* Later in the mission: the order is flown, and when the obstacle is passed the mission continues. */
+static void pass_another_one(goe_flight_action_t action) {
+    assessment.action = action;
+    vehicle.nav_state = MISSION;
+    TEST_ASSERT_TRUE(follow(ALL, true));
+    accept(HOLD);
+    TEST_ASSERT_FALSE(follow(ALL, true));
+    assessment.action = GOE_FLIGHT_NONE;
+    TEST_ASSERT_TRUE(follow(ALL, true));
+    TEST_ASSERT_EQUAL(vehicle_command_s::VEHICLE_CMD_DO_SET_MODE, command.command);
+}
+
 /* From next to the runway it would lead to the same landing. */
 static void no_mission_is_resumed_after_a_side_in_landing() {
     vehicle.lands = true;
@@ -355,13 +367,7 @@ static void no_mission_is_resumed_after_a_side_in_landing() {
     for (int i = 0; i < 20; i++) {
         TEST_ASSERT_FALSE(follow(ALL, true));
     }
-    assessment.action = GOE_FLIGHT_LEFT; /* later in the mission */
-    vehicle.nav_state = MISSION;
-    TEST_ASSERT_TRUE(follow(ALL, true));
-    accept(HOLD);
-    TEST_ASSERT_FALSE(follow(ALL, true));
-    assessment.action = GOE_FLIGHT_NONE;
-    TEST_ASSERT_TRUE(follow(ALL, true));
+    pass_another_one(GOE_FLIGHT_LEFT);
 }
 
 static void a_go_around_is_given_in_landing() {
@@ -510,14 +516,7 @@ static void an_order_after_a_go_around_is_another_one() {
     TEST_ASSERT_FALSE(orders.overruled());
     assessment.action = GOE_FLIGHT_NONE;
     TEST_ASSERT_FALSE(follow(ALL, true));
-    assessment.action = GOE_FLIGHT_RIGHT; /* later in the mission */
-    vehicle.nav_state = MISSION;
-    TEST_ASSERT_TRUE(follow(ALL, true));
-    accept(HOLD);
-    TEST_ASSERT_FALSE(follow(ALL, true));
-    assessment.action = GOE_FLIGHT_NONE;
-    TEST_ASSERT_TRUE(follow(ALL, true));
-    TEST_ASSERT_EQUAL(vehicle_command_s::VEHICLE_CMD_DO_SET_MODE, command.command);
+    pass_another_one(GOE_FLIGHT_RIGHT);
 }
 
 /* ------------------------------------------------------------------------------------------------------ the whole, flown */
