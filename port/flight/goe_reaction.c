@@ -482,6 +482,10 @@ static void find_better(goe_flight_t *flight, look_t *look, float share, int nea
     encounter_t e;
     meet(look, nearest, &e);
     option_t option = choose(look, nearest, &e, r->side);
+    if (option.action != (goe_flight_action_t)r->action) { /* an autopilot obeys another action as late as a first order */
+        set_delay(look, 0.0f);
+        option = choose(look, nearest, &e, r->side);
+    }
     if (!(option.share >= KEPT)) {
         set_delay(look, 0.0f);
         option_t other = choose(look, nearest, &e, -r->side);

@@ -293,6 +293,15 @@ def test_the_latency_of_an_order_is_that_of_its_flight(flown: list[dict[str, flo
             assert row["assessment_s"] == pytest.approx(0.1 * round(row["assessment_s"] / 0.1), abs=1e-9)
 
 
+@pytest.mark.parametrize(("kind", "seed"), [(24, 5202), (72, 5746)])
+def test_a_turn_away_is_obeyed_as_late_as_a_first_order(avoid_probe: Path, kind: int, seed: int) -> None:
+    """The aircraft flies a side's turn. A HOLD that was judged as if it began at once led both flights into a known obstacle."""
+    text = avoid(avoid_probe, "flights", str(kind + 1), str(seed), "0")
+    row = list(csv.DictReader(io.StringIO(text)))[-1]
+    assert row["ordered"] == "1" and float(row["obey_s"]) >= 1.5
+    assert row["collided"] == "0" and float(row["closest_m"]) >= 5.0
+
+
 def test_the_figures_of_aviation_follow_from_the_flights(goe_avoid: Path, flown: list[dict[str, float]]) -> None:
     figures = figures_of(avoid(goe_avoid, "--several", str(len(flown)), "--seed", "1", "--step", "2"))
     for group, (least, most) in GROUPS.items():
