@@ -10,7 +10,9 @@
 #define PIXEL_SD_MAX_PX 100.0f
 #define UNDETECTED_S 2.0f /* after this time a track without a position, or a passed one, may be evicted */
 #define WORTH_KEPT 0.5f   /* a slot of a higher worth is never evicted */
-#define ORDERED_S 30.0f   /* while an order is active no track ends sooner: the way back leads past its obstacle */
+#define SLOW_M_S 1.0f     /* a slower aircraft has no course */
+#define ABEAM_DEG 90.0f
+#define ORDERED_S 30.0f /* while an order is active no track ends sooner: the way back leads past its obstacle */
 #define NOBODY (-1)
 
 /* ------------------------------------------------------------------------------------------------------- detections -- */
@@ -127,12 +129,26 @@ static float worth(const goe_flight_t *flight, int i, uint32_t now_us) {
     if (undetected && slot->assessed && !(slot->hazard.tcpa_s > 0.0f)) {
         return -1.0f;
     }
-    return slot->assessed ? slot->hazard.conflict_probability + 1.0f / (1.0f + slot->hazard.tcpa_s) : WORTH_KEPT;
+    if (!slot->assessed) {
+        return WORTH_KEPT;
+    }
+    const float tcpa_s = slot->hazard.tcpa_s; /* 0 of a passed obstacle, which is not near in time */
+    return slot->hazard.conflict_probability + (tcpa_s > 0.0f ? 1.0f / (1.0f + tcpa_s) : 0.0f);
 }
 
-static int free_place(goe_flight_t *flight, uint32_t now_us) {
+/* Whether a new obstacle may be ahead on the course. */
+static bool may_be_ahead(const goe_flight_t *flight, const goe_flight_bearings_t *bearings) {
+    const float *v = flight->velocity_ned_m_s;
+    const float course_deg = goe_flight_atan2_deg(v[1], v[0]);
+    const float off_deg = goe_flight_positive_deg((float)bearings->middle_deg - course_deg + 180.0f) - 180.0f;
+    const bool moves = goe_flight_square(v[0]) + goe_flight_square(v[1]) > SLOW_M_S * SLOW_M_S;
+    return moves && goe_flight_within(off_deg, ABEAM_DEG + (float)bearings->half_deg);
+}
+
+/* The slot for a new obstacle. One that is not ahead evicts no obstacle in view: passed obstacles would evict each other again and again. */
+static int free_place(goe_flight_t *flight, const goe_flight_bearings_t *bearings, uint32_t now_us) {
     int least = NOBODY;
-    float least_worth = WORTH_KEPT;
+    float least_worth = may_be_ahead(flight, bearings) ? WORTH_KEPT : 0.0f;
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         const float value = worth(flight, i, now_us);
         if (value < least_worth) {
@@ -267,7 +283,7 @@ static void give_new(goe_flight_t *flight, const goe_flight_slot_view_t *view, c
         if (!goe_flight_candidate_confirm(&flight->waiting, &candidate, (int)flight->settings.confirm_images)) {
             continue;
         }
-        const int i = free_place(flight, view->time_us);
+        const int i = free_place(flight, &candidate.bearings, view->time_us);
         if (i != NOBODY) {
             wait_again(flight, &flight->slot[i]);
             release(&flight->reaction, i);

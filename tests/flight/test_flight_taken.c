@@ -191,9 +191,9 @@ static double worth(const goe_flight_t *of, int i, uint32_t now_us) {
     if (!slot->assessed) {
         return 1.0;
     }
-    return undetected && !(slot->hazard.tcpa_s > 0.0f)
-               ? -1.0
-               : (double)slot->hazard.conflict_probability + 1.0 / (1.0 + (double)slot->hazard.tcpa_s);
+    const double tcpa_s = (double)slot->hazard.tcpa_s;
+    const double nearness = tcpa_s > 0.0 ? 1.0 / (1.0 + tcpa_s) : 0.0;
+    return undetected && !(tcpa_s > 0.0) ? -1.0 : (double)slot->hazard.conflict_probability + nearness;
 }
 
 /* [goe_flight_counters_t.evicted, goe_flight_counters_t.full]
@@ -225,6 +225,31 @@ static void a_new_obstacle_takes_the_place_of_the_least_worth(void) {
         ends[expected < 0 ? 0 : was_used ? 1 : 2]++;
     }
     TEST_ASSERT_TRUE(ends[0] > 20 && ends[1] > 20 && ends[2] > 20);
+}
+
+/* GIVEN a full table of obstacles that are passed and still in view WHEN a new one is confirmed THEN it gets a slot if it is ahead on the
+ * course, but not from an obstacle that is violated at present; if it is behind, or the aircraft hovers, they keep their slots. */
+static void a_passed_obstacle_in_view_makes_room_for_one_ahead(void) {
+    const float speeds_m_s[] = {20.0f, -20.0f, 0.0f};
+    const goe_flight_detection_t detection = good_detection();
+    for (int n = 0; n < 6; n++) {
+        static goe_flight_t copy;
+        goe_flight_frame_t frame = flown_frame(&flown, flown.sample - 1, &detection, 1);
+        copy = *flight;
+        frame.number = 2;
+        copy.velocity_ned_m_s[0] = speeds_m_s[n % 3];
+        for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+            put_any(&copy, i, frame.capture_us);
+            copy.slot[i].used = copy.slot[i].assessed = copy.slot[i].in_view = true;
+            copy.slot[i].valid = GOE_HAS_POSITION;
+            copy.slot[i].detected_us = frame.capture_us;
+            copy.slot[i].hazard.conflict_probability = n < 3 ? 0.1f : 0.9f;
+            copy.slot[i].hazard.tcpa_s = 0.0f;
+        }
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(&copy, &frame));
+        TEST_ASSERT_EQUAL(n == 0 ? 1 : 0, copy.counters.evicted);
+        TEST_ASSERT_EQUAL(n == 0 ? 0 : 1, copy.counters.full);
+    }
 }
 
 /* [flight.track_timeout_s]
@@ -416,6 +441,7 @@ int main(void) {
     RUN_TEST(points_and_numbers_have_their_ranges);
     RUN_TEST(a_bad_kind_loses_no_box);
     RUN_TEST(a_new_obstacle_takes_the_place_of_the_least_worth);
+    RUN_TEST(a_passed_obstacle_in_view_makes_room_for_one_ahead);
     RUN_TEST(an_old_track_is_given_up);
     RUN_TEST(overlap_is_the_share_of_the_union);
     RUN_TEST(images_of_one_candidate_lie_at_most_a_second_apart);
