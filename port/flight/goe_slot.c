@@ -253,6 +253,9 @@ void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t cam
         camera_ned_m[i] += view->pose.ned_m[i];
     }
     if (slot->fresh_track) {
+        if (slot->remembered) { /* the kept top stays at its height, whatever the ground below the aircraft */
+            slot->top_m += view->ground_down_m - slot->ground_down_m;
+        }
         slot->ground_down_m = view->ground_down_m;
         slot->height_sd_m = view->height_sd_m;
         memcpy(slot->jumps_ned_m, jumps_ned_m, sizeof slot->jumps_ned_m);

@@ -25,6 +25,7 @@ typedef struct {
 
 static goe_flight_t layer;
 static double north_m, east_m, heading, now_s;
+static double valley_m; /* by which the ground below the aircraft is lower than that of the mast */
 static goe_flight_assessment_t assessed;
 
 static void start(void) {
@@ -36,7 +37,7 @@ static void start(void) {
     estimator.camera.width_px = 1280.0f;
     estimator.camera.height_px = 960.0f;
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_init(&layer, sizeof layer, &estimator, NULL, NULL));
-    north_m = east_m = heading = now_s = 0.0;
+    north_m = east_m = heading = now_s = valley_m = 0.0;
     memset(&assessed, 0, sizeof assessed);
 }
 
@@ -57,7 +58,7 @@ static void sample(const flight_t *flight) {
     position.position_ned_m[2] = (float)-HEIGHT_M;
     position.velocity_ned_m_s[0] = (float)(SPEED_M_S * cos(heading));
     position.velocity_ned_m_s[1] = (float)(SPEED_M_S * sin(heading));
-    position.height_m[GOE_FLIGHT_TERRAIN] = (float)HEIGHT_M;
+    position.height_m[GOE_FLIGHT_TERRAIN] = (float)(HEIGHT_M + valley_m);
     position.height_valid = 1u << GOE_FLIGHT_TERRAIN;
     (void)goe_flight_attitude(&layer, &attitude);
     (void)goe_flight_position(&layer, &position);
@@ -161,6 +162,27 @@ static void a_kept_top_far_below_is_passed_over(void) {
     TEST_ASSERT_TRUE(assessed.hazard.conflict_probability < 0.05f);
 }
 
+/* GIVEN a mast whose top is above the aircraft WHEN a reset comes over ground that is lower or higher, and nothing is detected any more THEN the
+ * top is as high as before, and so is the hazard. */
+static void a_kept_top_does_not_follow_the_ground(void) {
+    for (int sign = -1; sign <= 1; sign += 2) {
+        const flight_t flight = {{300.0, 0.0}, 6.0, 5.9, 1e9, false};
+        goe_flight_obstacle_t before;
+        goe_flight_obstacle_t after;
+        start();
+        fly(&flight, 5.9, true);
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_obstacle(&layer, 0, &before));
+        TEST_ASSERT_TRUE((before.valid & GOE_HAS_HEIGHT) != 0u && assessed.hazard.conflict_probability > 0.8f);
+        valley_m = 15.0 * sign;
+        fly(&flight, 7.0, true);
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_obstacle(&layer, 0, &after));
+        TEST_ASSERT_FLOAT_WITHIN(0.01f, before.center_ned_m[2] + (float)valley_m, after.center_ned_m[2]);
+        TEST_ASSERT_FLOAT_WITHIN(0.01f, before.center_ned_m[2] - before.height_m,
+                                 after.center_ned_m[2] - after.height_m);
+        TEST_ASSERT_TRUE(assessed.hazard.conflict_probability > 0.8f);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_turn_at_a_kept_place_is_warned_of);
@@ -168,5 +190,6 @@ int main(void) {
     RUN_TEST(a_place_that_was_never_assessed_is_no_clear_sky);
     RUN_TEST(a_kept_place_grows_older);
     RUN_TEST(a_kept_top_far_below_is_passed_over);
+    RUN_TEST(a_kept_top_does_not_follow_the_ground);
     return UNITY_END();
 }
