@@ -482,7 +482,8 @@ static void find_better(goe_flight_t *flight, look_t *look, float share, int nea
     encounter_t e;
     meet(look, nearest, &e);
     option_t option = choose(look, nearest, &e, r->side);
-    if (option.action != (goe_flight_action_t)r->action) { /* an autopilot obeys another action as late as a first order */
+    if (option.action !=
+        (goe_flight_action_t)r->action) { /* an autopilot obeys another action as late as a first order */
         set_delay(look, 0.0f);
         option = choose(look, nearest, &e, r->side);
     }
@@ -538,13 +539,13 @@ static void review(goe_flight_t *flight, look_t *look) {
 
 /* --------------------------------------------------------------------------------------------------------------- end -- */
 
-/* Whether an obstacle is on the order line, or between this line and the aircraft, and is not passed. A slow aircraft may become faster: for it
- * the line has no end. */
+/* Whether an obstacle is on the order line, or between this line and the aircraft, and is not passed. To the side it needs the margin that a
+ * hazard is judged by: otherwise, an order ends while its hazard is active. A slow aircraft may become faster: for it the line has no end. */
 static bool is_in_the_way(const look_t *look, int i, float own_aside_m) {
     const goe_flight_slot_t *slot = &look->flight->slot[i];
     const goe_flight_reaction_t *r = &look->flight->reaction;
     const float reach_m = goe_flight_slot_radius_m(slot) + look->flight->settings.margin_m;
-    const float sure_m = reach_m + SURE_SIGMA * aside_sd_m(slot, r->course_ne);
+    const float sure_m = look->slot[i].radius_m + look->slot[i].margin_m + SURE_SIGMA * aside_sd_m(slot, r->course_ne);
     const float horizon_m = goe_flight_absolute(own_aside_m) + 2.0f * look->at.turn_m +
                             look->speed_m_s * (look->flight->settings.roll_in_s + look->flight->settings.reserve_s);
     float ahead_m;

@@ -317,6 +317,26 @@ static void an_aircraft_that_flies_back_to_its_line_needs_no_order(void) {
     }
 }
 
+/* [flight.suspect_factor, flight.stale_growth_m_s]
+ * GIVEN an order past an obstacle that is within its margin only because it is suspect, or old WHEN this hazard is active THEN the order is,
+ * too; it ends once the obstacle is behind by the plain margin. */
+static void an_order_stays_active_while_its_hazard_is(void) {
+    for (int old = 0; old < 2; old++) {
+        start(0.0f);
+        for (int k = 0; k < 40; k++) {
+            put(0, 90.0f, 21.0f, 50.0f);
+            flight.slot[0].suspect = !old;
+            flight.slot[0].age_s = old ? 4.0f : 0.0f;
+            flight.slot[0].hazard.conflict_probability = 0.8f;
+            const goe_flight_action_t action = decide(0.0);
+            TEST_ASSERT_TRUE(k < 4 || action == GOE_FLIGHT_LEFT);
+        }
+        own.ned_m[0] = 108.1f;
+        put(0, 90.0f, 21.0f, 50.0f);
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, decide(0.0));
+    }
+}
+
 /* ------------------------------------------------------------------------------------------------------------ withheld -- */
 
 static void no_order_is_given_too_low(void) {
@@ -813,6 +833,7 @@ int main(void) {
     RUN_TEST(an_order_turns_to_the_next_one_on_its_line);
     RUN_TEST(an_order_that_finds_another_way_does_not_sink_with_the_aircraft);
     RUN_TEST(an_order_stays_active_while_the_way_back_is_not_clear);
+    RUN_TEST(an_order_stays_active_while_its_hazard_is);
     RUN_TEST(no_order_is_given_too_low);
     RUN_TEST(a_height_below_the_ground_withholds_no_order);
     RUN_TEST(a_height_of_zero_gives_orders_at_any_height);
