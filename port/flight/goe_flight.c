@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "goe_candidate.h"
+#include "goe_clear.h"
 #include "goe_clock.h"
 #include "goe_flight_maths.h"
 #include "goe_flight_seal.h"
@@ -774,9 +775,12 @@ goe_flight_status_t goe_flight_obstacle(const goe_flight_t *flight, int slot, go
     return GOE_FLIGHT_OK;
 }
 
-static bool is_passed_over(const goe_flight_t *flight, const goe_flight_slot_t *slot) {
+/* Whether the aircraft clears the top at present, and at the closest approach. A climb alone, which may end, clears nothing. */
+static bool is_passed_over(const goe_flight_t *flight, int i, float own_down_m) {
+    const goe_flight_slot_t *slot = &flight->slot[i];
     const goe_hazard_t *hazard = &slot->hazard;
-    return slot->assessed && goe_flight_is_set(&hazard->has_clearance) && hazard->tcpa_s > 0.0f &&
+    return slot->assessed && !goe_flight_clear_counts(flight, i, own_down_m) &&
+           goe_flight_is_set(&hazard->has_clearance) && hazard->tcpa_s > 0.0f &&
            hazard->clearance_m - 2.0f * hazard->clearance_sd_m >
                goe_flight_lookout_doubt(flight, slot) * flight->settings.clearance_m;
 }
@@ -805,9 +809,10 @@ static float nearer_m(const goe_flight_slot_t *slot, const float away_ne_m[2]) {
 
 /* The box of an obstacle reaches beyond its outline if the obstacle extends far back, as a wall at the side does. Its near end may then be
  * nearer than its sigma shows. The box therefore counts, unless the whole outline is well beyond max_cm. */
-static bool may_reach(const goe_flight_t *flight, const goe_flight_slot_t *slot, uint32_t max_cm) {
+static bool may_reach(const goe_flight_t *flight, int i, uint32_t max_cm) {
+    const goe_flight_slot_t *slot = &flight->slot[i];
     const goe_flight_history_position_t *own = goe_flight_history_newest_position(&flight->history);
-    if (!own || !slot->in_view || is_passed_over(flight, slot)) {
+    if (!own || !slot->in_view || is_passed_over(flight, i, own->ned_m[2])) {
         return false;
     }
     const float away[2] = {slot->center_ne_m[0] - own->ned_m[0], slot->center_ne_m[1] - own->ned_m[1]};
@@ -822,7 +827,7 @@ static void close_sectors(const goe_flight_t *flight, uint32_t max_cm, uint16_t 
         const goe_flight_slot_t *slot = &flight->slot[i];
         if (slot->used && ((slot->valid & OUTLINED) != OUTLINED || slot->unlocated)) {
             goe_flight_geometry_close_sectors(sector_cm, &slot->bearings, UNLOCATED_DEG);
-        } else if (slot->used && may_reach(flight, slot, max_cm)) {
+        } else if (slot->used && may_reach(flight, i, max_cm)) {
             goe_flight_geometry_close_sectors(sector_cm, &slot->bearings, 0.0f);
         }
     }
@@ -848,7 +853,7 @@ goe_flight_status_t goe_flight_sectors(const goe_flight_t *flight, uint32_t max_
     close_sectors(flight, max_cm, sector_cm);
     for (int i = 0; i < GOE_FLIGHT_SLOTS && attitude && own; i++) {
         const goe_flight_slot_t *slot = &flight->slot[i];
-        if (slot->used && (slot->valid & GOE_HAS_POSITION) != 0u && !is_passed_over(flight, slot)) {
+        if (slot->used && (slot->valid & GOE_HAS_POSITION) != 0u && !is_passed_over(flight, i, own->ned_m[2])) {
             const float away[2] = {slot->center_ne_m[0] - own->ned_m[0], slot->center_ne_m[1] - own->ned_m[1]};
             goe_flight_geometry_enter_circle(sector_cm, max_cm, away, goe_flight_slot_radius_m(slot),
                                              nearer_m(slot, away));

@@ -542,8 +542,8 @@ goe_flight_status_t goe_flight_obstacle(const goe_flight_t *flight, int slot, go
  *     max_cm there, at the attitude of its exposure; so it also shows any nearer obstacle that is as high as the aircraft
  *   - GOE_FLIGHT_SECTOR_UNKNOWN: all other sectors
  * Time is that of the latest assessment or of the newest sample, whichever is later.
- * Obstacles whose top the aircraft passes by more than the clearance, at two sigma, are ignored. For PX4's
- * obstacle_distance use increment 5 and the frame GLOBAL.
+ * Obstacles whose top the aircraft clears by more than the clearance, at two sigma, at present and at the closest approach, are
+ * ignored. For PX4's obstacle_distance use increment 5 and the frame GLOBAL.
  *   max_cm  1 to 65000
  * Returns GOE_FLIGHT_OK, _NO_POSE (all unknown), _OUT_OF_RANGE, _BAD_ARGUMENT, _NOT_INITIALIZED. */
 goe_flight_status_t goe_flight_sectors(const goe_flight_t *flight, uint32_t max_cm, uint16_t sector_cm[GOE_FLIGHT_SECTORS]);

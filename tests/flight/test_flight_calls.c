@@ -529,6 +529,21 @@ static void sectors_stay_in_their_place(void) {
     }
 }
 
+/* GIVEN a slow climb that would clear an obstacle ahead by far, when the aircraft comes there WHEN the aircraft does not clear it yet THEN its
+ * sector has its distance; WHEN it does THEN the obstacle is ignored. */
+static void a_climb_clears_no_obstacle_in_advance(void) {
+    for (int above = 0; above < 2; above++) {
+        uint16_t sector_cm[GOE_FLIGHT_SECTORS];
+        put(0, 40.0f, 0.0f, above ? 8.0f : 15.0f);
+        flight->velocity_ned_m_s[0] = 1.0f;
+        flight->velocity_ned_m_s[2] = -3.0f;
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, assess(0u, GOE_FLIGHT_FLYING));
+        TEST_ASSERT_TRUE(now.hazard.clearance_m > 50.0f);
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_sectors(flight, 10000u, sector_cm));
+        TEST_ASSERT_EQUAL_UINT16(above ? GOE_FLIGHT_SECTOR_UNKNOWN : 3700u, sector_cm[0]);
+    }
+}
+
 /* [goe_flight_action_text, goe_flight_reason_text] */
 static void texts_are_those_of_the_manual(void) {
     static const char *const actions[] = {"none", "left", "right", "climb", "go_around", "hold", "unknown"};
@@ -563,6 +578,7 @@ int main(void) {
     RUN_TEST(an_unknown_jump_is_the_unexplained_motion);
     RUN_TEST(jumps_beyond_all_places_are_unknown);
     RUN_TEST(sectors_stay_in_their_place);
+    RUN_TEST(a_climb_clears_no_obstacle_in_advance);
     RUN_TEST(texts_are_those_of_the_manual);
     return UNITY_END();
 }
