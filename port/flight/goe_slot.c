@@ -266,11 +266,11 @@ void goe_flight_slot_take(goe_flight_slot_t *slot, const goe_flight_camera_t cam
     image.noise.attitude_sd_deg = view->attitude_sd_deg;
     image.noise.height_sd_m = slot->height_sd_m; /* the estimator uses it once, in an image of its choice */
     if (seen) {
+        slot->in_view = true;
         set_features(&image, camera, seen);
         goe_flight_slot_bearings_of(seen, camera, view->pose.q, &slot->bearings);
     }
     const goe_status_t status = goe_update(&slot->estimator, &image, &estimate);
-    slot->in_view = seen != NULL;
     if (status == GOE_CORRUPTED || status == GOE_NOT_INITIALIZED) {
         goe_flight_slot_lose(slot);
     }

@@ -299,8 +299,9 @@ static void give_new(goe_flight_t *flight, const goe_flight_slot_view_t *view, c
  * camera. */
 static void give_nothing(goe_flight_t *flight, const goe_flight_slot_view_t *view, uint32_t taken) {
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
-        const goe_flight_slot_t *slot = &flight->slot[i];
+        goe_flight_slot_t *slot = &flight->slot[i];
         if (slot->used && slot->camera == view->camera && ((taken >> i) & 1u) == 0u) {
+            slot->in_view = slot->in_view && goe_flight_between_us(view->time_us, slot->detected_us) <= 0;
             give(flight, i, view, NULL, &taken);
         }
     }

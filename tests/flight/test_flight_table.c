@@ -139,6 +139,28 @@ static bool revives(double seconds) {
     return alive;
 }
 
+/* [goe_flight_obstacle_t.in_view] GIVEN a detector of one image a second WHEN assessments predict between its images THEN the obstacle stays in view
+ * until an image does not show it. */
+static void a_prediction_is_no_image(void) {
+    goe_flight_obstacle_t obstacle;
+    goe_flight_assessment_t now;
+    (void)flown_fly(&flown, 3.0);
+    for (int k = 0; k < 45; k++) {
+        goe_flight_attitude_t attitude;
+        goe_flight_position_t position;
+        flown_samples(&flown, flown.sample++, &attitude, &position);
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_attitude(&flown.flight, &attitude));
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_position(&flown.flight, &position));
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_assess(&flown.flight, position.time_us, 0u, &now));
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_obstacle(&flown.flight, 0, &obstacle));
+        TEST_ASSERT_TRUE(obstacle.in_view);
+    }
+    const goe_flight_frame_t frame = flown_frame(&flown, flown.sample - 2, NULL, 0);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(&flown.flight, &frame));
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_obstacle(&flown.flight, 0, &obstacle));
+    TEST_ASSERT_FALSE(obstacle.in_view);
+}
+
 /* GIVEN a detector that has died WHEN the clock wraps the difference of its times, after 36 minutes THEN it is as dead as before. */
 static void a_dead_detector_stays_dead(void) {
     (void)flown_fly(&flown, 1.0);
@@ -727,6 +749,7 @@ int main(void) {
     RUN_TEST(the_size_of_a_class_is_used);
     RUN_TEST(valid_lists_the_fields_of_an_obstacle);
     RUN_TEST(a_track_without_a_position_is_not_suspect);
+    RUN_TEST(a_prediction_is_no_image);
     RUN_TEST(a_dead_detector_stays_dead);
     RUN_TEST(unreadable_input_is_no_sign_of_life);
     RUN_TEST(an_obstacle_ahead_is_not_forgotten);
