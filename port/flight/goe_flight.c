@@ -785,15 +785,19 @@ static bool is_passed_over(const goe_flight_t *flight, int i, float own_down_m) 
                goe_flight_lookout_doubt(flight, slot) * flight->settings.clearance_m;
 }
 
+static void know_no_sector(uint16_t sector_cm[GOE_FLIGHT_SECTORS]) {
+    for (int i = 0; i < GOE_FLIGHT_SECTORS; i++) {
+        sector_cm[i] = GOE_FLIGHT_SECTOR_UNKNOWN;
+    }
+}
+
 /* Marks as clear the sectors that the latest complete images show, for cameras whose detectors are alive. */
 static void open_sectors(const goe_flight_t *flight, uint32_t max_cm, uint16_t sector_cm[GOE_FLIGHT_SECTORS]) {
     const uint32_t newest_us = (uint32_t)flight->base_us;
     const bool later = goe_flight_between_us(flight->assessed_us, newest_us) > 0;
     const uint32_t now_us = later ? flight->assessed_us : newest_us;
     const bool alive = pose_alive(flight, now_us) && !flight->waiting.crowded;
-    for (int i = 0; i < GOE_FLIGHT_SECTORS; i++) {
-        sector_cm[i] = GOE_FLIGHT_SECTOR_UNKNOWN;
-    }
+    know_no_sector(sector_cm);
     for (int i = 0; i < GOE_CAMERAS_MAX; i++) {
         const goe_flight_parts_t *parts = &flight->parts[i];
         if (alive && view_alive(flight, i, now_us) && camera_alive(flight, i, now_us)) {
@@ -840,7 +844,10 @@ static void close_sectors(const goe_flight_t *flight, uint32_t max_cm, uint16_t 
 
 goe_flight_status_t goe_flight_sectors(const goe_flight_t *flight, uint32_t max_cm,
                                        uint16_t sector_cm[GOE_FLIGHT_SECTORS]) {
-    const goe_flight_status_t status = sector_cm ? check_ready(flight) : GOE_FLIGHT_BAD_ARGUMENT;
+    const goe_flight_status_t status = sector_cm ? check_sealed(flight) : GOE_FLIGHT_BAD_ARGUMENT;
+    if (status == GOE_FLIGHT_CORRUPTED) {
+        know_no_sector(sector_cm);
+    }
     if (status != GOE_FLIGHT_OK) {
         return status;
     }

@@ -24,9 +24,10 @@
  * Safety      Every output is finite. [F1] The layer refuses non-finite values, which it detects by their exponent bits, also under
  *             -ffast-math.
  * Bit flips   A flipped bit in goe_flight_t causes no write out of bounds. [F2] Settings and cameras are sealed: with a broken seal a
- *             frame and an assessment return GOE_FLIGHT_CORRUPTED. [F3] An estimator that returns GOE_CORRUPTED starts again; if its
- *             settings are lost, it takes those of another slot. Until it has a position again, the slot keeps its position, hazard
- *             and warning, marked suspect. [F4] The rest (poses, clocks, positions, the active order) is not sealed.
+ *             frame, an assessment, sectors and a change of settings return GOE_FLIGHT_CORRUPTED. [F3] The other calls do not check
+ *             the seal. An estimator that returns GOE_CORRUPTED starts again; if its settings are lost, it takes those of another
+ *             slot. Until it has a position again, the slot keeps its position, hazard and warning, marked suspect. [F4] The rest
+ *             (poses, clocks, positions, the active order) is not sealed.
  * Cost        On a Cortex-M4F (gcc), measured in instructions: a sample at most 1,710; a frame 49,300 for each obstacle in it (it
  *             includes goe_update(), whose proved limit goe.h states); an assessment 37,800 with one obstacle and 23,200 for each
  *             further one with a position. While there is a hazard or an order, an assessment also examines paths: at most 6 times
@@ -545,7 +546,7 @@ goe_flight_status_t goe_flight_obstacle(const goe_flight_t *flight, int slot, go
  * Obstacles whose top the aircraft clears by more than the clearance, at two sigma, at present and at the closest approach, are
  * ignored. For PX4's obstacle_distance use increment 5 and the frame GLOBAL.
  *   max_cm  1 to 65000
- * Returns GOE_FLIGHT_OK, _NO_POSE (all unknown), _OUT_OF_RANGE, _BAD_ARGUMENT, _NOT_INITIALIZED. */
+ * Returns GOE_FLIGHT_OK, _NO_POSE or _CORRUPTED (all unknown), _OUT_OF_RANGE, _BAD_ARGUMENT, _NOT_INITIALIZED. */
 goe_flight_status_t goe_flight_sectors(const goe_flight_t *flight, uint32_t max_cm, uint16_t sector_cm[GOE_FLIGHT_SECTORS]);
 
 /* Deletes poses, clocks, obstacles and the reaction; keeps settings and counters. Call it after a restart of the autopilot.

@@ -21,16 +21,20 @@ static goe_flight_status_t assess(goe_flight_assessment_t *now) {
     return goe_flight_assess(&flown.flight, flown_now_us(&flown), false, now);
 }
 
-/* [F3] GIVEN any one flipped bit of the sealed memory THEN frames and assessments report it, and nothing is "clear". */
+/* [F3] GIVEN any one flipped bit of the sealed memory THEN frames, assessments and sectors report it, and nothing is "clear". */
 static void every_flip_of_the_settings_is_reported(void) {
     const size_t first = 8u * offsetof(goe_flight_t, seal);
     const size_t end = 8u * (offsetof(goe_flight_t, attitude_white_sd_deg) + sizeof(float));
     goe_flight_assessment_t now;
     goe_flight_frame_t frame;
+    uint16_t sector_cm[GOE_FLIGHT_SECTORS];
     (void)flown_fly(&flown, 3.0);
     memset(&frame, 0, sizeof frame);
     for (size_t bit = first; bit < end; bit++) {
         flip(&flown.flight, bit);
+        memset(sector_cm, 0, sizeof sector_cm);
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_CORRUPTED, goe_flight_sectors(&flown.flight, 10000u, sector_cm));
+        TEST_ASSERT_EACH_EQUAL_UINT16(GOE_FLIGHT_SECTOR_UNKNOWN, sector_cm, GOE_FLIGHT_SECTORS);
         TEST_ASSERT_EQUAL(GOE_FLIGHT_CORRUPTED, assess(&now));
         TEST_ASSERT_EQUAL(GOE_FLIGHT_CORRUPTED, goe_flight_frame(&flown.flight, &frame));
         TEST_ASSERT_EQUAL_INT(-1, now.worst);
