@@ -762,8 +762,9 @@ static bool is_hazard_slot(const look_t *look, int i) {
 
 /* The hazard ahead that leaves the least time; NOBODY if there is none.
  *   unlikely  slots that are left out, as bits
- *   least     least conflict probability of the hazard */
-static int most_pressing(const look_t *look, uint32_t unlikely, float least) {
+ *   least     least conflict probability of the hazard
+ *   spare_s   least slack of the hazard */
+static int most_pressing(const look_t *look, uint32_t unlikely, float least, float spare_s) {
     int pressing = NOBODY;
     float least_s = TIME_MAX_S;
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
@@ -774,7 +775,7 @@ static int most_pressing(const look_t *look, uint32_t unlikely, float least) {
         }
         meet(look, i, &e);
         const float left_s = slack_s(look, &e);
-        if (e.ahead_m > 0.0f && (pressing == NOBODY || left_s < least_s)) {
+        if (e.ahead_m > 0.0f && !(left_s < spare_s) && (pressing == NOBODY || left_s < least_s)) {
             least_s = left_s;
             pressing = i;
         }
@@ -875,17 +876,21 @@ static float answer(goe_flight_t *flight, look_t *look, int about, bool *unlikel
 }
 
 /* Gives the order against the hazard that leaves the least time. One that is unlikely, and for which it is too late, delays no order against
- * the next one. The last attempt looks only at hazards that cannot be unlikely, so each assessment examines a limited number of paths. */
+ * the next one. The last attempt takes a hazard that cannot be unlikely, otherwise one for which there is time. So each assessment examines a
+ * limited number of paths. */
 static float answer_hazards(goe_flight_t *flight, look_t *look, int worst) {
     uint32_t passed_over = 0u;
     for (int k = 0; k < ATTEMPTS; k++) {
         const bool last = k + 1 == ATTEMPTS;
-        const int about = most_pressing(look, passed_over, last ? late_violation(&flight->settings) : 0.0f);
+        int about = most_pressing(look, passed_over, last ? late_violation(&flight->settings) : 0.0f, -TIME_MAX_S);
         bool unlikely = false;
+        if (last && about == NOBODY) {
+            about = most_pressing(look, passed_over, 0.0f, 0.0f);
+        }
         if (about == NOBODY) {
             break;
         }
-        const float needed_s = answer(flight, look, about, &unlikely);
+        const float needed_s = answer(flight, look, about, last ? NULL : &unlikely);
         if (!unlikely) {
             return needed_s;
         }

@@ -140,6 +140,29 @@ static void an_unlikely_worst_obstacle_delays_no_order(void) {
     }
 }
 
+/* GIVEN two or three obstacles that are unlikely to be in the way, and for which it is too late WHEN a hazard behind them is unlikely, too, but there
+ * is time for its order THEN that comes all the same. */
+static void unlikely_obstacles_delay_no_order_in_time(void) {
+    for (int unsure = 0; unsure <= 3; unsure++) {
+        start(0.0f);
+        for (int i = 0; i < unsure; i++) {
+            put(i, 60.0f + 10.0f * (float)i, 5.0f, 50.0f);
+            flight.slot[i].covariance_ne_m2[0] = flight.slot[i].covariance_ne_m2[2] = 900.0f;
+            flight.slot[i].hazard.tcpa_sd_s = 1.5f;
+            flight.slot[i].hazard.conflict_probability = 0.4f;
+        }
+        put(3, 115.0f, 8.0f, 50.0f);
+        flight.slot[3].hazard.conflict_probability = 0.45f;
+        if (unsure == 0) {
+            flight.slot[0] = flight.slot[3];
+            flight.slot[3].used = false;
+        }
+        TEST_ASSERT_NOT_EQUAL(GOE_FLIGHT_NONE, decide(0.5));
+        TEST_ASSERT_EQUAL(unsure == 0 ? 0 : 3, flight.reaction.slot);
+        TEST_ASSERT_FALSE(flight.reaction.late);
+    }
+}
+
 /* GIVEN a passed obstacle that is the worst, because it is next to the aircraft WHEN others are ahead THEN the order against the worst of these
  * comes all the same, and not against one that is no hazard. */
 static void a_passed_obstacle_delays_no_order(void) {
@@ -821,6 +844,7 @@ int main(void) {
     RUN_TEST(the_circle_about_the_target_is_kept_clear);
     RUN_TEST(an_unlikely_obstacle_delays_no_order);
     RUN_TEST(an_unlikely_worst_obstacle_delays_no_order);
+    RUN_TEST(unlikely_obstacles_delay_no_order_in_time);
     RUN_TEST(a_passed_obstacle_delays_no_order);
     RUN_TEST(a_circle_is_never_smaller_than_the_turn);
     RUN_TEST(a_wall_of_masts_is_a_reason_to_hold);
