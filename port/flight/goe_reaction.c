@@ -37,12 +37,13 @@
 #define CLIMB_SLACK 0.5f /* of the clearance: a climb that lacks less than this is not replaced */
 
 #define SIDE_REMEMBERED_S 10.0f
-#define LATEST 1.2f      /* of roll_in_s: the latest time at which an autopilot obeys */
-#define TURNED 0.99f     /* cosine of 8 degrees: after such a turn the aircraft obeys */
-#define EARLY 0.33f      /* of roll_in_s: the earliest time at which an autopilot obeys */
-#define WHOLE 0.9f       /* a larger fraction makes no path better */
-#define SHARE_S 4.0f     /* s: value of a whole margin, between clear paths */
-#define SAME_SIDE_S 0.5f /* s: value of the side that was ordered before */
+#define LONG_US 600000000 /* ten minutes: longer than any time that counts */
+#define LATEST 1.2f       /* of roll_in_s: the latest time at which an autopilot obeys */
+#define TURNED 0.99f      /* cosine of 8 degrees: after such a turn the aircraft obeys */
+#define EARLY 0.33f       /* of roll_in_s: the earliest time at which an autopilot obeys */
+#define WHOLE 0.9f        /* a larger fraction makes no path better */
+#define SHARE_S 4.0f      /* s: value of a whole margin, between clear paths */
+#define SAME_SIDE_S 0.5f  /* s: value of the side that was ordered before */
 
 /* One obstacle relative to the course. Aside is positive to the right. */
 typedef struct {
@@ -716,6 +717,13 @@ static void break_off(goe_flight_t *flight, const look_t *look) {
     }
 }
 
+/* Moves a time along that lies far back: after half an hour it would look like one of the future. */
+static void drag(uint32_t *since_us, uint32_t now_us) {
+    if (goe_flight_between_us(now_us, *since_us) > LONG_US) {
+        *since_us = now_us - (uint32_t)LONG_US;
+    }
+}
+
 /* Clears an order with a corrupt field. A hazard that is still active then causes a new order. */
 static void mend(goe_flight_reaction_t *r) {
     const bool finite = goe_flight_all_finite(r->target_ned_m, 3) && goe_flight_all_finite(r->from_ned_m, 3) &&
@@ -904,6 +912,8 @@ float goe_flight_reaction_decide(goe_flight_t *flight, int worst, const goe_flig
     look_t look;
     memset(&look, 0, sizeof look);
     mend(r);
+    drag(&r->ordered_us, own->time_us);
+    drag(&r->rising_us, own->time_us);
     forget_side(r, own->time_us);
     if (own->grounded && r->action != GOE_FLIGHT_NONE) {
         goe_flight_reaction_clear(r);

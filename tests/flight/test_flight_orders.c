@@ -360,6 +360,27 @@ static void an_order_stays_active_while_its_hazard_is(void) {
     }
 }
 
+/* GIVEN an order, or a hazard whose order is withheld WHEN it lasts for hours, in which differences of times wrap THEN its report stays the same. */
+static void a_long_time_changes_no_report(void) {
+    put_wall(160.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_HOLD, decide(3.0));
+    const float clear_m = flight.reaction.clear_m;
+    for (int k = 0; k < 300; k++) {
+        own.time_us += 30000000u;
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_HOLD, decide(0.0));
+        CHECK_SAME(clear_m, flight.reaction.clear_m);
+    }
+    start(0.0f);
+    own.ned_m[2] = -4.9f;
+    put(0, 100.0f, 0.5f, 50.0f);
+    (void)decide(1.0);
+    for (int k = 0; k < 300; k++) {
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_REASON_LOW, flight.reaction.reason);
+        own.time_us += 30000000u;
+        (void)decide(0.0);
+    }
+}
+
 /* ------------------------------------------------------------------------------------------------------------ withheld -- */
 
 static void no_order_is_given_too_low(void) {
@@ -858,6 +879,7 @@ int main(void) {
     RUN_TEST(an_order_that_finds_another_way_does_not_sink_with_the_aircraft);
     RUN_TEST(an_order_stays_active_while_the_way_back_is_not_clear);
     RUN_TEST(an_order_stays_active_while_its_hazard_is);
+    RUN_TEST(a_long_time_changes_no_report);
     RUN_TEST(no_order_is_given_too_low);
     RUN_TEST(a_height_below_the_ground_withholds_no_order);
     RUN_TEST(a_height_of_zero_gives_orders_at_any_height);
