@@ -128,6 +128,7 @@ static void forget(goe_flight_t *flight) {
     memset(flight->velocity_ned_m_s, 0, sizeof flight->velocity_ned_m_s);
     memset(&flight->travel, 0, sizeof flight->travel);
     goe_flight_reaction_clear(&flight->reaction);
+    flight->base_us = 0; /* the next sample may be of another clock */
     flight->had_frame = 0;
     flight->origin_known = false;
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {

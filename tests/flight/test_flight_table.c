@@ -685,6 +685,25 @@ static void early_frames_are_kept_by_the_caller(void) {
     TEST_ASSERT_EQUAL(1, flown.flight.counters.late);
 }
 
+/* GIVEN an autopilot whose clock was set back by less than a second WHEN the layer has restarted with the 16th of its times THEN frames are taken
+ * from the first samples on. */
+static void frames_are_taken_after_a_clock_was_set_back(void) {
+    (void)flown_fly(&flown, 3.0);
+    flown.start_us -= 900000u;
+    int refused = 0;
+    for (int k = 0; k < 20; k++) {
+        goe_flight_attitude_t attitude;
+        goe_flight_position_t position;
+        flown_samples(&flown, flown.sample++, &attitude, &position);
+        refused += goe_flight_attitude(&flown.flight, &attitude) != GOE_FLIGHT_OK ? 1 : 0;
+        (void)goe_flight_position(&flown.flight, &position);
+    }
+    TEST_ASSERT_EQUAL(16, refused);
+    TEST_ASSERT_EQUAL(1, flown.flight.counters.lost);
+    const goe_flight_frame_t frame = flown_frame(&flown, flown.sample - 2, NULL, 0);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(&flown.flight, &frame));
+}
+
 /* Detections of one image in several calls. */
 static void an_image_may_come_in_parts(void) {
     for (int k = 0; k < 60; k++) {
@@ -776,6 +795,7 @@ int main(void) {
     RUN_TEST(an_obstacle_that_is_given_up_leaves_no_gap);
     RUN_TEST(without_a_pose_no_obstacle_is_reported);
     RUN_TEST(early_frames_are_kept_by_the_caller);
+    RUN_TEST(frames_are_taken_after_a_clock_was_set_back);
     RUN_TEST(an_image_may_come_in_parts);
     RUN_TEST(the_autopilots_clock_may_wrap);
     return UNITY_END();
