@@ -52,11 +52,16 @@ static goe_flight_candidate_t *place_for(goe_flight_waiting_t *waiting, uint32_t
 }
 
 void goe_flight_candidate_crowd(goe_flight_waiting_t *waiting, uint32_t time_us) {
+    if (!waiting->crowded || goe_flight_between_us(time_us, waiting->crowded_us) > 0) {
+        waiting->crowded_us = time_us; /* an older image shortens no mark */
+    }
     waiting->crowded = true;
-    waiting->crowded_us = time_us;
 }
 
-void goe_flight_candidate_return(goe_flight_waiting_t *waiting, const goe_flight_candidate_t *seen) {
+void goe_flight_candidate_return(goe_flight_waiting_t *waiting, const goe_flight_candidate_t *seen, uint32_t now_us) {
+    if (goe_flight_between_us(now_us, seen->time_us) > APART_US) {
+        return;
+    }
     goe_flight_candidate_t *candidate = place_for(waiting, seen->time_us);
     *candidate = *seen;
     candidate->images = WAITING;

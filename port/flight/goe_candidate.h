@@ -12,8 +12,9 @@ float goe_flight_candidate_overlap(const int16_t a[4], const int16_t b[4]);
  * that has been undetected for the longest time, and the table is marked as crowded. */
 bool goe_flight_candidate_confirm(goe_flight_waiting_t *waiting, const goe_flight_candidate_t *seen, int images);
 
-/* Returns a confirmed detection that found no slot, or lost its slot, to the table. Its images count again from the next one. */
-void goe_flight_candidate_return(goe_flight_waiting_t *waiting, const goe_flight_candidate_t *seen);
+/* Returns a confirmed detection that found no slot, or lost its slot, to the table, unless it has been undetected for a second. Its images
+ * count again from the next one. */
+void goe_flight_candidate_return(goe_flight_waiting_t *waiting, const goe_flight_candidate_t *seen, uint32_t now_us);
 
 /* Marks the table as crowded: a detection of this time has no place in the table, and may be anywhere in the view. */
 void goe_flight_candidate_crowd(goe_flight_waiting_t *waiting, uint32_t time_us);

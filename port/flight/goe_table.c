@@ -259,11 +259,11 @@ static void give_renumbered(goe_flight_t *flight, const goe_flight_slot_view_t *
 }
 
 /* The obstacle of an evicted slot waits for another slot. */
-static void wait_again(goe_flight_t *flight, const goe_flight_slot_t *slot) {
+static void wait_again(goe_flight_t *flight, const goe_flight_slot_t *slot, uint32_t now_us) {
     goe_flight_candidate_t candidate = {slot->id, slot->detected_us, {0, 0, 0, 0}, slot->camera, 0, slot->bearings};
     memcpy(candidate.box_px, slot->box_px, sizeof candidate.box_px);
     if (slot->used) {
-        goe_flight_candidate_return(&flight->waiting, &candidate);
+        goe_flight_candidate_return(&flight->waiting, &candidate, now_us);
     }
 }
 
@@ -285,12 +285,12 @@ static void give_new(goe_flight_t *flight, const goe_flight_slot_view_t *view, c
         }
         const int i = free_place(flight, &candidate.bearings, view->time_us);
         if (i != NOBODY) {
-            wait_again(flight, &flight->slot[i]);
+            wait_again(flight, &flight->slot[i], view->time_us);
             release(&flight->reaction, i);
             goe_flight_slot_begin(&flight->slot[i], detection->id, view->time_us);
             give(flight, i, view, detection, taken);
         } else {
-            goe_flight_candidate_return(&flight->waiting, &candidate);
+            goe_flight_candidate_return(&flight->waiting, &candidate, view->time_us);
         }
     }
 }

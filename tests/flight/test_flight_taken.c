@@ -362,6 +362,38 @@ static void a_full_table_forgets_the_oldest(void) {
     }
 }
 
+/* GIVEN a crowded table WHEN a detection of an older image has no place THEN the mark lasts as long as before. */
+static void an_older_image_shortens_no_crowd(void) {
+    goe_flight_waiting_t table;
+    memset(&table, 0, sizeof table);
+    goe_flight_candidate_crowd(&table, 20000000u);
+    goe_flight_candidate_crowd(&table, 10500000u);
+    goe_flight_candidate_expire(&table, 0u, 20900000u);
+    TEST_ASSERT_EQUAL(1, goe_flight_candidate_count(&table));
+}
+
+/* GIVEN an obstacle that has lost its slot THEN it waits for another one if it was detected in the latest second. */
+static void an_undetected_obstacle_does_not_wait(void) {
+    for (int late = 0; late < 2; late++) {
+        static goe_flight_t copy;
+        const goe_flight_detection_t detection = good_detection();
+        goe_flight_frame_t frame = flown_frame(&flown, flown.sample - 1, &detection, 1);
+        copy = *flight;
+        for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
+            put_any(&copy, i, frame.capture_us);
+            copy.slot[i].used = copy.slot[i].assessed = true;
+            copy.slot[i].camera = 0;
+            copy.slot[i].hazard.conflict_probability = 0.0f;
+            copy.slot[i].hazard.tcpa_s = 40.0f;
+            copy.slot[i].detected_us = frame.capture_us - (late ? 1000001u : 1000000u);
+        }
+        frame.number = 2;
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(&copy, &frame));
+        TEST_ASSERT_EQUAL(1, copy.counters.evicted);
+        TEST_ASSERT_EQUAL(late ? 0 : 1, goe_flight_candidate_count(&copy.waiting));
+    }
+}
+
 /* ------------------------------------------------------------------------------------------------------------- claims -- */
 
 /* From the least to the largest of the visible points, and no smaller than 8 px. */
@@ -446,6 +478,8 @@ int main(void) {
     RUN_TEST(overlap_is_the_share_of_the_union);
     RUN_TEST(images_of_one_candidate_lie_at_most_a_second_apart);
     RUN_TEST(a_full_table_forgets_the_oldest);
+    RUN_TEST(an_older_image_shortens_no_crowd);
+    RUN_TEST(an_undetected_obstacle_does_not_wait);
     RUN_TEST(any_points_make_their_box);
     RUN_TEST(a_box_claims_predictions_inside_it);
     return UNITY_END();
