@@ -29,6 +29,7 @@
 #define UNASSESSED_US 300000000 /* five minutes */
 #define STALE_MAX 16            /* samples in a row that are not newer: the clock was set back */
 #define POSE_ALIVE_S 0.5f
+#define GUESS_MAX_S 1.0f /* longest gap between samples over which the velocity shows a jump */
 #define SECTOR_MAX_CM 65000u
 #define NOBODY (-1)
 /* Bits of goe_flight_obstacle_t.valid. */
@@ -345,7 +346,7 @@ static goe_flight_status_t check_delta(const goe_flight_t *flight, const goe_fli
 }
 
 /* Estimates an unknown jump as well as possible: the position minus its prediction by the velocity. The kept obstacles move along. After a
- * reset of the attitude, the history is empty. */
+ * reset of the attitude, the history is empty. After a long gap, the velocity is not that of the gap, and the jump counts as 0. */
 static void guess_jump(const goe_flight_t *flight, const goe_flight_position_t *sample, float jump_ned_m[3]) {
     const goe_flight_history_position_t *newest = goe_flight_history_newest_position(&flight->history);
     uint32_t from_us;
@@ -356,8 +357,9 @@ static void guess_jump(const goe_flight_t *flight, const goe_flight_position_t *
         from_us = newest->time_us;
         memcpy(from_ned_m, newest->ned_m, sizeof from_ned_m);
     }
+    const float s = goe_flight_between_s(sample->time_us, from_us);
+    known = known && s >= 0.0f && s <= GUESS_MAX_S;
     for (int i = 0; known && i < 3; i++) {
-        const float s = goe_flight_between_s(sample->time_us, from_us);
         jump_ned_m[i] = sample->position_ned_m[i] - from_ned_m[i] - s * flight->velocity_ned_m_s[i];
     }
 }

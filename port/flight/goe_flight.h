@@ -162,7 +162,8 @@ typedef struct {
     int32_t origin_lat_e7, origin_lon_e7; /* degrees times 1e7; +-89e7, +-180e7 */
     uint32_t reset_horizontal, reset_vertical; /* marks of resets, see goe_flight_settings_t.resets */
     bool reset_delta_known;             /* false: any reset is unknown, ends all tracks and empties the history. The
-                                           layer shifts kept obstacles by the jump that the velocity reveals */
+                                           layer shifts kept obstacles by the jump that the velocity reveals, if the
+                                           previous sample is at most 1 s older */
     float reset_delta_ned_m[3];         /* new minus old position at the latest reset. The layer reads north and east
                                            if reset_horizontal changed, down if reset_vertical did; all are finite. The
                                            ground of every track shifts by the down part, even if height_m did not jump,

@@ -498,6 +498,20 @@ static void an_unknown_jump_is_the_unexplained_motion(void) {
     CHECK_CLOSE(0.01, before.ground_down_m + 2.0f, flight->slot[0].ground_down_m);
 }
 
+/* GIVEN such a jump after a gap of more than a second THEN the velocity does not show it, and the kept obstacles stay where they are. */
+static void an_unknown_jump_after_a_long_gap_moves_nothing(void) {
+    put(0, 100.0f, 5.0f, 12.0f);
+    const goe_flight_slot_t before = flight->slot[0];
+    at((SAMPLES - 1u) * STEP_US + 1100000u);
+    position.position_ned_m[1] += 40.0f; /* the aircraft has turned */
+    position.reset_horizontal++;
+    position.reset_delta_known = false;
+    give();
+    TEST_ASSERT_EQUAL(1, flight->counters.lost);
+    CHECK_SAME(before.center_ne_m[0], flight->slot[0].center_ne_m[0]);
+    CHECK_SAME(before.center_ne_m[1], flight->slot[0].center_ne_m[1]);
+}
+
 /* Jumps whose sum is no place any more are unknown ones. */
 static void jumps_beyond_all_places_are_unknown(void) {
     position.reset_delta_known = true;
@@ -576,6 +590,7 @@ int main(void) {
     RUN_TEST(an_obstacle_of_no_numbers_is_corrupted);
     RUN_TEST(a_track_begins_with_its_own_settings);
     RUN_TEST(an_unknown_jump_is_the_unexplained_motion);
+    RUN_TEST(an_unknown_jump_after_a_long_gap_moves_nothing);
     RUN_TEST(jumps_beyond_all_places_are_unknown);
     RUN_TEST(sectors_stay_in_their_place);
     RUN_TEST(a_climb_clears_no_obstacle_in_advance);
