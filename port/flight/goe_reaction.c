@@ -418,6 +418,8 @@ static bool is_due(goe_flight_reaction_t *r, const goe_flight_settings_t *settin
     return e->earliest_tcpa_s <= needed_s || goe_flight_between_s(now_us, r->rising_us) >= settings->confirm_s;
 }
 
+static bool has_position(const look_t *look, int i) { return look->slot[i].margin_m > 0.0f; }
+
 /* Distance of the target to the right of the line, as one obstacle requires: past its outline on the side of the order; in a gap, at the
  * wall that is passed. */
 static float edge_of(const look_t *look, const goe_flight_reaction_t *r, int i, int side) {
@@ -437,6 +439,9 @@ static void follow(const look_t *look, goe_flight_reaction_t *r) {
     float ahead_m;
     float aside_m;
     if (!is_aside(r->action) || r->edge == NOBODY || r->slot == NOBODY) {
+        return;
+    }
+    if (!has_position(look, r->slot) || !has_position(look, r->edge)) {
         return;
     }
     const float about_m = edge_of(look, r, r->slot, r->side);

@@ -396,6 +396,25 @@ static void the_point_of_a_side_follows_the_estimate(void) {
     CHECK_CLOSE(0.1, 3.0 - 18.0, flight.reaction.target_ned_m[1]);
 }
 
+/* GIVEN an order past one obstacle, or in the gap to another one WHEN one of them has no position any more THEN the target stays. */
+static void a_target_does_not_follow_a_lost_position(void) {
+    for (int lost = 0; lost < 2; lost++) {
+        setUp();
+        put(0, 100.0f, 0.5f);
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
+        put(1, 110.0f, -12.0f);
+        flight.slot[1].hazard.conflict_probability = 0.0f;
+        flight.reaction.edge = 1;
+        (void)decide(0.0);
+        const goe_flight_reaction_t before = flight.reaction;
+        TEST_ASSERT_EQUAL(1, before.edge);
+        CHECK_CLOSE(0.1, -30.0, before.target_ned_m[1]);
+        flight.slot[lost].valid = 0;
+        (void)decide(0.0);
+        TEST_ASSERT_EQUAL_MEMORY(before.target_ned_m, flight.reaction.target_ned_m, sizeof before.target_ned_m);
+    }
+}
+
 static void another_obstacle_replaces_the_order_but_not_the_line(void) {
     put(0, 100.0f, 0.5f);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_LEFT, decide(0.5));
@@ -447,6 +466,7 @@ int main(void) {
     RUN_TEST(the_side_of_an_order_is_remembered_for_ten_seconds);
     RUN_TEST(an_order_about_no_slot_is_none);
     RUN_TEST(the_point_of_a_side_follows_the_estimate);
+    RUN_TEST(a_target_does_not_follow_a_lost_position);
     RUN_TEST(another_obstacle_replaces_the_order_but_not_the_line);
     RUN_TEST(every_action_has_a_name);
     return UNITY_END();
