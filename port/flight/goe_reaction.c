@@ -824,23 +824,23 @@ static bool is_flying_back(look_t *look) {
     return clear;
 }
 
-/* Whether an active climb does not reach the height over this obstacle in time. */
-static bool is_too_low(const look_t *look, const encounter_t *e) {
+/* Whether an active climb does not reach the height over this obstacle in time, even if it may lack this fraction of the clearance. */
+static bool is_too_low(const look_t *look, const encounter_t *e, float lack) {
     const goe_flight_settings_t *settings = &look->flight->settings;
     const float since_s = goe_flight_between_s(look->own->time_us, look->flight->reaction.ordered_us);
     const float begins_s = goe_flight_larger(settings->climb_in_s - since_s, 0.0f);
-    const float keeps_m = CLIMB_SLACK * settings->clearance_m; /* the rest of the clearance is enough to continue */
-    const float rise_m = goe_flight_larger(rise_of(look, e) - keeps_m, 0.0f);
+    const float rise_m = goe_flight_larger(rise_of(look, e) - lack * settings->clearance_m, 0.0f);
     return begins_s + rise_m / settings->climb_m_s > e->earliest_tcpa_s;
 }
 
 /* Whether another way replaces an active climb: a clear one, if it is against another obstacle or the climb is not clear; or any way, if the
- * climb is too low. Over a top that is not known, even a low climb is better than a way into an obstacle. */
+ * climb is too low. A low climb over a top that is not known, or one that still clears the top, is better than a way into an obstacle. */
 static bool replaces_climb(const look_t *look, int about, const encounter_t *e, const option_t *option) {
     const goe_flight_reaction_t *r = &look->flight->reaction;
     const bool other = r->slot != about;
-    const bool low = is_too_low(look, e);
-    const bool instead = e->has_top ? low : (other || low) && option->share > 0.0f;
+    const bool low = is_too_low(look, e, CLIMB_SLACK) || (other && !e->has_top);
+    const bool into = e->has_top && is_too_low(look, e, 1.0f);
+    const bool instead = low && (into || option->share > 0.0f);
     return instead || (option->share >= FREE && (other || r->reason == GOE_FLIGHT_REASON_LEAST_BAD));
 }
 

@@ -552,6 +552,22 @@ static void a_go_around_over_an_unknown_top_gives_way(void) {
     }
 }
 
+/* GIVEN a climb that no longer reaches its clearance in time WHEN it still clears the known top, and every turn leads into an obstacle THEN it
+ * stays active; WHEN it does not even clear the top THEN a turn replaces it. */
+static void a_low_climb_over_a_known_top_is_better_than_a_turn_into_another(void) {
+    for (int into = 0; into < 2; into++) {
+        start(0.0f);
+        own.approach = true;
+        put_unknown_tops(3);
+        flight.slot[0].valid |= GOE_HAS_HEIGHT;
+        flight.slot[0].top_m = 18.0f;
+        TEST_ASSERT_EQUAL(GOE_FLIGHT_GO_AROUND, decide(0.5));
+        flight.slot[0].top_m = into ? 50.0f : 30.0f;
+        TEST_ASSERT_EQUAL(into, decide(0.5) != GOE_FLIGHT_GO_AROUND);
+        TEST_ASSERT_EQUAL(into ? GOE_FLIGHT_REASON_LEAST_BAD : GOE_FLIGHT_REASON_CLEAR, flight.reaction.reason);
+    }
+}
+
 /* GIVEN a go-around over an unknown top WHEN the aircraft flies it exactly, and perhaps finds a second one late THEN it stays active up to the
  * obstacle, at the height of the order plus the clearance: the climb is no reason to turn into another obstacle. */
 static void a_go_around_over_an_unknown_top_is_flown_to_its_end(void) {
@@ -718,7 +734,8 @@ static void a_climb_is_left_when_it_comes_too_late(void) {
             const float needed_s = fmaxf(2.0f - (float)since, 0.0f) + 5.0f / 2.5f;
             start(0.0f);
             own.time_us = 5000000u;
-            put(0, 3.0f + SPEED_M_S * needed_s, 0.5f, 20.0f); /* 10 m to climb, of which 5 are enough */
+            const float right_m = since < 2 ? 0.5f : 12.0f;      /* a turn does not lead into it */
+            put(0, 3.0f + SPEED_M_S * needed_s, right_m, 20.0f); /* 10 m to climb, of which 5 are enough */
             flight.slot[0].hazard.tcpa_s = needed_s + (later ? 0.2f : -0.2f);
             flight.reaction.action = GOE_FLIGHT_CLIMB;
             flight.reaction.slot = 0;
@@ -890,6 +907,7 @@ int main(void) {
     RUN_TEST(a_go_around_over_an_unknown_top_is_the_least_bad);
     RUN_TEST(a_go_around_over_any_unknown_top_is_not_clear);
     RUN_TEST(a_go_around_over_an_unknown_top_gives_way);
+    RUN_TEST(a_low_climb_over_a_known_top_is_better_than_a_turn_into_another);
     RUN_TEST(a_go_around_over_an_unknown_top_is_flown_to_its_end);
     RUN_TEST(no_side_is_left_for_an_unknown_top);
     RUN_TEST(a_climb_does_not_lead_into_what_is_behind);
