@@ -231,7 +231,8 @@ typedef enum {
                                        more than 0.2 margin_m; on approach, if these lead into an obstacle, GO_AROUND over an unknown top */
     /* an order is due and withheld, because the aircraft ... */
     GOE_FLIGHT_REASON_LOW = 3,   /* is lower than order_height_m */
-    GOE_FLIGHT_REASON_SLOW = 4,  /* is slower than order_speed_m_s */
+    GOE_FLIGHT_REASON_SLOW = 4,  /* is slower than order_speed_m_s. At 1 m/s or less it has no course, so no order is due, and the reason of
+                                    a hazard is GOE_FLIGHT_REASON_NONE */
     GOE_FLIGHT_REASON_LANDING = 5 /* flares, or has touched down */
 } goe_flight_reason_t;
 
