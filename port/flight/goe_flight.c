@@ -123,7 +123,7 @@ static bool has_camera(const goe_flight_t *flight, int number) {
 static void forget(goe_flight_t *flight) {
     goe_flight_history_clear(&flight->history);
     memset(&flight->marks, 0, sizeof flight->marks);
-    memset(&flight->clock, 0, sizeof flight->clock);
+    memset(flight->clock, 0, sizeof flight->clock);
     memset(&flight->waiting, 0, sizeof flight->waiting);
     memset(flight->parts, 0, sizeof flight->parts);
     memset(flight->velocity_ned_m_s, 0, sizeof flight->velocity_ned_m_s);
@@ -243,8 +243,8 @@ static void bury(goe_flight_t *flight, uint32_t now_us) {
             flight->had_frame = (uint8_t)(flight->had_frame & ~(1u << i));
         }
         flight->parts[i].viewed = view_alive(flight, i, now_us);
+        goe_flight_clock_bury(&flight->clock[i], now_us);
     }
-    goe_flight_clock_bury(&flight->clock, now_us);
 }
 
 /* Advances base_us, the newest time, which does not wrap. After a reset the history is empty, and a time that is a little older is no other
@@ -511,8 +511,8 @@ goe_flight_status_t goe_flight_pose(const goe_flight_t *flight, uint32_t time_us
 
 goe_flight_status_t goe_flight_timesync(goe_flight_t *flight, uint32_t offset_us, uint32_t sd_us) {
     const goe_flight_status_t status = check_ready(flight);
-    if (status == GOE_FLIGHT_OK) {
-        goe_flight_clock_sync(&flight->clock, offset_us, sd_us);
+    for (int i = 0; i < GOE_CAMERAS_MAX && status == GOE_FLIGHT_OK; i++) {
+        goe_flight_clock_sync(&flight->clock[i], offset_us, sd_us);
     }
     return status;
 }
@@ -548,10 +548,10 @@ goe_flight_status_t goe_flight_frame(goe_flight_t *flight, const goe_flight_fram
     if (status != GOE_FLIGHT_OK) {
         return refuse(flight, status);
     }
-    goe_flight_clock_t clock = flight->clock; /* not kept if the frame may come again */
+    goe_flight_clock_t clock = flight->clock[frame->camera]; /* not kept if the frame may come again */
     status = find_view(flight, frame, &clock, &view);
     if (status == GOE_FLIGHT_OK || status == GOE_FLIGHT_TOO_OLD) {
-        flight->clock = clock; /* all frames look too old after the sender's clock was set back */
+        flight->clock[frame->camera] = clock; /* all frames look too old after the sender's clock was set back */
     }
     if (status != GOE_FLIGHT_OK) {
         goe_flight_count(status == GOE_FLIGHT_TOO_NEW ? &flight->counters.early : &flight->counters.late);

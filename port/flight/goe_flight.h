@@ -175,7 +175,8 @@ typedef struct {
 enum {
     GOE_FLIGHT_AUTOPILOT_CLOCK = 0, /* the autopilot's clock: the layer estimates no offset */
     GOE_FLIGHT_SENDER_CLOCK = 1, /* the sender's clock. Its offset comes from goe_flight_timesync(); without it, the
-                                    offset is the least (arrival - sending) over 10 to 20 s, minus delay_s */
+                                    offset is the least (arrival - sending) over 10 to 20 s, minus delay_s. Each camera
+                                    may have a sender of its own: each has its own offset */
     GOE_FLIGHT_AGE = 2           /* age of the image at sending: capture = arrival - delay_s - age */
 };
 
@@ -448,7 +449,7 @@ typedef struct {
     goe_flight_history_t history;
     goe_flight_marks_t marks;
     goe_flight_travel_t travel;
-    goe_flight_clock_t clock;
+    goe_flight_clock_t clock[GOE_CAMERAS_MAX]; /* of the sender of each camera's frames */
     goe_flight_reaction_t reaction;
     goe_flight_counters_t counters; /* public */
     uint32_t assessed_us;
@@ -506,7 +507,8 @@ goe_flight_status_t goe_flight_pose(const goe_flight_t *flight, uint32_t time_us
                                     float *attitude_sd_deg);
 
 /* Sets the offset of the sender's clock from a two-way exchange: autopilot's minus sender's time (modulo 2^32), and its one sigma.
- * It replaces the one-way estimate until a call with sd_us 0xFFFFFFFF, which means unknown.
+ * It replaces the one-way estimate until a call with sd_us 0xFFFFFFFF, which means unknown. It holds for all cameras with
+ * GOE_FLIGHT_SENDER_CLOCK: call it only if their senders have one clock.
  * Returns GOE_FLIGHT_OK, _BAD_ARGUMENT, _NOT_INITIALIZED. */
 goe_flight_status_t goe_flight_timesync(goe_flight_t *flight, uint32_t offset_us, uint32_t sd_us);
 

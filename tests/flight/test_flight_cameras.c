@@ -284,6 +284,35 @@ static void the_view_of_a_dead_detector_is_unknown(void) {
     }
 }
 
+/* [GOE_FLIGHT_SENDER_CLOCK] GIVEN two cameras whose senders have clocks of their own WHEN these are apart by less or more than a second, and no
+ * exchange gives their offsets THEN each image counts from its exposure; one exchange holds for the images of both. */
+static void each_sender_has_its_own_clock(void) {
+    const uint32_t apart_us[] = {150000u, 300000u, 495000000u};
+    for (int n = 0; n < 4; n++) {
+        setUp();
+        alive[0] = alive[1] = false;
+        for (int k = 0; k < 150; k++) {
+            step(NULL);
+            if (n == 3 && k == 0) {
+                TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_timesync(&flown.flight, 5000000u, 200u));
+            }
+            const int c = k % 5 == 3 ? 1 : 0;
+            if (k < 20 || (k % 5 != 3 && k % 5 != 0)) {
+                continue;
+            }
+            goe_flight_frame_t frame = flown_frame(&flown, k - 5, NULL, 0);
+            const uint32_t exposed_us = frame.capture_us;
+            frame.camera = (uint8_t)c;
+            frame.time_base = GOE_FLIGHT_SENDER_CLOCK;
+            frame.sent_us = frame.arrival_us - 5000000u - (c == 1 && n < 3 ? apart_us[n] : 0u);
+            frame.capture_us = frame.sent_us - (frame.arrival_us - exposed_us);
+            frame.sent_us -= 5000u; /* delay_s */
+            TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(&flown.flight, &frame));
+            TEST_ASSERT_EQUAL_UINT32(exposed_us, flown.flight.capture_us);
+        }
+    }
+}
+
 static void a_camera_that_is_not_set_is_refused(void) {
     step(NULL);
     goe_flight_frame_t frame = flown_frame(&flown, 0, NULL, 0);
@@ -318,6 +347,7 @@ int main(void) {
     RUN_TEST(one_id_of_two_cameras_is_two_obstacles);
     RUN_TEST(each_camera_confirms_its_own);
     RUN_TEST(the_view_of_a_dead_detector_is_unknown);
+    RUN_TEST(each_sender_has_its_own_clock);
     RUN_TEST(a_camera_that_is_not_set_is_refused);
     RUN_TEST(each_camera_needs_its_size);
     return UNITY_END();

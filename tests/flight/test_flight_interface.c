@@ -73,10 +73,10 @@ static void a_withdrawn_offset_leaves_nothing_behind(void) {
         frame.sent_us = frame.capture_us + 20000u;
         TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_frame(&flown.flight, &frame));
     }
-    TEST_ASSERT_TRUE(flown.flight.clock.count > 0);
+    TEST_ASSERT_TRUE(flown.flight.clock[0].count > 0);
     TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_timesync(&flown.flight, 0u, UINT32_MAX));
-    TEST_ASSERT_EQUAL(0, flown.flight.clock.count);
-    TEST_ASSERT_FALSE(flown.flight.clock.synced);
+    TEST_ASSERT_EQUAL(0, flown.flight.clock[0].count);
+    TEST_ASSERT_FALSE(flown.flight.clock[0].synced);
 }
 
 /* -------------------------------------------------------------------------------------------------------------- pose -- */

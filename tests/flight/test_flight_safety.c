@@ -98,7 +98,9 @@ static void check_state(void) {
     check_floats(f->velocity_ned_m_s, 3, "velocity");
     check_floats(f->reaction.from_ned_m, 5, "order");
     check_floats(f->reaction.target_ned_m, 3, "target");
-    check_floats(&f->clock.excess_us, 2, "clock");
+    for (int i = 0; i < GOE_CAMERAS_MAX; i++) {
+        check_floats(&f->clock[i].excess_us, 2, "clock");
+    }
     check_slots();
     for (int i = 0; i < GUARD_BYTES; i++) {
         TEST_ASSERT_EQUAL_HEX8(GUARD, memory.before[i]);
@@ -115,7 +117,9 @@ static void check_call(goe_flight_status_t status) {
         kept.counters = memory.flight.counters;
         kept.history.attitude_stale = memory.flight.history.attitude_stale;
         kept.history.position_stale = memory.flight.history.position_stale;
-        kept.clock = status == GOE_FLIGHT_TOO_OLD ? memory.flight.clock : kept.clock;
+        if (status == GOE_FLIGHT_TOO_OLD) {
+            memcpy(kept.clock, memory.flight.clock, sizeof kept.clock);
+        }
         TEST_ASSERT_EQUAL_MEMORY(&kept, &memory.flight, sizeof kept);
     }
     check_state();

@@ -121,7 +121,7 @@ static void after_call(run_t *run, goe_flight_status_t status) {
         kept.history.attitude_stale = memory.flight.history.attitude_stale;
         kept.history.position_stale = memory.flight.history.position_stale;
         if (status == GOE_FLIGHT_TOO_OLD) { /* such a frame counts for the sender's clock */
-            kept.clock = memory.flight.clock;
+            memcpy(kept.clock, memory.flight.clock, sizeof kept.clock);
         }
         FUZZ_CHECK(fuzz_same(&kept, &memory.flight, sizeof kept));
     }
