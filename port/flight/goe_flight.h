@@ -31,7 +31,7 @@
  * Cost        On a Cortex-M4F (gcc), measured in instructions: a sample at most 1,710; a frame 49,300 for each obstacle in it (it
  *             includes goe_update(), whose proved limit goe.h states); an assessment 37,800 with one obstacle and 23,200 for each
  *             further one with a position. While there is a hazard or an order, an assessment also examines paths: at most 6 times
- *             (4 + 4 GOE_FLIGHT_SLOTS), each against every obstacle. goe_flight_obstacle() 980; goe_flight_sectors() 12,800 with one
+ *             (4 + 4 GOE_FLIGHT_SLOTS), each against every obstacle. goe_flight_obstacle() 980; goe_flight_sectors() 13,200 with one
  *             obstacle; goe_flight_init() 12,700 for each slot. No loop runs longer than GOE_FLIGHT_SECTORS.
  * Failure     A call that returns a negative status, or GOE_FLIGHT_TOO_NEW, changes nothing except counters, with three exceptions:
  *             after a failed goe_flight_init() *flight cannot be used; the 16th GOE_FLIGHT_BAD_TIME in a row of the attitudes, or of
