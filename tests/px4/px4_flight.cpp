@@ -24,6 +24,7 @@ void Px4Flight::begin(uint64_t clock_us, bool set_camera) {
         standin::set("GOE_CAM_FX", flown.scene.camera.fx_px);
     }
     sends_pose = sends_images = in_step = sends_position = true;
+    failsafe = user_took_over = false;
     follows = set_camera;
     position = vehicle_local_position_s{};
     quat_reset_counter = 0;
@@ -149,6 +150,8 @@ void Px4Flight::set_mode(bool armed, uint8_t nav_state) {
         has_wings ? vehicle_status_s::VEHICLE_TYPE_FIXED_WING : vehicle_status_s::VEHICLE_TYPE_ROTARY_WING;
     topic.system_id = system;
     topic.component_id = 1;
+    topic.failsafe = failsafe;
+    topic.failsafe_and_user_took_over = user_took_over;
     standin::publish(ORB_ID(vehicle_status), &topic);
 }
 

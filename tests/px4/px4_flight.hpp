@@ -41,7 +41,8 @@ class Px4Flight {
     goe_features_s features_of(int k) const;
     void set_mode(bool armed, uint8_t nav_state);
     bool has_wings{true};
-    uint8_t system{1}; /* 0: the vehicle does not know its number yet */
+    uint8_t system{1};                           /* 0: the vehicle does not know its number yet */
+    bool failsafe{false}, user_took_over{false}; /* as set_mode() reports them */
 
     goe_status_s status() const;
     bool obstacle(goe_obstacle_s &topic) const; /* the latest one */

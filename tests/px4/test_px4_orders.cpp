@@ -153,6 +153,60 @@ static void a_pilot_is_not_fought() {
     TEST_ASSERT_TRUE(follow());
 }
 
+/* Before PX4 returns it waits in Hold: COM_FAIL_ACT_T. A command would cancel the return. */
+static void nothing_is_given_in_a_failsafe() {
+    vehicle.failsafe = vehicle.lands = true;
+    for (const uint8_t mode : {HOLD, LAND}) {
+        for (const goe_flight_action_t action : {GOE_FLIGHT_LEFT, GOE_FLIGHT_GO_AROUND}) {
+            vehicle.nav_state = mode;
+            assessment.action = action;
+            TEST_ASSERT_FALSE(follow());
+        }
+    }
+    TEST_ASSERT_FALSE(orders.flown());
+    vehicle.failsafe = false;
+    TEST_ASSERT_TRUE(follow());
+}
+
+/* In Mission PX4 only warns: any other failsafe changes the mode. */
+static void a_warning_is_no_failsafe() {
+    vehicle.failsafe = true;
+    TEST_ASSERT_TRUE(follow());
+}
+
+static void a_failsafe_overrules_an_order() {
+    TEST_ASSERT_TRUE(follow());
+    accept(HOLD);
+    TEST_ASSERT_FALSE(follow());
+    for (const bool failsafe : {true, false}) {
+        vehicle.failsafe = failsafe;
+        assessment.target_ned_m[0] += 100.f;
+        TEST_ASSERT_FALSE(follow());
+        TEST_ASSERT_TRUE(orders.overruled());
+    }
+    assessment.action = GOE_FLIGHT_NONE;
+    for (int i = 0; i < 20; i++) {
+        TEST_ASSERT_FALSE(follow(ALL, true));
+    }
+}
+
+/* Neither if it comes with the end of the order, nor afterwards. */
+static void no_mission_is_resumed_in_a_failsafe() {
+    for (const bool is_later : {false, true}) {
+        setUp();
+        TEST_ASSERT_TRUE(follow(ALL, true));
+        accept(HOLD);
+        TEST_ASSERT_FALSE(follow(ALL, true));
+        assessment.action = GOE_FLIGHT_NONE;
+        vehicle.failsafe = !is_later;
+        TEST_ASSERT_EQUAL(is_later, follow(ALL, true));
+        for (int i = 0; i < 40; i++) {
+            vehicle.failsafe = i < 20;
+            TEST_ASSERT_FALSE(follow(ALL, true));
+        }
+    }
+}
+
 static void a_pilot_who_goes_on_with_the_mission_is_not_fought() {
     TEST_ASSERT_TRUE(follow());
     accept(HOLD);
@@ -637,6 +691,19 @@ static void the_answer_to_a_ground_station_is_none_to_the_module() {
     flight.end();
 }
 
+/* A pilot who has taken over flies as without a failsafe. */
+static void a_failsafe_is_left_to_px4() {
+    for (const bool took_over : {false, true}) {
+        start_towards_one(HOLD, false, ALL);
+        flight.failsafe = true;
+        flight.user_took_over = took_over;
+        flight.set_mode(true, HOLD);
+        TEST_ASSERT_EQUAL(took_over, fly_on(13.0) > 0);
+        TEST_ASSERT_NOT_EQUAL(GOE_FLIGHT_NONE, flight.status().action);
+        flight.end();
+    }
+}
+
 /* A reset of the heading ends the track. The obstacle keeps its position, and the order stays active until it is passed. For that long
  * settings wait; then the mission continues. */
 static void an_order_outlives_its_track() {
@@ -819,6 +886,10 @@ int main() {
     RUN_TEST(a_target_that_moves_is_sent_again);
     RUN_TEST(another_action_is_sent_at_once);
     RUN_TEST(a_pilot_is_not_fought);
+    RUN_TEST(nothing_is_given_in_a_failsafe);
+    RUN_TEST(a_warning_is_no_failsafe);
+    RUN_TEST(a_failsafe_overrules_an_order);
+    RUN_TEST(no_mission_is_resumed_in_a_failsafe);
     RUN_TEST(a_pilot_who_goes_on_with_the_mission_is_not_fought);
     RUN_TEST(the_next_order_begins_afresh);
     RUN_TEST(an_order_that_stood_while_a_pilot_flew_is_given_in_the_mission);
@@ -845,6 +916,7 @@ int main() {
     RUN_TEST(a_mast_on_the_course_is_passed_aside);
     RUN_TEST(it_flies_on_in_its_mission_past_the_mast);
     RUN_TEST(the_answer_to_a_ground_station_is_none_to_the_module);
+    RUN_TEST(a_failsafe_is_left_to_px4);
     RUN_TEST(an_order_outlives_its_track);
     RUN_TEST(what_cannot_be_assessed_ends_no_order);
     RUN_TEST(the_status_reports_a_pilot_and_refusals);

@@ -278,6 +278,7 @@ void Goe::follow_orders(uint64_t now_us) {
     vehicle.lands = _setpoint.valid && _setpoint.type == position_setpoint_s::SETPOINT_TYPE_LAND;
     vehicle.setpoint_alt_m = _setpoint.alt;
     vehicle.nav_state = _vehicle_status.nav_state;
+    vehicle.failsafe = _vehicle_status.failsafe && !_vehicle_status.failsafe_and_user_took_over;
     vehicle.origin_known = _flight.origin_known;
     vehicle.obstacle_known = is_followed(_orders.slot());
     vehicle.altitude_known = _position.z_global;

@@ -27,9 +27,15 @@ bool in_mission_or_hold(const GoeOrders::Vehicle &vehicle) {
            vehicle.nav_state == vehicle_status_s::NAVIGATION_STATE_AUTO_LOITER;
 }
 
+/* PX4 waits in Hold before it flies a failsafe (COM_FAIL_ACT_T), and a command may cancel that. In Mission a failsafe is only a
+ * warning: PX4 1.14 reports that, too. */
+bool in_failsafe(const GoeOrders::Vehicle &vehicle) {
+    return vehicle.failsafe && vehicle.nav_state != vehicle_status_s::NAVIGATION_STATE_AUTO_MISSION;
+}
+
 bool may_command(goe_flight_action_t action, const GoeOrders::Vehicle &vehicle, int32_t react) {
     const bool in_land = vehicle.nav_state == vehicle_status_s::NAVIGATION_STATE_AUTO_LAND;
-    if (!vehicle.armed) {
+    if (!vehicle.armed || in_failsafe(vehicle)) {
         return false;
     }
     if (action == GOE_FLIGHT_GO_AROUND) {
@@ -120,6 +126,7 @@ bool GoeOrders::has_moved(const goe_flight_assessment_t &assessment) const {
 /* Of an order that was given: Hold is where it leads to, and until it has it is the mode before. Where DO_GO_AROUND leads to is PX4's
  * affair. */
 void GoeOrders::watch_mode(const Vehicle &vehicle) {
+    _overruled = _overruled || (_given && in_failsafe(vehicle));
     if (!_given || (_action == GOE_FLIGHT_GO_AROUND && !_raised)) {
         return;
     }
@@ -139,7 +146,7 @@ void GoeOrders::begin(goe_flight_action_t action) {
 }
 
 bool GoeOrders::may_resume(const Vehicle &vehicle) const {
-    return _wants_mission && _resumes_left > 0 && vehicle.armed &&
+    return _wants_mission && _resumes_left > 0 && vehicle.armed && !in_failsafe(vehicle) &&
            vehicle.nav_state == vehicle_status_s::NAVIGATION_STATE_AUTO_LOITER;
 }
 
@@ -164,6 +171,7 @@ bool GoeOrders::end(const Vehicle &vehicle, bool resume, vehicle_command_s &comm
 }
 
 bool GoeOrders::repeat_resume(const Vehicle &vehicle, vehicle_command_s &command) {
+    _wants_mission = _wants_mission && !in_failsafe(vehicle);
     if (_awaited == 0 || vehicle.now_us - _sent_us < REPEAT_US || !may_resume(vehicle)) {
         return false;
     }

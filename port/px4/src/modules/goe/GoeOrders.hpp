@@ -12,7 +12,7 @@
  * PX4 acknowledges it. Go around becomes DO_GO_AROUND, and when PX4 has taken that, DO_REPOSITION upwards if its height is too low
  * for the obstacle's top. Only while armed, in Mission or Hold, and to break off a landing in Land. A side that may not be flown
  * breaks a landing off like go around. A pilot or a failsafe that chooses another mode has priority: no command follows until the
- * end of the order. The mission continues only when the obstacle is known to be passed, and never after a landing that was broken
+ * end of the order. So has a failsafe that waits in Hold, which a command would cancel. The mission continues only when the obstacle is known to be passed, and never after a landing that was broken
  * off. */
 class GoeOrders {
   public:
@@ -21,6 +21,7 @@ class GoeOrders {
         bool armed;
         bool has_wings;      /* a fixed wing, at present */
         bool lands;          /* the present setpoint is one to land */
+        bool failsafe;       /* one is active, and no pilot has taken over */
         uint8_t nav_state;   /* vehicle_status_s::NAVIGATION_STATE_... */
         bool obstacle_known; /* the layer still knows the place of that of slot() */
         bool origin_known, altitude_known;

@@ -11,6 +11,7 @@ struct vehicle_status_s {
     static constexpr uint8_t VEHICLE_TYPE_UNSPECIFIED = 0, VEHICLE_TYPE_ROTARY_WING = 1, VEHICLE_TYPE_FIXED_WING = 2;
     uint64_t timestamp;
     uint8_t arming_state, nav_state, vehicle_type, system_id, component_id;
+    bool failsafe, failsafe_and_user_took_over;
 };
 
 STANDIN_TOPIC(vehicle_status, 1)
