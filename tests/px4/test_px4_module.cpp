@@ -89,6 +89,37 @@ static void an_image_that_no_pose_comes_for_is_given_up() {
     TEST_ASSERT_FALSE(flight.status().pose_alive);
 }
 
+/* Ten images a second, each followed by one with a time ahead of PX4's clock. */
+static void fly_with_times_ahead(uint64_t ahead_us, double seconds) {
+    for (int i = 0; i < static_cast<int>(10.0 * seconds); i++) {
+        const int exposed = flight.flown.sample - FLOWN_DELAY;
+        flight.publish_image(exposed, flight.time_of(exposed));
+        flight.publish_image(exposed, standin::now_us() + ahead_us);
+        flight.fly(0.1);
+    }
+}
+
+static void an_image_with_a_time_ahead_does_not_delay_the_next_ones() {
+    flight.fly(1.0);
+    flight.follows = flight.sends_images = false;
+    for (const uint64_t ahead_us : {400000u, 2000000u}) {
+        const uint16_t taken = flight.status().taken;
+        fly_with_times_ahead(ahead_us, 2.0);
+        TEST_ASSERT_GREATER_OR_EQUAL(taken + 19, flight.status().taken);
+        TEST_ASSERT_EQUAL(0, flight.status().late_images);
+        TEST_ASSERT_TRUE(flight.status().delay_max < 150.0f);
+    }
+}
+
+/* No pose comes for it in time: it takes no place in the queue. */
+static void an_exposure_long_after_its_arrival_is_refused_at_once() {
+    flight.fly(1.0);
+    flight.follows = flight.sends_images = false;
+    flight.publish_image(0, standin::now_us() + 600000u);
+    flight.fly(0.2);
+    TEST_ASSERT_EQUAL(1, flight.status().overdue);
+}
+
 static void more_images_than_can_wait_cost_the_oldest() {
     flight.fly(1.0);
     flight.follows = flight.sends_images = flight.sends_pose = false;
@@ -541,6 +572,8 @@ int main() {
     RUN_TEST(an_image_that_is_too_new_waits_for_its_pose);
     RUN_TEST(an_image_that_was_sent_in_the_future_waits_too);
     RUN_TEST(an_image_that_no_pose_comes_for_is_given_up);
+    RUN_TEST(an_image_with_a_time_ahead_does_not_delay_the_next_ones);
+    RUN_TEST(an_exposure_long_after_its_arrival_is_refused_at_once);
     RUN_TEST(more_images_than_can_wait_cost_the_oldest);
     RUN_TEST(an_image_that_comes_too_late_is_counted);
     RUN_TEST(a_known_jump_keeps_the_track);

@@ -4,7 +4,8 @@
 #include "goe_flight.h"
 #include "goe_mavlink_map.h"
 
-/* First in, first out. A sighting contains a pointer into itself, so it is filled in place. */
+/* In the order of arrival; an image that waits does not delay those after it. A sighting contains a pointer into itself, so it is filled
+ * in place. */
 class GoeImages {
   public:
     static constexpr unsigned ROOM = 8;
@@ -32,9 +33,8 @@ class GoeImages {
   private:
     static constexpr unsigned PLACES = ROOM + 1; /* one to be filled */
 
-    goe_mavlink_sighting_t &oldest() { return _image[_first]; }
-    void drop();
-    void give_up();
+    bool take_one(goe_flight_t &flight, unsigned place, uint32_t now_us);
+    void move(unsigned from, unsigned to);
     void note_delay(uint32_t delay_us);
 
     goe_mavlink_sighting_t _image[PLACES]{};
