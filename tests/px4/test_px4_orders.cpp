@@ -339,6 +339,39 @@ static void an_obstacle_that_was_given_up_is_not_forgotten() {
     TEST_ASSERT_TRUE(follow(ALL, true));
 }
 
+/* The order turns from one obstacle to another, and the first one's track ends: at once, after it was passed, or with the order. */
+static void an_obstacle_whose_track_ends_under_another_order_may_be_ahead() {
+    for (const bool is_passed : {false, true}) {
+        for (const bool is_at_end : {false, true}) {
+            setUp();
+            TEST_ASSERT_TRUE(follow(ALL, true));
+            accept(HOLD);
+            TEST_ASSERT_FALSE(follow(ALL, true));
+            assessment.avoided = 1;
+            vehicle.behind = is_passed ? 1u << 0 : 0u;
+            TEST_ASSERT_FALSE(follow(ALL, true));
+            vehicle.behind = 0;
+            vehicle.gone = is_at_end ? 0u : 1u << 0;
+            TEST_ASSERT_FALSE(follow(ALL, true));
+            vehicle.gone = is_at_end ? 1u << 0 : 0u;
+            assessment.action = GOE_FLIGHT_NONE;
+            assessment.avoided = -1;
+            TEST_ASSERT_EQUAL(is_passed, follow(ALL, true));
+        }
+    }
+}
+
+/* The slot of a new obstacle was without a position before; what is gone elsewhere does not count. */
+static void an_obstacle_that_comes_into_a_slot_is_no_loss() {
+    vehicle.gone = 1u << 0 | 1u << 3;
+    TEST_ASSERT_TRUE(follow(ALL, true));
+    accept(HOLD);
+    vehicle.gone = 1u << 3;
+    TEST_ASSERT_FALSE(follow(ALL, true));
+    assessment.action = GOE_FLIGHT_NONE;
+    TEST_ASSERT_TRUE(follow(ALL, true));
+}
+
 static void an_order_in_hold_resumes_nothing() {
     vehicle.nav_state = HOLD;
     TEST_ASSERT_TRUE(follow());
@@ -899,6 +932,8 @@ int main() {
     RUN_TEST(the_mission_is_not_resumed_before_the_obstacle_is_passed);
     RUN_TEST(the_slot_is_that_of_the_latest_order);
     RUN_TEST(an_obstacle_that_was_given_up_is_not_forgotten);
+    RUN_TEST(an_obstacle_whose_track_ends_under_another_order_may_be_ahead);
+    RUN_TEST(an_obstacle_that_comes_into_a_slot_is_no_loss);
     RUN_TEST(an_order_in_hold_resumes_nothing);
     RUN_TEST(a_side_is_flown_in_landing);
     RUN_TEST(in_landing_a_side_that_may_not_be_flown_is_a_go_around);

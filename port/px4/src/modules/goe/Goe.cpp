@@ -270,6 +270,31 @@ bool Goe::is_followed(int slot) const {
     return goe_flight_obstacle(&_flight, slot, &obstacle) == GOE_FLIGHT_OK && (obstacle.valid & GOE_HAS_POSITION) != 0u;
 }
 
+/* By its outline and the margin. The aircraft turns during an order, so the course before counts. */
+bool Goe::is_behind(const goe_flight_obstacle_t &obstacle) const {
+    const float north_m = obstacle.center_ned_m[0] - _position.x;
+    const float east_m = obstacle.center_ned_m[1] - _position.y;
+    const float clear_m = obstacle.radius_m + _used.flight.margin_m;
+    const float speed_m_s = sqrtf(_course_m_s[0] * _course_m_s[0] + _course_m_s[1] * _course_m_s[1]);
+    return _course_m_s[0] * north_m + _course_m_s[1] * east_m < -clear_m * speed_m_s;
+}
+
+/* A slot in use gets another obstacle by an eviction alone: without one, another id is a new one of the same obstacle. */
+void Goe::watch_obstacles(GoeOrders::Vehicle &vehicle) {
+    const bool evicted = _flight.counters.evicted != _evicted;
+    _evicted = _flight.counters.evicted;
+    for (int slot = 0; slot < GOE_FLIGHT_SLOTS; slot++) {
+        goe_flight_obstacle_t obstacle;
+        const bool is_known = goe_flight_obstacle(&_flight, slot, &obstacle) == GOE_FLIGHT_OK &&
+                              (obstacle.valid & GOE_HAS_POSITION) != 0u;
+        const bool is_another = evicted && (obstacle.id == 0u || obstacle.id != _ids[slot]);
+        const uint32_t bit = 1u << static_cast<unsigned>(slot);
+        vehicle.gone |= !is_known || is_another ? bit : 0u;
+        vehicle.behind |= is_known && is_behind(obstacle) ? bit : 0u;
+        _ids[slot] = obstacle.id;
+    }
+}
+
 void Goe::follow_orders(uint64_t now_us) {
     vehicle_command_s command;
     GoeOrders::Vehicle vehicle{};
@@ -281,6 +306,7 @@ void Goe::follow_orders(uint64_t now_us) {
     vehicle.failsafe = _vehicle_status.failsafe && !_vehicle_status.failsafe_and_user_took_over;
     vehicle.origin_known = _flight.origin_known;
     vehicle.obstacle_known = is_followed(_orders.slot());
+    watch_obstacles(vehicle);
     vehicle.altitude_known = _position.z_global;
     vehicle.origin_alt_m = _position.ref_alt;
     vehicle.now_us = now_us;
@@ -332,6 +358,10 @@ void Goe::take_assessment(const goe_flight_assessment_t &assessment, goe_flight_
         return;
     }
     _assessment = assessment;
+    if (assessment.action == GOE_FLIGHT_NONE) {
+        _course_m_s[0] = _position.vx;
+        _course_m_s[1] = _position.vy;
+    }
     follow_orders(now_us);
     report_operator();
 }

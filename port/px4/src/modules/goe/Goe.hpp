@@ -61,6 +61,8 @@ class Goe final : public GoeModuleBase, public px4::ScheduledWorkItem {
     bool has_wings() const;
     void read_parameters();
     bool is_followed(int slot) const;
+    bool is_behind(const goe_flight_obstacle_t &obstacle) const;
+    void watch_obstacles(GoeOrders::Vehicle &vehicle);
     void follow_parameters();
     void use_parameters();
     void take_attitude();
@@ -117,6 +119,9 @@ class Goe final : public GoeModuleBase, public px4::ScheduledWorkItem {
     goe_flight_assessment_t _assessment; /* the latest one that did not fail; pose_alive is false since one did */
     GoeImages _images;
     GoeOrders _orders;
+    uint32_t _ids[GOE_FLIGHT_SLOTS]{}; /* of the obstacles, at the assessment before */
+    uint16_t _evicted{0};              /* the layer's count, then */
+    float _course_m_s[2]{};            /* velocity at the latest assessment without an order */
     goe_px4::Heights _heights{};
     uint64_t _range_us{0}; /* of the height by a distance sensor */
     float _attitude_q[4]{1.f, 0.f, 0.f, 0.f};

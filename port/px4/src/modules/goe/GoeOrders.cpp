@@ -140,6 +140,7 @@ void GoeOrders::watch_mode(const Vehicle &vehicle) {
 void GoeOrders::begin(goe_flight_action_t action) {
     if (_action == GOE_FLIGHT_NONE) {
         _has_led = _overruled = _given = _breaks_off = _raised = _gave_up = false;
+        _named = 0;
     }
     _action = action;
     _wants_mission = false;
@@ -156,7 +157,14 @@ bool GoeOrders::is_past(const Vehicle &vehicle) const {
     return vehicle.obstacle_known && !_gave_up && _action != GOE_FLIGHT_HOLD;
 }
 
+/* Those that the order was about before the present assessment: an obstacle that is neither passed nor known any more may be ahead. */
+void GoeOrders::watch_obstacles(const Vehicle &vehicle) {
+    _gave_up = _gave_up || (_named & vehicle.gone) != 0;
+    _named &= ~vehicle.behind;
+}
+
 bool GoeOrders::end(const Vehicle &vehicle, bool resume, vehicle_command_s &command) {
+    watch_obstacles(vehicle);
     _wants_mission = resume && _has_led && !_overruled && !_breaks_off && is_past(vehicle) &&
                      _mode_before == vehicle_status_s::NAVIGATION_STATE_AUTO_MISSION;
     _resumes_left = RESUMES_MAX;
@@ -229,7 +237,12 @@ bool GoeOrders::follow(const goe_flight_assessment_t &assessment, const Vehicle 
     if (is_new) {
         begin(action);
     }
-    _gave_up = _gave_up || assessment.avoided < 0; /* also if the order is about another obstacle later */
+    watch_obstacles(vehicle);
+    if (assessment.avoided < 0) {
+        _gave_up = true; /* also if the order is about another obstacle later */
+    } else {
+        _named |= 1u << static_cast<unsigned>(assessment.avoided);
+    }
     return go_on(assessment, vehicle, react, is_new, command);
 }
 

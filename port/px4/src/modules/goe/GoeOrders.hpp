@@ -24,6 +24,8 @@ class GoeOrders {
         bool failsafe;       /* one is active, and no pilot has taken over */
         uint8_t nav_state;   /* vehicle_status_s::NAVIGATION_STATE_... */
         bool obstacle_known; /* the layer still knows the place of that of slot() */
+        uint32_t gone;   /* slots, as bits: without a position, or with another obstacle since the assessment before */
+        uint32_t behind; /* ... whose obstacle lies behind, on the course before the order */
         bool origin_known, altitude_known;
         float origin_alt_m;   /* over the sea, of the local frame's down = 0 */
         float setpoint_alt_m; /* ... of the present setpoint */
@@ -49,6 +51,7 @@ class GoeOrders {
     void begin(goe_flight_action_t action);
     bool end(const Vehicle &vehicle, bool resume, vehicle_command_s &command);
     bool is_past(const Vehicle &vehicle) const;
+    void watch_obstacles(const Vehicle &vehicle);
     bool repeat_resume(const Vehicle &vehicle, vehicle_command_s &command);
     bool may_resume(const Vehicle &vehicle) const;
     bool go_on(const goe_flight_assessment_t &assessment, const Vehicle &vehicle, int32_t react, bool is_new,
@@ -68,7 +71,8 @@ class GoeOrders {
     int8_t _slot{-1};
     uint8_t _mode_before{0};
     bool _given{false}, _has_led{false}, _overruled{false}, _wants_mission{false};
-    bool _gave_up{false};                    /* since the order began: the layer, an obstacle of it */
+    uint32_t _named{0};   /* since the order began: slots that it was about, as bits; without those seen passed */
+    bool _gave_up{false}; /* ... the layer, an obstacle of it */
     bool _breaks_off{false}, _raised{false}; /* since the order began: a landing; the altitude where PX4 holds */
     uint8_t _resumes_left{0};
     uint32_t _awaited{0}; /* command whose acknowledgement is awaited; 0: none */
