@@ -262,6 +262,19 @@ static void the_mission_is_resumed_if_that_is_wanted() {
     TEST_ASSERT_EQUAL(5, sent); /* unanswered */
 }
 
+/* One of a single assessment: nothing has looked at the mode before its end. */
+static void the_mission_is_resumed_after_a_short_order() {
+    for (const uint8_t mode : {HOLD, POSITION}) {
+        setUp();
+        TEST_ASSERT_TRUE(follow(ALL, true));
+        accept(mode);
+        assessment.action = GOE_FLIGHT_NONE;
+        TEST_ASSERT_EQUAL(mode == HOLD, follow(ALL, true));
+        vehicle.nav_state = HOLD; /* by a pilot */
+        TEST_ASSERT_FALSE(follow(ALL, true));
+    }
+}
+
 static void a_resume_that_is_answered_is_not_repeated() {
     TEST_ASSERT_TRUE(follow());
     accept(HOLD);
@@ -927,6 +940,7 @@ int main() {
     RUN_TEST(the_next_order_begins_afresh);
     RUN_TEST(an_order_that_stood_while_a_pilot_flew_is_given_in_the_mission);
     RUN_TEST(the_mission_is_resumed_if_that_is_wanted);
+    RUN_TEST(the_mission_is_resumed_after_a_short_order);
     RUN_TEST(a_resume_that_is_answered_is_not_repeated);
     RUN_TEST(the_mission_is_resumed_after_a_target_that_moved);
     RUN_TEST(the_mission_is_not_resumed_before_the_obstacle_is_passed);

@@ -165,6 +165,7 @@ void GoeOrders::watch_obstacles(const Vehicle &vehicle) {
 
 bool GoeOrders::end(const Vehicle &vehicle, bool resume, vehicle_command_s &command) {
     watch_obstacles(vehicle);
+    watch_mode(vehicle); /* a short order ends with the first look at the mode that it has led to */
     _wants_mission = resume && _has_led && !_overruled && !_breaks_off && is_past(vehicle) &&
                      _mode_before == vehicle_status_s::NAVIGATION_STATE_AUTO_MISSION;
     _resumes_left = RESUMES_MAX;
