@@ -624,7 +624,7 @@ static void an_order_after_a_go_around_is_another_one() {
 static Px4Flight flight;
 static vehicle_command_s last;
 
-static constexpr uint8_t SYSTEM = 1, GROUND_STATION = 255;
+static constexpr uint8_t SYSTEM = 1, GROUND_STATION = 255, MODULE = 1, COMPANION = 196;
 
 /* Towards a mast or, when landing, a truck. */
 static void start_towards_one(uint8_t mode, bool lands, int32_t react) {
@@ -661,10 +661,11 @@ static void hold_over_the_landing(float above_m) {
 }
 
 /* PX4 accepts the command, and reports that to `asker`. */
-static void obey(const vehicle_command_s &one, uint8_t asker) {
+static void obey(const vehicle_command_s &one, uint8_t asker, uint8_t component) {
     vehicle_command_ack_s ack{};
     ack.command = one.command;
     ack.target_system = asker;
+    ack.target_component = component;
     standin::publish(ORB_ID(vehicle_command_ack), &ack);
     if (one.command == vehicle_command_s::VEHICLE_CMD_DO_REPOSITION) {
         flight.set_mode(true, HOLD);
@@ -674,7 +675,7 @@ static void obey(const vehicle_command_s &one, uint8_t asker) {
 }
 
 /* Returns the number of commands; the first and the last one are kept. */
-static unsigned fly_on(double seconds, uint8_t asker = SYSTEM) {
+static unsigned fly_on(double seconds, uint8_t asker = SYSTEM, uint8_t component = MODULE) {
     unsigned commands = 0;
     for (int i = 0; i < static_cast<int>(seconds * FLOWN_POSE_HZ); i++) {
         const unsigned before = standin::published(ORB_ID(vehicle_command));
@@ -682,7 +683,7 @@ static unsigned fly_on(double seconds, uint8_t asker = SYSTEM) {
         if (standin::published(ORB_ID(vehicle_command)) > before) {
             TEST_ASSERT_TRUE(standin::latest(ORB_ID(vehicle_command), 0, &last));
             command = commands == 0 ? last : command;
-            obey(last, asker);
+            obey(last, asker, component);
             commands++;
         }
     }
@@ -728,12 +729,15 @@ static void it_flies_on_in_its_mission_past_the_mast() {
     flight.end();
 }
 
-static void the_answer_to_a_ground_station_is_none_to_the_module() {
+static void the_answer_to_another_sender_is_none_to_the_module() {
     start_towards_one(MISSION, false, ALL);
     const unsigned answered = fly_on(13.0);
     flight.end();
     start_towards_one(MISSION, false, ALL);
     TEST_ASSERT_GREATER_THAN(answered + 2, fly_on(13.0, GROUND_STATION));
+    flight.end();
+    start_towards_one(MISSION, false, ALL);
+    TEST_ASSERT_GREATER_THAN(answered + 2, fly_on(13.0, SYSTEM, COMPANION));
     flight.end();
 }
 
@@ -807,6 +811,7 @@ static void the_status_reports_a_pilot_and_refusals() {
     vehicle_command_ack_s ack{};
     ack.command = vehicle_command_s::VEHICLE_CMD_DO_REPOSITION;
     ack.target_system = SYSTEM;
+    ack.target_component = MODULE;
     ack.result = vehicle_command_ack_s::VEHICLE_CMD_RESULT_DENIED;
     standin::publish(ORB_ID(vehicle_command_ack), &ack);
     flight.fly(0.2);
@@ -964,7 +969,7 @@ int main() {
     RUN_TEST(no_command_is_ever_given_by_default);
     RUN_TEST(a_mast_on_the_course_is_passed_aside);
     RUN_TEST(it_flies_on_in_its_mission_past_the_mast);
-    RUN_TEST(the_answer_to_a_ground_station_is_none_to_the_module);
+    RUN_TEST(the_answer_to_another_sender_is_none_to_the_module);
     RUN_TEST(a_failsafe_is_left_to_px4);
     RUN_TEST(an_order_outlives_its_track);
     RUN_TEST(what_cannot_be_assessed_ends_no_order);

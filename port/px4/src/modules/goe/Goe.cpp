@@ -204,7 +204,8 @@ void Goe::take_vehicle() {
         _setpoint = setpoint.current;
     }
     while (_command_ack_sub.update(&answer)) {
-        if (answer.target_system == _vehicle_status.system_id) { /* not of a ground station's command */
+        if (answer.target_system == _vehicle_status.system_id &&
+            answer.target_component == _vehicle_status.component_id) { /* not of another sender's command */
             _orders.take(answer);
         }
     }

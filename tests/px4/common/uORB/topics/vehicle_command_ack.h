@@ -9,6 +9,7 @@ struct vehicle_command_ack_s {
     uint64_t timestamp;
     uint32_t command;
     uint8_t result, target_system;
+    uint16_t target_component;
 };
 
 STANDIN_TOPIC(vehicle_command_ack, 4)
