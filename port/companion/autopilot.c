@@ -424,6 +424,7 @@ static void take_heartbeat(autopilot_t *autopilot, const mavlink_message_t *mess
     }
     autopilot->custom_mode = beat.custom_mode;
     autopilot->base_mode = beat.base_mode;
+    autopilot->system_status = beat.system_status;
     autopilot->heartbeat_us = now_us;
     autopilot->heartbeats++;
     link_answer(autopilot->wire->link);

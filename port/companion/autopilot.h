@@ -23,8 +23,9 @@ typedef struct {
     uint8_t kind;   /* MAV_AUTOPILOT_... */
     uint32_t custom_mode;
     uint8_t base_mode;
-    bool landing;         /* EXTENDED_SYS_STATE: landing (approach, flare or roll-out) */
-    bool on_ground;       /* EXTENDED_SYS_STATE: on the ground */
+    uint8_t system_status; /* MAV_STATE_... */
+    bool landing;          /* EXTENDED_SYS_STATE: landing (approach, flare or roll-out) */
+    bool on_ground;        /* EXTENDED_SYS_STATE: on the ground */
     bool flaring;         /* ArduPlane's text reported the flare; cleared when EXTENDED_SYS_STATE shows another state */
     int64_t recovered_us; /* own time when ArduPilot reported that it ended an avoidance by itself; 0: never */
     int32_t target_lat_e7, target_lon_e7; /* target position that the autopilot reports */

@@ -53,7 +53,8 @@ static void put_log(orders_t *orders, const char *what, const char *why) {
     row.left.boot_us = orders->boot_us;
     row.left.action = (unsigned)orders->action;
     row.left.mode_before = orders->watch.mode_before;
-    row.left.active = orders->active.active && !orders->overruled && !orders->gave_up && !orders->from_landing;
+    row.left.active = orders->active.active && !orders->overruled && !orders->gave_up && !orders->from_landing &&
+                      !orders->had_failsafe;
     order_log_put(orders->log, &row);
 }
 
@@ -98,6 +99,14 @@ static bool is_mode_allowed(const orders_t *orders, uint32_t mode, goe_flight_ac
     return false;
 }
 
+/* PX4 waits in Hold before it flies a failsafe, and a command may cancel that. In Mission a failsafe is only a warning: PX4 1.14 reports
+ * that, too. ArduPlane reports its own avoidance of traffic as critical. */
+static bool in_failsafe(const orders_t *orders) {
+    const uint8_t status = orders->autopilot->system_status;
+    const bool warns = status == MAV_STATE_CRITICAL && orders->autopilot->custom_mode == px4_modes[0];
+    return orders->config->reaction_mode == REACTION_PX4 && status >= MAV_STATE_CRITICAL && !warns;
+}
+
 /* Why nothing can be sent now; null: it can. Once an order has led to its mode, that in which it was given counts. */
 static const char *find_hindrance(const orders_t *orders, goe_flight_action_t action) {
     const uint32_t mode = orders->sent ? orders->watch.mode_before : orders->autopilot->custom_mode;
@@ -109,6 +118,9 @@ static const char *find_hindrance(const orders_t *orders, goe_flight_action_t ac
     }
     if (orders->autopilot->on_ground) {
         return "on the ground";
+    }
+    if (in_failsafe(orders)) {
+        return "failsafe";
     }
     if (!is_mode_allowed(orders, mode, action)) {
         return "mode is not in reaction.modes";
@@ -207,19 +219,30 @@ static bool is_obstacle_known(const orders_t *orders) {
            (obstacle.valid & GOE_HAS_POSITION) != 0u;
 }
 
-/* Back into the previous mode, once the obstacle is behind. An obstacle that is only out of view may be ahead there. A landing would be
- * continued from next to the runway. */
-static void resume(orders_t *orders, goe_flight_action_t ended, int64_t now_us) {
+/* Why the autopilot stays where it loiters; null: it need not. An obstacle that is only out of view may be ahead in the previous mode. A
+ * landing would be continued from next to the runway. */
+static const char *find_stay(const orders_t *orders, goe_flight_action_t ended) {
     const bool is_past = is_obstacle_known(orders) && !orders->gave_up &&
                          (ended == GOE_FLIGHT_LEFT || ended == GOE_FLIGHT_RIGHT || ended == GOE_FLIGHT_CLIMB);
+    if (!is_past) {
+        return "the obstacle is not known to be passed";
+    }
+    if (orders->from_landing) {
+        return "a landing was broken off";
+    }
+    return orders->had_failsafe || in_failsafe(orders) ? "the autopilot had a failsafe" : NULL;
+}
+
+/* Back into the previous mode, once the obstacle is behind. */
+static void resume(orders_t *orders, goe_flight_action_t ended, int64_t now_us) {
+    const char *stay = find_stay(orders, ended);
     orders->resumes_left = 0;
     if (orders->config->reaction_resume == 0 || orders->silenced || orders->watch.mode_before == PX4_AUTO_LOITER ||
         orders->autopilot->custom_mode != PX4_AUTO_LOITER) {
         return;
     }
-    if (!is_past || orders->from_landing) {
-        event("%s: the autopilot stays where it loiters",
-              is_past ? "a landing was broken off" : "the obstacle is not known to be passed");
+    if (stay != NULL) {
+        event("%s: the autopilot stays where it loiters", stay);
         return;
     }
     orders->resumes_left = RESUMES_MAX;
@@ -227,6 +250,7 @@ static void resume(orders_t *orders, goe_flight_action_t ended, int64_t now_us) 
 }
 
 static void go_on_resuming(orders_t *orders, int64_t now_us) {
+    orders->resumes_left = in_failsafe(orders) ? 0 : orders->resumes_left;
     if (orders->resumes_left > 0 && is_unanswered(orders, MAV_CMD_DO_SET_MODE, now_us) &&
         orders->autopilot->custom_mode == PX4_AUTO_LOITER) {
         ask_for_mode_before(orders, now_us);
@@ -380,7 +404,7 @@ static void follow_left(orders_t *orders, int64_t now_us) {
         return;
     }
     if (orders->config->reaction_mode != REACTION_PX4 || orders->config->reaction_resume == 0 ||
-        orders->autopilot->custom_mode != PX4_AUTO_LOITER || !is_of_this_flight(orders, left)) {
+        orders->autopilot->custom_mode != PX4_AUTO_LOITER || in_failsafe(orders) || !is_of_this_flight(orders, left)) {
         end_left(orders, "end");
         return;
     }
@@ -507,6 +531,7 @@ static void note_obstacle_and_landing(orders_t *orders, const goe_flight_assessm
     const bool goes_on = orders->action != GOE_FLIGHT_NONE;
     orders->gave_up = (goes_on && orders->gave_up) || assessment->avoided < 0;
     orders->from_landing = (goes_on && orders->from_landing) || orders->autopilot->landing;
+    orders->had_failsafe = goes_on && (orders->had_failsafe || (orders->sent && in_failsafe(orders)));
     orders->slot = assessment->avoided < 0 ? -1 : (int)(uint8_t)assessment->avoided;
 }
 

@@ -6,7 +6,7 @@
  *             raises the target, because PX4 flies DO_GO_AROUND only while it lands.
  * arduplane:  ADSB_VEHICLE for all obstacles while the order is active; the autopilot chooses the reaction.
  *
- * The conditions for an order (armed, mode, origin) are checked while it is active. While the autopilot lands, an order that they prevent
+ * The conditions for an order (armed, no failsafe, mode, origin) are checked while it is active. While the autopilot lands, an order that they prevent
  * becomes a go-around, if they do not prevent that. If the pilot chooses another mode (mode_watch.h),
  * no command is sent until all orders have ended. */
 #ifndef ORDERS_H
@@ -42,6 +42,7 @@ typedef struct {
     int64_t traffic_us; /* own time of the latest traffic messages */
     bool gave_up;       /* the layer gave up an obstacle since then: it is not known to be passed */
     bool from_landing;  /* the autopilot was landing since the first of the active orders: no mode is resumed */
+    bool had_failsafe;  /* the same of a failsafe */
     bool has_traffic;   /* arduplane: traffic was sent since then */
     bool broke_off;     /* arduplane: an abort of the present landing was requested */
     uint16_t command;   /* command whose acknowledgement is awaited; 0: none */

@@ -353,6 +353,15 @@ static void the_end_of_an_avoidance_is_read_from_its_text(void) {
     TEST_ASSERT_EQUAL_INT64(own_us, autopilot.recovered_us);
 }
 
+static void a_failsafe_is_read_from_the_heartbeat(void) {
+    mavlink_message_t message;
+    TEST_ASSERT_EQUAL_UINT8(MAV_STATE_ACTIVE, autopilot.system_status);
+    (void)mavlink_msg_heartbeat_pack(SYSTEM, MAV_COMP_ID_AUTOPILOT1, &message, MAV_TYPE_FIXED_WING, MAV_AUTOPILOT_PX4,
+                                     0, 0, MAV_STATE_CRITICAL);
+    autopilot_take(&autopilot, &message, own_us);
+    TEST_ASSERT_EQUAL_UINT8(MAV_STATE_CRITICAL, autopilot.system_status);
+}
+
 static void show_landed_state(uint8_t state) {
     mavlink_message_t message;
     (void)mavlink_msg_extended_sys_state_pack(SYSTEM, MAV_COMP_ID_AUTOPILOT1, &message, 0, state);
@@ -591,6 +600,7 @@ int main(void) {
     RUN_TEST(a_counter_that_rises_with_a_step_adds_no_reset);
     RUN_TEST(a_range_finder_is_taken_upright);
     RUN_TEST(the_end_of_an_avoidance_is_read_from_its_text);
+    RUN_TEST(a_failsafe_is_read_from_the_heartbeat);
     RUN_TEST(approach_and_touchdown_are_read);
     RUN_TEST(the_flare_is_read_from_its_text);
     RUN_TEST(a_flare_that_is_broken_off_is_none);

@@ -384,6 +384,56 @@ static void nothing_is_sent_on_the_ground(void) {
     TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_GO_AROUND));
 }
 
+/* Before PX4 returns it waits in Hold: COM_FAIL_ACT_T. A command would cancel the return. */
+static void nothing_is_sent_in_a_failsafe(void) {
+    static const uint8_t states[] = {MAV_STATE_CRITICAL, MAV_STATE_EMERGENCY, MAV_STATE_FLIGHT_TERMINATION};
+    for (size_t i = 0; i < sizeof states; i++) {
+        orders_init(&orders, &wire, &config, &autopilot, &flight);
+        autopilot.custom_mode = LOITER;
+        autopilot.system_status = states[i];
+        decide(i == 0 ? GOE_FLIGHT_LEFT : GOE_FLIGHT_GO_AROUND);
+        go_on(20, LOITER);
+        TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_REPOSITION));
+        TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_GO_AROUND));
+        TEST_ASSERT_EQUAL_STRING("failsafe", orders.hindrance);
+    }
+    autopilot.system_status = MAV_STATE_ACTIVE;
+    go_on(1, LOITER);
+    TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_GO_AROUND));
+}
+
+/* In Mission PX4 only warns: any other failsafe changes the mode. */
+static void a_warning_is_no_failsafe(void) {
+    autopilot.system_status = MAV_STATE_CRITICAL;
+    decide(GOE_FLIGHT_LEFT);
+    go_on(1, MISSION);
+    TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_REPOSITION));
+}
+
+/* Whether it comes during the order, with its end, or after that. */
+static void no_mode_is_resumed_after_a_failsafe(void) {
+    for (int when = 0; when < 3; when++) {
+        tearDown();
+        setUp();
+        know_obstacle(true);
+        ordered();
+        autopilot.system_status = when == 0 ? MAV_STATE_CRITICAL : MAV_STATE_ACTIVE;
+        assessment.target_lat_e7 += 10000;
+        go_on(when == 0 ? 20 : 0, LOITER);
+        TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_REPOSITION));
+        autopilot.system_status = when == 1 ? MAV_STATE_CRITICAL : MAV_STATE_ACTIVE;
+        go_on(when == 0 ? 1 : 0, LOITER);
+        decide(GOE_FLIGHT_NONE);
+        go_on(1, LOITER);
+        TEST_ASSERT_EQUAL_INT(when == 2 ? 1 : 0, count_commands(MAV_CMD_DO_SET_MODE));
+        autopilot.system_status = MAV_STATE_CRITICAL;
+        go_on(10, LOITER);
+        autopilot.system_status = MAV_STATE_ACTIVE;
+        go_on(20, LOITER);
+        TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_SET_MODE));
+    }
+}
+
 /* GIVEN an order that has led to its mode, WHEN the pilot returns to the previous mode, and the target moves, THEN the order is not
  * repeated against the pilot, and no mode is requested. */
 static void the_mode_before_may_be_the_pilots_choice(void) {
@@ -668,6 +718,16 @@ static void a_pilots_mode_ends_traffic(void) {
     TEST_ASSERT_TRUE(count_traffic() > 0);
 }
 
+/* ArduPlane reports its avoidance as a failsafe. */
+static void traffic_goes_on_while_the_autopilot_avoids_it(void) {
+    fly_arduplane();
+    go_on(20, AUTO);
+    autopilot.system_status = MAV_STATE_CRITICAL;
+    (void)count_traffic();
+    go_on(20, AVOID);
+    TEST_ASSERT_EQUAL_INT(8, count_traffic());
+}
+
 /* Out of the autopilot's avoidance back into the previous mode. */
 static void a_pilots_way_out_of_avoidance_ends_traffic(void) {
     fly_arduplane();
@@ -772,6 +832,14 @@ static void a_restarted_companion_goes_back_once_the_logged_obstacle_is_passed(v
     autopilot.position.x = 230.0f; /* behind by its radius and the margin */
     go_on(5, LOITER);
     TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_SET_MODE));
+}
+
+static void a_restarted_companion_leaves_a_failsafe_alone(void) {
+    autopilot.system_status = MAV_STATE_CRITICAL;
+    take_over(230.0f, 3000000);
+    autopilot.system_status = MAV_STATE_ACTIVE;
+    go_on(20, LOITER);
+    TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_SET_MODE));
 }
 
 /* After another boot of the autopilot, and after a pilot has taken over in the meantime. */
@@ -902,6 +970,11 @@ int main(void) {
     RUN_TEST(what_hinders_an_order_may_end);
     RUN_TEST(an_order_that_is_disarmed_is_not_repeated);
     RUN_TEST(nothing_is_sent_on_the_ground);
+    RUN_TEST(nothing_is_sent_in_a_failsafe);
+    RUN_TEST(a_warning_is_no_failsafe);
+    RUN_TEST(no_mode_is_resumed_after_a_failsafe);
+    RUN_TEST(traffic_goes_on_while_the_autopilot_avoids_it);
+    RUN_TEST(a_restarted_companion_leaves_a_failsafe_alone);
     RUN_TEST(the_mode_before_may_be_the_pilots_choice);
     RUN_TEST(a_place_that_the_pilot_chose_is_left_to_him);
     RUN_TEST(a_place_that_was_never_flown_to_is_no_choice);
