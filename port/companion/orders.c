@@ -219,6 +219,13 @@ static bool is_obstacle_known(const orders_t *orders) {
            (obstacle.valid & GOE_HAS_POSITION) != 0u;
 }
 
+/* Along a course, by the outline and the margin. */
+static bool is_behind(const orders_t *orders, const float course_ne[2], const float obstacle_ne_m[2], float radius_m) {
+    const mavlink_local_position_ned_t *own = &orders->autopilot->position;
+    const float ahead_m = (obstacle_ne_m[0] - own->x) * course_ne[0] + (obstacle_ne_m[1] - own->y) * course_ne[1];
+    return ahead_m < -(radius_m + orders->config->flight.margin_m);
+}
+
 /* Why the autopilot stays where it loiters; null: it need not. An obstacle that is only out of view may be ahead in the previous mode. A
  * landing would be continued from next to the runway. */
 static const char *find_stay(const orders_t *orders, goe_flight_action_t ended) {
@@ -369,13 +376,6 @@ static bool is_of_this_flight(const orders_t *orders, const order_left_t *left) 
     return unix_us >= 0 && unix_us < LEFT_OLD_US && off_us < LEFT_OFF_US && off_us > -LEFT_OFF_US;
 }
 
-static bool is_behind(const orders_t *orders, const order_left_t *left) {
-    const mavlink_local_position_ned_t *own = &orders->autopilot->position;
-    const float ahead_m =
-        (left->obstacle_ne_m[0] - own->x) * left->course_ne[0] + (left->obstacle_ne_m[1] - own->y) * left->course_ne[1];
-    return ahead_m < -(left->radius_m + orders->config->flight.margin_m);
-}
-
 /* Once; and into this log, for a companion after this one. */
 static void report_left(orders_t *orders) {
     if (orders->left_reported) {
@@ -409,7 +409,7 @@ static void follow_left(orders_t *orders, int64_t now_us) {
         return;
     }
     report_left(orders);
-    if (is_behind(orders, left)) {
+    if (is_behind(orders, left->course_ne, left->obstacle_ne_m, left->radius_m)) {
         event("the obstacle of the order before the restart is passed");
         orders->resumes_left = RESUMES_MAX;
         ask_for_mode_before(orders, now_us);
@@ -451,10 +451,10 @@ static void keep_course(orders_t *orders) {
     }
 }
 
-/* The order is about another obstacle now, or its obstacle was given up. */
+/* The order is about another obstacle now, or an obstacle of it was given up. */
 static void turn(orders_t *orders) {
     keep_obstacle(orders);
-    put_log(orders, "turn", orders->slot < 0 ? "the obstacle was given up" : "");
+    put_log(orders, "turn", orders->gave_up ? "an obstacle was given up" : "");
 }
 
 /* The first of the active orders. Its course is the way to go back to: later orders come while the aircraft turns, and an order after a
@@ -526,6 +526,25 @@ static void forget_after_restart(orders_t *orders) {
     }
 }
 
+/* Those that the order was about before this assessment: one that is neither passed nor known any more may be ahead. A slot in use gets
+ * another obstacle by an eviction alone: without one, another id is a new one of the same obstacle. */
+static void watch_obstacles(orders_t *orders) {
+    const bool evicted = orders->flight->counters.evicted != orders->evicted;
+    orders->evicted = orders->flight->counters.evicted;
+    for (int slot = 0; slot < GOE_FLIGHT_SLOTS; slot++) {
+        goe_flight_obstacle_t obstacle;
+        const bool is_known = goe_flight_obstacle(orders->flight, slot, &obstacle) == GOE_FLIGHT_OK &&
+                              (obstacle.valid & GOE_HAS_POSITION) != 0u;
+        const bool is_another = evicted && (obstacle.id == 0u || obstacle.id != orders->ids[slot]);
+        const uint32_t bit = UINT32_C(1) << (unsigned)slot;
+        orders->gave_up = orders->gave_up || ((orders->named & bit) != 0u && (!is_known || is_another));
+        if (is_known && is_behind(orders, orders->active.course_ne, obstacle.center_ned_m, obstacle.radius_m)) {
+            orders->named &= ~bit;
+        }
+        orders->ids[slot] = obstacle.id;
+    }
+}
+
 /* Of an order, since its begin. After an obstacle was given up, another one may take its slot. */
 static void note_obstacle_and_landing(orders_t *orders, const goe_flight_assessment_t *assessment) {
     const bool goes_on = orders->action != GOE_FLIGHT_NONE;
@@ -533,6 +552,8 @@ static void note_obstacle_and_landing(orders_t *orders, const goe_flight_assessm
     orders->from_landing = (goes_on && orders->from_landing) || orders->autopilot->landing;
     orders->had_failsafe = goes_on && (orders->had_failsafe || (orders->sent && in_failsafe(orders)));
     orders->slot = assessment->avoided < 0 ? -1 : (int)(uint8_t)assessment->avoided;
+    orders->named = goes_on ? orders->named : 0u;
+    orders->named |= orders->slot < 0 ? 0u : UINT32_C(1) << (unsigned)orders->slot;
 }
 
 void orders_follow(orders_t *orders, const goe_flight_assessment_t *assessment, const goe_mavlink_own_t *own,
@@ -543,6 +564,8 @@ void orders_follow(orders_t *orders, const goe_flight_assessment_t *assessment, 
     forget_after_restart(orders);
     const bool is_new = assessment->action != orders->action;
     const int slot_before = orders->slot;
+    const bool gave_up_before = orders->gave_up;
+    watch_obstacles(orders);
     if (assessment->action != GOE_FLIGHT_NONE) {
         note_obstacle_and_landing(orders, assessment);
     }
@@ -553,7 +576,8 @@ void orders_follow(orders_t *orders, const goe_flight_assessment_t *assessment, 
         end(orders, now_us);
     } else if (is_new) {
         begin(orders, assessment);
-    } else if (orders->slot != slot_before) {
+    } else if (assessment->action != GOE_FLIGHT_NONE &&
+               (orders->slot != slot_before || orders->gave_up != gave_up_before)) {
         turn(orders);
     }
     if (assessment->action == GOE_FLIGHT_NONE) {

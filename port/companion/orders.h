@@ -41,11 +41,14 @@ typedef struct {
     int64_t sent_us;    /* own time of the latest command */
     int64_t traffic_us; /* own time of the latest traffic messages */
     bool gave_up;       /* the layer gave up an obstacle since then: it is not known to be passed */
-    bool from_landing;  /* the autopilot was landing since the first of the active orders: no mode is resumed */
-    bool had_failsafe;  /* the same of a failsafe */
-    bool has_traffic;   /* arduplane: traffic was sent since then */
-    bool broke_off;     /* arduplane: an abort of the present landing was requested */
-    uint16_t command;   /* command whose acknowledgement is awaited; 0: none */
+    uint32_t named; /* slots of the obstacles that the order was about since then, as bits; without those seen passed */
+    uint32_t ids[GOE_FLIGHT_SLOTS]; /* of the obstacles, at the assessment before */
+    uint16_t evicted;               /* the flight layer's count, then */
+    bool from_landing; /* the autopilot was landing since the first of the active orders: no mode is resumed */
+    bool had_failsafe; /* the same of a failsafe */
+    bool has_traffic;  /* arduplane: traffic was sent since then */
+    bool broke_off;    /* arduplane: an abort of the present landing was requested */
+    uint16_t command;  /* command whose acknowledgement is awaited; 0: none */
     mode_watch_t watch;
     screen_t *screen;    /* null: none */
     order_log_t *log;    /* null: none */

@@ -299,6 +299,48 @@ static void an_obstacle_that_was_given_up_is_not_forgotten(void) {
     TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_SET_MODE));
 }
 
+/* Two obstacles, 200 m ahead. The order is about the first, then about the second one. */
+static void turn_to_another(void) {
+    tearDown();
+    setUp();
+    know_obstacle(true);
+    flight.slot[0].id = 5;
+    flight.slot[0].center_ne_m[0] = 200.0f;
+    flight.slot[3] = flight.slot[0];
+    flight.slot[3].id = 7;
+    autopilot.position.vx = 20.0f;
+    ordered();
+    assessment.avoided = 3;
+    go_on(2, LOITER);
+}
+
+static void check_resumed(bool resumed) {
+    go_on(2, LOITER);
+    decide(GOE_FLIGHT_NONE);
+    go_on(1, LOITER);
+    TEST_ASSERT_EQUAL_INT(resumed ? 1 : 0, count_commands(MAV_CMD_DO_SET_MODE));
+}
+
+static void an_obstacle_whose_track_ends_under_another_order_may_be_ahead(void) {
+    for (int passed = 0; passed < 2; passed++) {
+        turn_to_another();
+        autopilot.position.x = passed ? 230.0f : 100.0f;
+        go_on(1, LOITER);
+        flight.slot[0].used = false;
+        check_resumed(passed != 0);
+    }
+}
+
+/* Another id alone is the tracker's new name of the same obstacle. */
+static void an_obstacle_that_another_evicts_may_be_ahead(void) {
+    for (int evicted = 0; evicted < 2; evicted++) {
+        turn_to_another();
+        flight.slot[0].id = 9;
+        flight.counters.evicted = (uint16_t)(flight.counters.evicted + evicted);
+        check_resumed(evicted == 0);
+    }
+}
+
 /* With one heartbeat a second the mode is known late: the loiter of the previous order is not the mode before the new one, and the
  * mission that returns is not a pilot's choice. */
 static void a_second_order_within_a_heartbeat_of_the_first(void) {
@@ -925,6 +967,9 @@ static void the_log_follows_the_obstacle_of_the_order(void) {
     TEST_ASSERT_EQUAL_UINT(GOE_FLIGHT_RIGHT, read.action);
     CHECK_SAME(1.0f, read.course_ne[0]);
     CHECK_SAME(0.0f, read.course_ne[1]);
+    flight.slot[0].used = false; /* the order is about slot 3 */
+    go_on(1, LOITER);
+    TEST_ASSERT_FALSE(order_log_read(folder, &read));
     assessment.avoided = -1;
     go_on(1, LOITER);
     TEST_ASSERT_FALSE(order_log_read(folder, &read));
@@ -983,6 +1028,8 @@ int main(void) {
     RUN_TEST(another_action_may_be_accepted_where_one_was_denied);
     RUN_TEST(a_go_around_carries_the_height_that_the_top_requires);
     RUN_TEST(an_obstacle_that_was_given_up_is_not_forgotten);
+    RUN_TEST(an_obstacle_whose_track_ends_under_another_order_may_be_ahead);
+    RUN_TEST(an_obstacle_that_another_evicts_may_be_ahead);
     RUN_TEST(a_go_around_after_a_side_raises_the_target);
     RUN_TEST(a_go_around_after_a_side_that_was_denied_is_one);
     RUN_TEST(no_landing_is_resumed);
