@@ -12,6 +12,7 @@
 #define TARGET_MOVED_M 5.0f     /* ... and only when it has moved by so much */
 #define RESUMES_MAX 5           /* requests for the previous mode, until acknowledged */
 #define BEATS_TO_RESUME 2u      /* heartbeats that may still show the mode of the order before */
+#define BEATS_TO_HOLD 2u        /* heartbeats after the end of an order within which Hold may still show */
 #define SURE_SIGMA 2.0f         /* of a top */
 #define LEFT_OFF_US 2000000     /* by which both clocks may disagree on the time since an order that was left */
 #define LEFT_OLD_US 120000000   /* an order that was left longer ago is forgotten */
@@ -243,9 +244,11 @@ static const char *find_stay(const orders_t *orders, goe_flight_action_t ended) 
 /* Back into the previous mode, once the obstacle is behind. */
 static void resume(orders_t *orders, goe_flight_action_t ended, int64_t now_us) {
     const char *stay = find_stay(orders, ended);
+    const uint32_t mode = orders->autopilot->custom_mode;
+    const bool may_follow = orders->placed && !orders->watch.led && mode == orders->watch.mode_before;
     orders->resumes_left = 0;
     if (orders->config->reaction_resume == 0 || orders->silenced || orders->watch.mode_before == PX4_AUTO_LOITER ||
-        orders->autopilot->custom_mode != PX4_AUTO_LOITER) {
+        (mode != PX4_AUTO_LOITER && !may_follow)) {
         return;
     }
     if (stay != NULL) {
@@ -253,11 +256,33 @@ static void resume(orders_t *orders, goe_flight_action_t ended, int64_t now_us) 
         return;
     }
     orders->resumes_left = RESUMES_MAX;
-    ask_for_mode_before(orders, now_us);
+    orders->awaits_hold = may_follow;
+    orders->awaited_at = orders->autopilot->heartbeats;
+    if (!may_follow) {
+        ask_for_mode_before(orders, now_us);
+    }
+}
+
+/* Heartbeats come once a second: an order may end before one shows the Hold that it leads to. */
+static void await_hold(orders_t *orders, int64_t now_us) {
+    const uint32_t mode = orders->autopilot->custom_mode;
+    const bool is_late = orders->autopilot->heartbeats - orders->awaited_at > BEATS_TO_HOLD;
+    orders->resumed_at = orders->autopilot->heartbeats; /* Hold is not the mode before an order that comes with it */
+    if (orders->resumes_left > 0 && mode == PX4_AUTO_LOITER) {
+        orders->awaits_hold = false;
+        ask_for_mode_before(orders, now_us);
+    } else if (orders->resumes_left == 0 || mode != orders->watch.mode_before || is_late) {
+        orders->awaits_hold = false;
+        orders->resumes_left = 0;
+        event("the order ended before Hold: the mode before is not requested");
+    }
 }
 
 static void go_on_resuming(orders_t *orders, int64_t now_us) {
     orders->resumes_left = in_failsafe(orders) ? 0 : orders->resumes_left;
+    if (orders->awaits_hold) {
+        await_hold(orders, now_us);
+    }
     if (orders->resumes_left > 0 && is_unanswered(orders, MAV_CMD_DO_SET_MODE, now_us) &&
         orders->autopilot->custom_mode == PX4_AUTO_LOITER) {
         ask_for_mode_before(orders, now_us);
@@ -487,6 +512,7 @@ static void begin(orders_t *orders, const goe_flight_assessment_t *assessment) {
     if (orders->action == GOE_FLIGHT_NONE) {
         begin_first(orders);
     }
+    orders->awaits_hold = false;
     orders->denied = false; /* a side that is denied says nothing of a go-around */
     orders->resumes_left = 0;
     orders->orders++;

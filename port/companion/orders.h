@@ -59,6 +59,8 @@ typedef struct {
     int64_t unix_us, boot_us;           /* its time by the UNIX clock and by the autopilot's clock */
     int resumes_left;                   /* remaining requests for the previous mode */
     unsigned resumed_at;                /* count of heartbeats at the latest of these requests */
+    bool awaits_hold;    /* the order ended before a heartbeat showed Hold: the first of these requests waits for it */
+    unsigned awaited_at; /* count of heartbeats then */
     unsigned long restarts_counted;
     unsigned long orders, refused; /* numbers of orders and of refusals */
 } orders_t;

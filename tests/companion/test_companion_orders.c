@@ -247,6 +247,58 @@ static void the_mode_before_comes_back_once_the_obstacle_is_passed(void) {
     TEST_ASSERT_EQUAL_INT(4, count_commands(MAV_CMD_DO_SET_MODE)); /* five in total */
 }
 
+/* Of a single assessment, acknowledged. */
+static void ordered_briefly(void) {
+    tearDown();
+    setUp();
+    know_obstacle(true);
+    decide(GOE_FLIGHT_LEFT);
+    go_on(1, MISSION);
+    TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_REPOSITION));
+    answer(MAV_CMD_DO_REPOSITION, MAV_RESULT_ACCEPTED);
+    decide(GOE_FLIGHT_NONE);
+    go_on(1, MISSION);
+    TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_SET_MODE));
+}
+
+/* Heartbeats come once a second. */
+static void the_mode_before_comes_back_when_hold_shows_after_the_order(void) {
+    ordered_briefly();
+    go_on(10, MISSION);
+    TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_SET_MODE));
+    go_on(10, LOITER);
+    TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_SET_MODE));
+    CHECK_SAME(4.0f, mavlink_msg_command_long_get_param3(&latest));
+    answer(MAV_CMD_DO_SET_MODE, MAV_RESULT_ACCEPTED);
+    go_on(30, LOITER);
+    TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_SET_MODE));
+}
+
+/* A Hold that shows later, or after another mode, is a pilot's. */
+static void a_hold_long_after_the_order_is_a_pilots(void) {
+    static const uint32_t modes[] = {MISSION, POSITION};
+    for (size_t i = 0; i < 2; i++) {
+        ordered_briefly();
+        go_on(i == 0 ? 30 : 10, modes[i]);
+        go_on(30, LOITER);
+        TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_SET_MODE));
+    }
+}
+
+static void an_order_right_after_a_short_one_goes_back_to_the_same_mode(void) {
+    ordered_briefly();
+    autopilot.custom_mode = LOITER;
+    autopilot.heartbeats++;
+    decide(GOE_FLIGHT_RIGHT);
+    go_on(1, LOITER);
+    TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_REPOSITION));
+    answer(MAV_CMD_DO_REPOSITION, MAV_RESULT_ACCEPTED);
+    go_on(20, LOITER);
+    decide(GOE_FLIGHT_NONE);
+    go_on(1, LOITER);
+    TEST_ASSERT_EQUAL_INT(1, count_commands(MAV_CMD_DO_SET_MODE));
+}
+
 /* It is out of sight, or the aircraft has turned away: the obstacle may lie ahead on the way back. */
 static void the_aircraft_stays_where_the_obstacle_is_not_known_to_be_passed(void) {
     know_obstacle(true);
@@ -1052,6 +1104,9 @@ int main(void) {
     RUN_TEST(a_side_that_was_not_sent_does_not_silence_a_go_around);
     RUN_TEST(a_pilot_is_not_fought);
     RUN_TEST(the_mode_before_comes_back_once_the_obstacle_is_passed);
+    RUN_TEST(the_mode_before_comes_back_when_hold_shows_after_the_order);
+    RUN_TEST(a_hold_long_after_the_order_is_a_pilots);
+    RUN_TEST(an_order_right_after_a_short_one_goes_back_to_the_same_mode);
     RUN_TEST(the_aircraft_stays_where_the_obstacle_is_not_known_to_be_passed);
     RUN_TEST(another_obstacle_in_the_slot_is_not_the_one_that_was_avoided);
     RUN_TEST(a_second_order_within_a_heartbeat_of_the_first);
