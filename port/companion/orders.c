@@ -32,6 +32,13 @@ void orders_init(orders_t *orders, wire_t *wire, const companion_config_t *confi
     orders->slot = -1;
 }
 
+/* Whether the aircraft is where the order, or one of before a restart, has led it, and may go back by itself. Of an order that was never
+ * sent or that the autopilot denied, Hold is a pilot's choice. */
+static bool is_led(const orders_t *orders) {
+    const bool is_obeyed = orders->left.active || (orders->sent && !orders->denied);
+    return is_obeyed && !orders->overruled && !orders->gave_up && !orders->from_landing && !orders->had_failsafe;
+}
+
 /* A row of the log. */
 static void put_log(orders_t *orders, const char *what, const char *why) {
     const goe_flight_assessment_t *a = &orders->assessment;
@@ -54,8 +61,7 @@ static void put_log(orders_t *orders, const char *what, const char *why) {
     row.left.boot_us = orders->boot_us;
     row.left.action = (unsigned)orders->action;
     row.left.mode_before = orders->watch.mode_before;
-    row.left.active = orders->active.active && !orders->overruled && !orders->gave_up && !orders->from_landing &&
-                      !orders->had_failsafe;
+    row.left.active = orders->active.active && is_led(orders);
     order_log_put(orders->log, &row);
 }
 
@@ -645,10 +651,10 @@ void orders_take(orders_t *orders, const mavlink_message_t *message) {
     orders->refused++;
     event("the autopilot refuses the order (result %u)", answer.result);
     screen_show(orders->screen, SCREEN_SILENCE, MAV_SEVERITY_WARNING, "GOE: autopilot refuses the order");
-    put_log(orders, "refused", "");
     if (answer.result == MAV_RESULT_DENIED || answer.result == MAV_RESULT_UNSUPPORTED) {
         orders->placed = orders->placed && orders->watch.led;
         orders->denied = orders->silenced = true; /* it will not think better of it; others may be tried again */
         orders->command = 0;
     }
+    put_log(orders, "refused", "");
 }

@@ -968,6 +968,7 @@ static void the_log_shows_whether_an_order_is_active(void) {
     TEST_ASSERT_FALSE(order_log_read(folder, &read));
     decide(GOE_FLIGHT_NONE);
     go_on(1, MISSION);
+    autopilot.custom_mode = MISSION;
     autopilot.landing = true; /* a landing is not resumed either */
     decide(GOE_FLIGHT_LEFT);
     go_on(1, MISSION);
@@ -984,6 +985,36 @@ static void the_log_shows_whether_an_order_is_active(void) {
     (void)fputs("d\n", log.stream);
     (void)fflush(log.stream);
     TEST_ASSERT_FALSE(order_log_read(folder, &read));
+    orders.log = NULL;
+    order_log_close(&log);
+    (void)remove(path);
+    (void)rmdir(folder);
+}
+
+/* A restarted companion leaves the pilot's Hold alone. */
+static void the_log_has_no_order_that_led_nowhere(void) {
+    char folder[] = "/tmp/goe_orders_XXXXXX", path[64];
+    order_log_t log = {NULL};
+    order_left_t read;
+    TEST_ASSERT_NOT_NULL(mkdtemp(folder));
+    (void)snprintf(path, sizeof path, "%s/orders.csv", folder);
+    TEST_ASSERT_TRUE(order_log_open(&log, folder));
+    orders.log = &log;
+    know_obstacle(true);
+    autopilot.base_mode = 0; /* hindered */
+    decide(GOE_FLIGHT_LEFT);
+    go_on(1, MISSION);
+    TEST_ASSERT_FALSE(order_log_read(folder, &read));
+    autopilot.base_mode = MAV_MODE_FLAG_SAFETY_ARMED;
+    go_on(1, MISSION);
+    TEST_ASSERT_TRUE(order_log_read(folder, &read));
+    answer(MAV_CMD_DO_REPOSITION, MAV_RESULT_TEMPORARILY_REJECTED); /* it is repeated */
+    TEST_ASSERT_TRUE(order_log_read(folder, &read));
+    answer(MAV_CMD_DO_REPOSITION, MAV_RESULT_DENIED);
+    TEST_ASSERT_FALSE(order_log_read(folder, &read));
+    decide(GOE_FLIGHT_RIGHT);
+    go_on(1, MISSION);
+    TEST_ASSERT_TRUE(order_log_read(folder, &read));
     orders.log = NULL;
     order_log_close(&log);
     (void)remove(path);
@@ -1063,6 +1094,7 @@ int main(void) {
     RUN_TEST(an_order_that_was_taken_over_is_in_the_next_log);
     RUN_TEST(a_recovery_into_another_mode_is_the_autopilots);
     RUN_TEST(the_log_shows_whether_an_order_is_active);
+    RUN_TEST(the_log_has_no_order_that_led_nowhere);
     RUN_TEST(the_log_follows_the_obstacle_of_the_order);
     RUN_TEST(what_hinders_an_order_may_end);
     RUN_TEST(an_order_that_is_disarmed_is_not_repeated);
