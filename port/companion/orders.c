@@ -634,7 +634,7 @@ void orders_follow(orders_t *orders, const goe_flight_assessment_t *assessment, 
 
 void orders_take(orders_t *orders, const mavlink_message_t *message) {
     mavlink_command_ack_t answer;
-    if (message->msgid != MAVLINK_MSG_ID_COMMAND_ACK || message->sysid != orders->autopilot->system ||
+    if (message->msgid != MAVLINK_MSG_ID_COMMAND_ACK || !autopilot_is_from(orders->autopilot, message) ||
         orders->command == 0) {
         return;
     }

@@ -75,7 +75,7 @@ void orders_take_over(orders_t *orders, const order_left_t *left);
 void orders_follow(orders_t *orders, const goe_flight_assessment_t *assessment, const goe_mavlink_own_t *own,
                    int64_t now_us);
 
-/* Processes a COMMAND_ACK of the autopilot; ignores other messages. */
+/* Processes a COMMAND_ACK of the autopilot; ignores those of other components, and other messages. */
 void orders_take(orders_t *orders, const mavlink_message_t *message);
 
 #endif

@@ -55,6 +55,7 @@ void setUp(void) {
     autopilot.custom_mode = MISSION;
     autopilot.origin_given = true;
     autopilot.heartbeats = 10;
+    autopilot.heartbeat_us = 1000000;
     assessment.worst = assessment.avoided = -1;
     now_us = 1000000;
     orders_init(&orders, &wire, &config, &autopilot, &flight);
@@ -113,11 +114,13 @@ static void go_on(int assessments, uint32_t mode) {
     }
 }
 
-static void answer(uint16_t command, uint8_t result) {
+static void answer_as(uint8_t system, uint8_t component, uint8_t to, uint16_t command, uint8_t result) {
     mavlink_message_t message;
-    (void)mavlink_msg_command_ack_pack(SYSTEM, MAV_COMP_ID_AUTOPILOT1, &message, command, result, 0, 0, 0, 0);
+    (void)mavlink_msg_command_ack_pack(system, component, &message, command, result, 0, 0, 0, to);
     orders_take(&orders, &message);
 }
+
+static void answer(uint16_t command, uint8_t result) { answer_as(SYSTEM, MAV_COMP_ID_AUTOPILOT1, 0, command, result); }
 
 /* An obstacle in the flight layer, or one that it has given up. */
 static void know_obstacle(bool known) {
@@ -157,6 +160,21 @@ static void an_order_is_repeated_until_it_is_acknowledged(void) {
     answer(MAV_CMD_DO_REPOSITION, MAV_RESULT_ACCEPTED);
     go_on(20, LOITER);
     TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_REPOSITION));
+}
+
+/* A camera or a gimbal of the same system knows nothing of the order, nor does an answer to another component's command. */
+static void only_the_autopilots_answer_to_the_companion_counts(void) {
+    wire.component = MAV_COMP_ID_OBSTACLE_AVOIDANCE;
+    decide(GOE_FLIGHT_LEFT);
+    go_on(1, MISSION);
+    answer_as(SYSTEM, MAV_COMP_ID_GIMBAL, 0, MAV_CMD_DO_REPOSITION, MAV_RESULT_UNSUPPORTED);
+    answer_as(SYSTEM + 1, MAV_COMP_ID_AUTOPILOT1, 0, MAV_CMD_DO_REPOSITION, MAV_RESULT_DENIED);
+    answer_as(SYSTEM, MAV_COMP_ID_AUTOPILOT1, MAV_COMP_ID_CAMERA, MAV_CMD_DO_REPOSITION, MAV_RESULT_DENIED);
+    TEST_ASSERT_EQUAL_UINT32(0, (uint32_t)orders.refused);
+    TEST_ASSERT_FALSE(orders.silenced);
+    TEST_ASSERT_EQUAL_UINT16(MAV_CMD_DO_REPOSITION, orders.command);
+    answer_as(SYSTEM, MAV_COMP_ID_AUTOPILOT1, wire.component, MAV_CMD_DO_REPOSITION, MAV_RESULT_ACCEPTED);
+    TEST_ASSERT_EQUAL_UINT16(0, orders.command);
 }
 
 static void a_target_that_moves_is_sent_once_a_second_at_most(void) {
@@ -1130,6 +1148,7 @@ int main(void) {
     RUN_TEST(a_restarted_companion_goes_back_once_the_logged_obstacle_is_passed);
     RUN_TEST(an_order_of_another_flight_is_not_taken_over);
     RUN_TEST(an_order_is_repeated_until_it_is_acknowledged);
+    RUN_TEST(only_the_autopilots_answer_to_the_companion_counts);
     RUN_TEST(a_target_that_moves_is_sent_once_a_second_at_most);
     RUN_TEST(a_denied_order_is_not_repeated);
     RUN_TEST(nothing_goes_out_to_whom_it_is_not_for);
