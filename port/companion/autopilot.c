@@ -33,6 +33,8 @@
 #define SPEED_MAX_M_S 1.0e3f
 #define HEIGHT_MAX_M 1.0e5f
 #define DOWNWARD MAV_SENSOR_ROTATION_PITCH_270
+#define UPRIGHT_MIN 0.7f  /* cosine of the tilt up to which a distance downwards is a height */
+#define SIGNAL_INVALID 1u /* of DISTANCE_SENSOR.signal_quality; 0 is unknown */
 
 void autopilot_init(autopilot_t *autopilot, const companion_config_t *config, goe_flight_t *flight, wire_t *wire) {
     (void)memset(autopilot, 0, sizeof *autopilot);
@@ -333,9 +335,11 @@ static float upright(const autopilot_t *autopilot) {
 static void take_distance(autopilot_t *autopilot, const mavlink_message_t *message) {
     mavlink_distance_sensor_t sensor;
     mavlink_msg_distance_sensor_decode(message, &sensor);
-    const float height_m = 0.01f * (float)sensor.current_distance * upright(autopilot);
-    if (sensor.orientation != DOWNWARD || sensor.current_distance <= sensor.min_distance ||
-        sensor.current_distance >= sensor.max_distance || !(height_m > 0.0f) || !autopilot->has_position) {
+    const float share = upright(autopilot);
+    const float height_m = 0.01f * (float)sensor.current_distance * share;
+    if (sensor.orientation != DOWNWARD || sensor.signal_quality == SIGNAL_INVALID || !(share >= UPRIGHT_MIN) ||
+        sensor.current_distance <= sensor.min_distance || sensor.current_distance >= sensor.max_distance ||
+        !autopilot->has_position) {
         return;
     }
     autopilot->range_finder_down_m = autopilot->position.z + height_m;

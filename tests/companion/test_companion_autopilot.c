@@ -321,21 +321,38 @@ static void a_counter_that_rises_with_a_step_adds_no_reset(void) {
     TEST_ASSERT_EQUAL_UINT16(0, flight.counters.lost);
 }
 
-/* A range finder in a bank of 60 degrees measures twice the height. */
-static void a_range_finder_is_taken_upright(void) {
+/* Whether a range finder that measures 40 m, in a bank of `bank_deg`, gives the ground. */
+static bool is_ground(float bank_deg, uint8_t quality) {
     mavlink_message_t message;
     mavlink_distance_sensor_t sensor;
+    const float half = 0.5f * 0.017453293f * bank_deg;
     (void)memset(&sensor, 0, sizeof sensor);
     fly(1);
-    autopilot.attitude.q1 = cosf(0.5f * 1.0471976f);
-    autopilot.attitude.q2 = sinf(0.5f * 1.0471976f);
+    autopilot.has_range_finder = false;
+    autopilot.attitude.q1 = cosf(half);
+    autopilot.attitude.q2 = sinf(half);
     sensor.time_boot_ms = boot_ms;
     sensor.max_distance = 5000;
     sensor.current_distance = 4000;
+    sensor.signal_quality = quality;
     sensor.orientation = MAV_SENSOR_ROTATION_PITCH_270;
     (void)mavlink_msg_distance_sensor_encode(SYSTEM, MAV_COMP_ID_AUTOPILOT1, &message, &sensor);
     autopilot_take(&autopilot, &message, own_us);
-    CHECK_CLOSE(1e-3, 20.0f, autopilot.range_finder_down_m - autopilot.position.z);
+    return autopilot.has_range_finder;
+}
+
+/* In a bank of 40 degrees it measures 1.3 times the height. In a steeper one it looks far aside, or past the horizon. */
+static void a_range_finder_is_taken_upright(void) {
+    TEST_ASSERT_TRUE(is_ground(-40.0f, 0));
+    CHECK_CLOSE(1e-3, 40.0f * cosf(40.0f * 0.017453293f), autopilot.range_finder_down_m - autopilot.position.z);
+    TEST_ASSERT_FALSE(is_ground(60.0f, 0));
+    TEST_ASSERT_FALSE(is_ground(180.0f, 0));
+}
+
+static void an_invalid_signal_of_a_range_finder_is_none(void) {
+    TEST_ASSERT_TRUE(is_ground(0.0f, 0)); /* it reports no quality */
+    TEST_ASSERT_TRUE(is_ground(0.0f, 100));
+    TEST_ASSERT_FALSE(is_ground(0.0f, 1));
 }
 
 static void show_text(const char *text) {
@@ -599,6 +616,7 @@ int main(void) {
     RUN_TEST(odometry_counts_resets_that_show_no_step);
     RUN_TEST(a_counter_that_rises_with_a_step_adds_no_reset);
     RUN_TEST(a_range_finder_is_taken_upright);
+    RUN_TEST(an_invalid_signal_of_a_range_finder_is_none);
     RUN_TEST(the_end_of_an_avoidance_is_read_from_its_text);
     RUN_TEST(a_failsafe_is_read_from_the_heartbeat);
     RUN_TEST(approach_and_touchdown_are_read);
