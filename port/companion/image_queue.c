@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#define WAIT_MAX_US 500000u /* longer than the pose of any link is behind; its time is a wrong one then */
+#define WAIT_MAX_US 500000 /* longer than the pose of any link is behind; its time is a wrong one then */
 
 void image_queue_clear(image_queue_t *queue) { queue->count = 0; }
 
@@ -42,7 +42,9 @@ static bool give(camera_image_t *image, goe_flight_t *flight, image_taken_t take
 void image_queue_run(image_queue_t *queue, goe_flight_t *flight, uint32_t now_us, image_taken_t taken, void *user) {
     int i = 0;
     while (i < queue->count) {
-        const bool waits_long = now_us - queue->image[i].frame.arrival_us > WAIT_MAX_US;
+        const int32_t waited_us =
+            (int32_t)(now_us - queue->image[i].frame.arrival_us); /* < 0: the clock was corrected */
+        const bool waits_long = waited_us > WAIT_MAX_US;
         if (give(&queue->image[i], flight, taken, user)) {
             drop(queue, i);
         } else if (waits_long) {

@@ -4,6 +4,7 @@
 
 #include "autopilot.h"
 #include "check.h"
+#include "image_queue.h"
 #include "receiver.h"
 
 #define OTHER_SYSTEM 9
@@ -341,6 +342,34 @@ static bool is_ground(float bank_deg, uint8_t quality) {
     return autopilot.has_range_finder;
 }
 
+static unsigned taken;
+
+static void count_taken(void *user, const goe_flight_frame_t *frame, goe_flight_status_t status) {
+    (void)user;
+    (void)frame;
+    taken += status == GOE_FLIGHT_OK ? 1u : 0u;
+}
+
+/* The image then arrives later than now. */
+static void an_image_outlasts_a_clock_that_is_corrected_backwards(void) {
+    static image_queue_t queue;
+    static camera_image_t image;
+    taken = 0;
+    fly(20);
+    image_queue_clear(&queue);
+    image.frame.arrival_us = boot_ms * 1000u + 11000u;
+    image.frame.capture_us = image.frame.sent_us = boot_ms * 1000u + 5000u; /* no pose has come so far */
+    image_queue_add(&queue, &image);
+    for (int corrected = 0; corrected < 2; corrected++) {
+        image_queue_run(&queue, &flight, image.frame.arrival_us + (corrected ? 0u - 500u : 1000u), count_taken, NULL);
+        TEST_ASSERT_EQUAL_INT(1, queue.count);
+    }
+    fly(1);
+    image_queue_run(&queue, &flight, boot_ms * 1000u, count_taken, NULL);
+    TEST_ASSERT_EQUAL_UINT(1, taken);
+    TEST_ASSERT_EQUAL_UINT32(0, (uint32_t)queue.given_up);
+}
+
 /* In a bank of 40 degrees it measures 1.3 times the height. In a steeper one it looks far aside, or past the horizon. */
 static void a_range_finder_is_taken_upright(void) {
     TEST_ASSERT_TRUE(is_ground(-40.0f, 0));
@@ -615,6 +644,7 @@ int main(void) {
     RUN_TEST(a_time_ahead_of_the_clock_is_not_taken);
     RUN_TEST(odometry_counts_resets_that_show_no_step);
     RUN_TEST(a_counter_that_rises_with_a_step_adds_no_reset);
+    RUN_TEST(an_image_outlasts_a_clock_that_is_corrected_backwards);
     RUN_TEST(a_range_finder_is_taken_upright);
     RUN_TEST(an_invalid_signal_of_a_range_finder_is_none);
     RUN_TEST(the_end_of_an_avoidance_is_read_from_its_text);
