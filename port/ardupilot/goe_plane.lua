@@ -4,7 +4,8 @@ goe_plane.lua: ArduPlane flies past what goe_companion has found. SPDX-License-I
 The companion (reaction mode "off", reports on) sends GOE_HAZARD for each obstacle and GOE_STATUS once a second. An obstacle with
 an order makes this script fly to the order's target in GUIDED, and back into the mode before when the obstacle is passed. Only
 from AUTO and CRUISE; GO_AROUND only while landing in AUTO, or after a side: then it raises the target. A landing is not gone on with
-after a side: from there the way to the runway is another one. Whoever chooses another mode meanwhile is not fought.
+after a side: from there the way to the runway is another one. Whoever chooses another mode meanwhile is not fought, nor
+whoever sends the aircraft elsewhere in GUIDED.
 
 Passed is an obstacle that the companion still reports, without an order any more. If it was given up, after HOLD, or if the
 companion falls silent, the aircraft stays at the target, circling, and a text warns the pilot: what is not seen may lie ahead.
@@ -40,6 +41,7 @@ local SILENCE_MS = 3000          -- a link may lose two GOE_STATUS
 local RENEW_MS = 1000            -- the target moves as the estimate does
 local DOWN_FAR_M = 100000        -- a height beyond this is none
 local BELOW_M = 10               -- no order leads down: so far below the aircraft a target may lie by noise
+local ELSEWHERE_M = 20         -- a target that far from the one of the order is another's: far above rounding
 local ABOVE_M = 150              -- a climb over the highest mast that the companion's defaults expect
 local TEXT_WARNING, TEXT_INFO = 4, 6
 local FENCE_ALT_MAX, FENCE_CIRCLE, FENCE_POLYGON, FENCE_ALT_MIN = 1, 2, 4, 8 -- bits of FENCE_TYPE
@@ -64,7 +66,7 @@ local own_system = param:get("MAV_SYSID") or param:get("SYSID_THISMAV") or 1
 local mode_before -- while this script has changed the mode
 local mode_led -- in which the order is flown: GUIDED, or AUTO after a go-around
 local from_landing = false -- it was landing then
-local overruled = false -- another mode was chosen: until the order ends
+local overruled = false -- another mode or another target was chosen: until the order ends
 local held -- lat, lon of the latest target that was flown to
 local standing -- the order: named, doubts, action, lat, lon, down; over_ms: since then the companion gives none.
 -- named: by its place in the table, each obstacle that the order was about: number; is_past: it is reported without an order;
@@ -480,6 +482,17 @@ local function fly_to_target()
     end
 end
 
+-- Whether somebody else has given GUIDED a target: the mode does not show that.
+local function is_sent_elsewhere()
+    local place, there = ahrs:get_origin(), vehicle:get_target_location()
+    if not held or not place or not there then
+        return false
+    end
+    place:lat(held.lat)
+    place:lng(held.lon)
+    return place:get_distance(there) > ELSEWHERE_M
+end
+
 -- Above home, over the obstacle's top; nil: the autopilot's own height for an aborted landing.
 local function height_to_climb_m()
     local place, here = origin_at_height(), ahrs:get_location()
@@ -518,18 +531,26 @@ local function begin_order()
     end
 end
 
+local function leave_to_others(what)
+    mode_before, mode_led = nil, nil
+    overruled = true
+    say(TEXT_INFO, "left to whoever chose the " .. what)
+end
+
 local function follow_order()
     if overruled then
         return
     end
     if mode_led and vehicle:get_mode() ~= mode_led then
-        mode_before, mode_led = nil, nil
-        overruled = true
-        say(TEXT_INFO, "left to whoever chose the mode")
+        leave_to_others("mode")
     elseif not mode_before then
         begin_order()
     elseif millis() - sent_ms > RENEW_MS then
-        fly_to_target()
+        if is_sent_elsewhere() then
+            leave_to_others("target")
+        else
+            fly_to_target()
+        end
     end
 end
 
@@ -553,7 +574,7 @@ local function forget_order()
 end
 
 local function end_order()
-    if mode_before and vehicle:get_mode() == GUIDED then
+    if mode_before and vehicle:get_mode() == GUIDED and not is_sent_elsewhere() then
         if is_passed() then
             say(TEXT_INFO, "past it")
             vehicle:set_mode(mode_before)

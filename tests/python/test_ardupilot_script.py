@@ -88,6 +88,9 @@ vehicle = { get_mode = function() return py.mode end,
                 if py.mode ~= 15 then return false end
                 py.fly_to(place.values.lat, place.values.lng, place.values.alt)
                 return true
+            end,
+            get_target_location = function()
+                if py.mode == 15 and py.target then return somewhere(py.target[0], py.target[1], py.target[2]) end
             end }
 """
 
@@ -130,6 +133,7 @@ class Plane:
     heights: list[float | None] = field(default_factory=list)  # parameters of the commands
     modes: list[int] = field(default_factory=list)
     places: list[tuple[int, int, int]] = field(default_factory=list)
+    target: tuple[int, int, int] | None = None  # of GUIDED
     registered: list[int] = field(default_factory=list)
     waiting: list[tuple[bytes, int]] = field(default_factory=list)
     stamp: int = 1000000000000
@@ -164,7 +168,8 @@ class Plane:
         self.modes.append(mode)
 
     def fly_to(self, lat: int, lon: int, alt: int) -> None:
-        self.places.append((lat, lon, alt))
+        self.target = (lat, lon, alt)
+        self.places.append(self.target)
 
     def add_parameter(self, name: bytes, value: float) -> None:
         self.parameters.setdefault(name.decode(), value)
@@ -334,6 +339,27 @@ def test_a_pilot_who_chooses_a_mode_is_not_fought(plane: Plane) -> None:
     plane.send(plane.hazard())
     plane.run(0.2, status=LEFT)
     assert plane.mode == GUIDED  # a new order counts again
+
+
+@pytest.mark.parametrize(("moved_m", "left_to_him"), [(19, False), (21, True)])
+@pytest.mark.parametrize("at_end", [True, False])
+def test_an_operator_who_sends_it_elsewhere_is_not_fought(
+    plane: Plane, moved_m: float, left_to_him: bool, at_end: bool
+) -> None:
+    """By another target in GUIDED; also right before the end of the order."""
+    plane.send(plane.hazard())
+    plane.run(1.2, status=LEFT)
+    sent = len(plane.places)
+    lat, lon, alt = plane.places[-1]
+    plane.target = (lat + round(moved_m * METER), lon, alt)
+    if not at_end:
+        plane.run(3.0, status=LEFT)
+        assert (len(plane.places) == sent) == left_to_him
+        assert sum("whoever chose the target" in text for text in plane.texts) == left_to_him
+    plane.pass_by()
+    assert plane.mode == (GUIDED if left_to_him else AUTO)
+    plane.run(3.0, status=0)
+    assert plane.mode == (GUIDED if left_to_him else AUTO)
 
 
 def test_silence_does_not_send_it_back_towards_the_obstacle(plane: Plane) -> None:
