@@ -1,10 +1,12 @@
 /* goe_companion: obstacles for a stock autopilot, from a computer next to it. SPDX-License-Identifier: MIT */
 #include <errno.h>
+#include <fcntl.h>
 #include <popt.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "companion.h"
 #include "companion_config.h"
@@ -41,6 +43,18 @@ static void catch_signals(void) {
         }
     }
     (void)signal(SIGPIPE, SIG_IGN);
+}
+
+/* A stream that the caller has closed gives its number to the next file or socket: texts would go to the autopilot. Each is opened for
+ * the wrong direction, so that reading and printing still fail. */
+static bool occupy_standard_streams(void) {
+    static const int flags[] = {O_WRONLY, O_RDONLY, O_RDONLY};
+    for (int number = STDIN_FILENO; number <= STDERR_FILENO; number++) {
+        if (fcntl(number, F_GETFD) < 0 && open("/dev/null", flags[number]) != number) {
+            return false;
+        }
+    }
+    return true;
 }
 
 typedef struct {
@@ -123,6 +137,9 @@ int main(int count, const char **arguments) {
         {"version", 'V', POPT_ARG_NONE, &options.version, 0, "print the version", NULL},
         POPT_TABLEEND,
     };
+    if (!occupy_standard_streams()) {
+        return EXIT_NOT_OPENED;
+    }
     poptContext context = poptGetContext(PROGRAM, count, arguments, table, 0);
     poptSetOtherOptionHelp(context, "[OPTIONS] CONFIGURATION");
     const bool good = parse_arguments(context, table, count, arguments, &options);

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 from camera import Camera
-from companion import PROGRAM, ROOT, Companion, Settings, call, is_missing
+from companion import PROGRAM, ROOT, Companion, Settings, call, ini, is_missing
 from links import HOST, free_port
 from loop import HANG_S, Loop
 
@@ -99,6 +99,26 @@ def test_output_that_cannot_be_printed_is_reported(folder: Path) -> None:
             done = subprocess.run([PROGRAM, *words], stdout=full, stderr=subprocess.PIPE, text=True, check=False)
         assert done.returncode == 2
         assert done.stderr == "goe_companion: standard output: cannot be written: No space left on device\n"
+
+
+@pytest.mark.parametrize("closed", ["2>&-", "<&- >&- 2>&-"])
+def test_no_text_goes_to_the_autopilot_where_streams_are_closed(folder: Path, closed: str) -> None:
+    """The number of a closed stream would be that of the next socket. The text is about the key."""
+    (folder / "link.key").write_text("5A" * 32)
+    (folder / "link.key").chmod(0o644)
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as autopilot:
+        autopilot.bind((HOST, 0))
+        autopilot.settimeout(HANG_S)
+        where = f"udpout:{HOST}:{autopilot.getsockname()[1]}"
+        settings = {"link": {"autopilot": where, "key_file": "link.key"}, "detections": {"from": "none"}}
+        (folder / "companion.ini").write_text(ini(settings))
+        words = ["sh", "-c", f'exec "$0" "$1" {closed}', PROGRAM, str(folder / "companion.ini")]
+        with subprocess.Popen(words) as process:
+            try:
+                heard = autopilot.recv(2048)
+            finally:
+                process.kill()
+    assert heard[0] == 0xFD, heard
 
 
 # ------------------------------------------------------------------------------------------------------ configurations
