@@ -1,10 +1,12 @@
 /* Signatures of MAVLink 2. SPDX-License-Identifier: MIT */
 #include "signing.h"
 
+#include <fcntl.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "events.h"
 
@@ -12,6 +14,7 @@
 #define TICK_US 10                         /* ... in so many microseconds */
 #define TIME_MAX (UINT64_C(1) << 48)       /* of a signature */
 #define TEXT_MAX 32
+#define TIME_DIGITS 15 /* of TIME_MAX */
 #define TICKS_PER_S UINT64_C(100000)
 #define AHEAD (20u * TICKS_PER_S)  /* of the time now that is kept: well within the minute that a receiver allows ... */
 #define ENOUGH (10u * TICKS_PER_S) /* ... and what of that is left when another is */
@@ -30,16 +33,16 @@ static uint64_t read_time(const char *path) {
     return time < TIME_MAX ? time : 0u;
 }
 
-/* A new file takes the old one's place at once: a loss of power leaves one of both. */
+/* In place and always as long: a loss of power leaves the old time or the new one. A new file would need a wait for the disk, in flight. */
 static bool write_time(const char *path, uint64_t time) {
-    char fresh[SIGNING_PATH_MAX + 8];
-    (void)snprintf(fresh, sizeof fresh, "%s.new", path);
-    FILE *file = fopen(fresh, "w");
-    if (file == NULL) {
+    char text[TEXT_MAX];
+    const int length = snprintf(text, sizeof text, "%0*" PRIu64 "\n", TIME_DIGITS, time);
+    const int file = open(path, O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+    if (file < 0) {
         return false;
     }
-    const bool written = fprintf(file, "%" PRIu64 "\n", time) > 0;
-    return fclose(file) == 0 && written && rename(fresh, path) == 0;
+    const bool written = pwrite(file, text, (size_t)length, 0) == length;
+    return close(file) == 0 && written;
 }
 
 static void keep_time(signing_t *signing) {

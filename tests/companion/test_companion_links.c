@@ -1,6 +1,7 @@
 /* Senders that a link accepts, and the time of signatures. SPDX-License-Identifier: MIT */
 #include <inttypes.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 
 #include "receiver.h"
 #include "signing.h"
@@ -181,6 +182,26 @@ static void a_time_that_is_none_is_passed_over(void) {
     TEST_ASSERT_EQUAL_UINT64(NOW_TICKS, begin(&signing, UNIX_US));
 }
 
+/* A new file in its place might be empty after a loss of power. */
+static void a_kept_time_takes_the_place_of_the_old_one_in_its_file(void) {
+    signing_t signing;
+    wire_t wire;
+    struct stat before, after;
+    char line[64] = "";
+    const uint8_t key[KEY_BYTES] = {0};
+    (void)memset(&wire, 0, sizeof wire);
+    signing_begin(&signing, &wire, key_path, key, UNIX_US);
+    TEST_ASSERT_EQUAL_INT(0, stat(time_path, &before));
+    signing_go_on(&signing, &wire, UNIX_US + 30000000);
+    TEST_ASSERT_EQUAL_INT(0, stat(time_path, &after));
+    TEST_ASSERT_TRUE(before.st_ino == after.st_ino && before.st_size == after.st_size);
+    FILE *file = fopen(time_path, "r");
+    TEST_ASSERT_NOT_NULL(file);
+    TEST_ASSERT_NOT_NULL(fgets(line, sizeof line, file));
+    (void)fclose(file);
+    TEST_ASSERT_TRUE(strtoull(line, NULL, 10) >= NOW_TICKS + 30u * TICKS_PER_S);
+}
+
 static void a_time_that_cannot_be_kept_blocks_nothing(void) {
     signing_t signing;
     wire_t wire;
@@ -204,6 +225,7 @@ int main(void) {
     RUN_TEST(a_signed_message_of_an_unknown_kind_counts_once);
     RUN_TEST(times_of_signatures_never_go_back);
     RUN_TEST(a_time_that_is_none_is_passed_over);
+    RUN_TEST(a_kept_time_takes_the_place_of_the_old_one_in_its_file);
     RUN_TEST(a_time_that_cannot_be_kept_blocks_nothing);
     (void)remove(time_path);
     (void)rmdir(folder);
