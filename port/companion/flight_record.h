@@ -31,7 +31,7 @@ bool flight_record_open(flight_record_t *record, const companion_config_t *confi
 void flight_record_put(flight_record_t *record, const goe_flight_t *flight, const goe_flight_frame_t *frame,
                        const autopilot_t *autopilot);
 
-/* To be called once a second: writes the rows to the disk. */
+/* To be called once a second: hands the rows to the operating system. */
 void flight_record_flush(flight_record_t *record);
 
 void flight_record_close(flight_record_t *record);

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "companion_config.h"
 
@@ -42,6 +43,10 @@ void order_log_put(order_log_t *log, const order_row_t *row) {
                   (double)row->tcpa_s, (double)row->dcpa_m, row->target_lat_e7, row->target_lon_e7,
                   (double)row->target_alt_m, row->why);
     (void)fflush(log->stream);
+    if (log->active && !left->active) {
+        (void)fdatasync(fileno(log->stream));
+    }
+    log->active = left->active;
 }
 
 void order_log_close(order_log_t *log) {

@@ -1,7 +1,8 @@
 /* Orders in the log: orders.csv, next to frames.csv. SPDX-License-Identifier: MIT
  *
- * The file has a row for each order, command, acknowledgement and end. Each row is written to the disk at once. After a restart the
- * companion reads the last row and thus knows the order that was active. */
+ * The file has a row for each order, command, acknowledgement and end. Each row goes to the operating system at once: it outlives the
+ * companion. A wait for the disk would delay poses and commands in flight, so only the row that ends the activity of an order waits: no loss
+ * of power makes an order active again. After a restart the companion reads the last row and thus knows the order that was active. */
 #ifndef ORDER_LOG_H
 #define ORDER_LOG_H
 
@@ -13,6 +14,7 @@
 
 typedef struct {
     FILE *stream; /* null: there is no log */
+    bool active;  /* the latest row's order is */
 } order_log_t;
 
 /* Data of an active order that the companion needs to return from it after a restart. */

@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "orders.h"
 #include "receiver.h"
@@ -16,6 +17,15 @@
 #define AVOID 14u
 #define PLANE_LOITER 12u
 #define STEP_US 100000 /* between assessments */
+
+static int waits; /* for the disk */
+
+/* In place of the system's. */
+int fdatasync(int file) {
+    (void)file;
+    waits++;
+    return 0;
+}
 
 static companion_config_t config;
 static goe_flight_t flight;
@@ -969,8 +979,9 @@ static void an_order_of_another_flight_is_not_taken_over(void) {
 /* An order that was left to the pilot is not resumed; a torn row does not count. */
 static void the_log_shows_whether_an_order_is_active(void) {
     char folder[] = "/tmp/goe_orders_XXXXXX", path[64];
-    order_log_t log = {NULL};
+    order_log_t log = {NULL, false};
     order_left_t read;
+    waits = 0;
     TEST_ASSERT_NOT_NULL(mkdtemp(folder));
     (void)snprintf(path, sizeof path, "%s/orders.csv", folder);
     TEST_ASSERT_FALSE(order_log_read(folder, &read));
@@ -982,8 +993,10 @@ static void the_log_shows_whether_an_order_is_active(void) {
     TEST_ASSERT_TRUE(order_log_read(folder, &read));
     TEST_ASSERT_EQUAL_UINT32(MISSION, read.mode_before);
     TEST_ASSERT_EQUAL_UINT(GOE_FLIGHT_LEFT, read.action);
+    TEST_ASSERT_EQUAL_INT(0, waits); /* while a command is due nothing waits */
     go_on(20, POSITION);
     TEST_ASSERT_FALSE(order_log_read(folder, &read));
+    TEST_ASSERT_EQUAL_INT(1, waits); /* a loss of power must not bring it back */
     decide(GOE_FLIGHT_NONE);
     go_on(1, MISSION);
     autopilot.custom_mode = MISSION;
@@ -1012,7 +1025,7 @@ static void the_log_shows_whether_an_order_is_active(void) {
 /* A restarted companion leaves the pilot's Hold alone. */
 static void the_log_has_no_order_that_led_nowhere(void) {
     char folder[] = "/tmp/goe_orders_XXXXXX", path[64];
-    order_log_t log = {NULL};
+    order_log_t log = {NULL, false};
     order_left_t read;
     TEST_ASSERT_NOT_NULL(mkdtemp(folder));
     (void)snprintf(path, sizeof path, "%s/orders.csv", folder);
@@ -1042,7 +1055,7 @@ static void the_log_has_no_order_that_led_nowhere(void) {
 /* A restarted companion waits for the obstacle that the order was about last, and for none that was given up. */
 static void the_log_follows_the_obstacle_of_the_order(void) {
     char folder[] = "/tmp/goe_orders_XXXXXX", path[64];
-    order_log_t log = {NULL};
+    order_log_t log = {NULL, false};
     order_left_t read;
     TEST_ASSERT_NOT_NULL(mkdtemp(folder));
     (void)snprintf(path, sizeof path, "%s/orders.csv", folder);
@@ -1083,7 +1096,7 @@ static void the_log_follows_the_obstacle_of_the_order(void) {
 /* GIVEN a companion that is restarted twice without a new order in between THEN the second log still contains the order and its end. */
 static void an_order_that_was_taken_over_is_in_the_next_log(void) {
     char folder[] = "/tmp/goe_orders_XXXXXX", path[64];
-    order_log_t log = {NULL};
+    order_log_t log = {NULL, false};
     order_left_t read;
     TEST_ASSERT_NOT_NULL(mkdtemp(folder));
     (void)snprintf(path, sizeof path, "%s/orders.csv", folder);
