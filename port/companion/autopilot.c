@@ -32,6 +32,9 @@
 #define POSITION_MAX_M 1.0e6f
 #define SPEED_MAX_M_S 1.0e3f
 #define HEIGHT_MAX_M 1.0e5f
+#define HERE_M 200.0f       /* a report of the terrain farther off is of another place */
+#define M_PER_E7 0.0111195f /* of 1e-7 degrees on a sphere of 6371 km */
+#define RAD_PER_E7 1.7453293e-9f
 #define DOWNWARD MAV_SENSOR_ROTATION_PITCH_270
 #define UPRIGHT_MIN 0.7f  /* cosine of the tilt up to which a distance downwards is a height */
 #define SIGNAL_INVALID 1u /* of DISTANCE_SENSOR.signal_quality; 0 is unknown */
@@ -355,10 +358,19 @@ static void put_terrain(autopilot_t *autopilot, float height_m, int64_t now_us) 
     }
 }
 
+/* A ground station may ask the autopilot for the terrain of any place. */
+static bool is_here(const autopilot_t *autopilot, int32_t lat_e7, int32_t lon_e7) {
+    const float north_m = M_PER_E7 * (float)((int64_t)lat_e7 - autopilot->origin_lat_e7) - autopilot->position.x;
+    const float east_m =
+        M_PER_E7 * cosf((float)lat_e7 * RAD_PER_E7) * (float)((int64_t)lon_e7 - autopilot->origin_lon_e7) -
+        autopilot->position.y;
+    return !autopilot->has_origin || !autopilot->has_position || hypotf(north_m, east_m) <= HERE_M;
+}
+
 static void take_terrain(autopilot_t *autopilot, const mavlink_message_t *message, int64_t now_us) {
     mavlink_terrain_report_t report;
     mavlink_msg_terrain_report_decode(message, &report);
-    if (report.spacing > 0) { /* 0: no terrain is known there */
+    if (report.spacing > 0 && is_here(autopilot, report.lat, report.lon)) { /* 0: no terrain is known there */
         put_terrain(autopilot, report.current_height, now_us);
     }
 }

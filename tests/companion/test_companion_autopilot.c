@@ -621,6 +621,28 @@ static void terrain_is_the_ground_while_it_is_fresh(void) {
     }
 }
 
+/* A ground station may ask for the terrain of any place. */
+static void terrain_of_another_place_is_none(void) {
+    for (int off_m = 150; off_m <= 250; off_m += 100) {
+        for (int north = 0; north < 2; north++) {
+            mavlink_message_t message;
+            const float north_e7 = (north_m + (north ? (float)off_m : 0.0f)) / 0.0111195f;
+            const float east_e7 = (north ? 0.0f : (float)off_m) / 0.0111195f / cosf(0.827286f); /* 47.4 degrees */
+            tearDown();
+            setUp();
+            fly(20);
+            (void)mavlink_msg_gps_global_origin_pack(SYSTEM, MAV_COMP_ID_AUTOPILOT1, &message, 474000000, 85000000,
+                                                     400000, 0);
+            autopilot_take(&autopilot, &message, own_us);
+            (void)mavlink_msg_terrain_report_pack(SYSTEM, MAV_COMP_ID_AUTOPILOT1, &message,
+                                                  474000000 + (int32_t)north_e7, 85000000 + (int32_t)east_e7, 100, 0.0f,
+                                                  25.0f, 0, 0);
+            autopilot_take(&autopilot, &message, own_us);
+            TEST_ASSERT_EQUAL(off_m < 200, autopilot.has_terrain);
+        }
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(requests_have_the_right_target_and_content);
@@ -629,6 +651,7 @@ int main(void) {
     RUN_TEST(a_position_out_of_range_is_counted);
     RUN_TEST(a_step_of_the_height_is_a_known_jump);
     RUN_TEST(terrain_is_the_ground_while_it_is_fresh);
+    RUN_TEST(terrain_of_another_place_is_none);
     RUN_TEST(samples_reach_the_flight_layer_at_their_own_time);
     RUN_TEST(nothing_is_taken_before_a_heartbeat_or_from_another_system);
     RUN_TEST(a_step_of_the_position_is_a_known_jump);
