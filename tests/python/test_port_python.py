@@ -240,6 +240,15 @@ def test_a_class_of_a_whole_track_is_that_of_its_images() -> None:
     assert list(goe.run(settings(), approach(30, kind=kind))) == single != list(goe.run(settings(), images))
 
 
+@pytest.mark.parametrize("shape", [-1.0, 1.5, 256.0, 257.0, NAN, float("inf")])
+def test_a_shape_in_an_array_of_kinds_is_not_cast_to_another(shape: float) -> None:
+    kinds = np.tile([3.3, 0.9, 1.6, 0.14, 2.0], (30, 1))
+    assert (approach(30, kind=kinds).to_c()["kind"]["shape"] == 2).all()
+    kinds[7, 4] = shape
+    with pytest.raises(ValueError, match="kind: a shape that is not a whole number within 0 to 255"):
+        approach(30, kind=kinds).to_c()
+
+
 def test_objects_can_be_sent_to_other_processes() -> None:
     given = settings()
     given.more_cameras = (goe.Camera(900.0, 900.0, 640.0, 640.0, width_px=0.0, height_px=0.0),)

@@ -123,7 +123,7 @@ class Images(Renamed):
             noise["attitude_sd_deg"], noise["height_sd_m"], noise["pixel_sd_px"] = columns
         if self.kind is not None:
             one = isinstance(self.kind, (Kind, str))
-            columns = kind_numbers(self.kind) if one else _shaped(self.kind, (count, 5), "kind").T
+            columns = kind_numbers(self.kind) if one else _kind_columns(self.kind, count)
             for name, column in zip(("width_m", "width_sd_m", "height_m", "height_sd_m", "shape"), columns):
                 c["kind"][name] = column
         if self.camera is not None:
@@ -156,6 +156,15 @@ def _shaped(values: Any, shape: tuple[int, ...], name: str) -> Array:
     if array.shape != shape:
         raise ValueError(f"{name}: shape {array.shape}, not {shape}")
     return array
+
+
+def _kind_columns(values: Any, count: int) -> Array:
+    columns = _shaped(values, (count, 5), "kind").T
+    shapes = columns[4]
+    is_shape = (shapes >= 0) & (shapes <= 255) & (shapes == np.floor(shapes))
+    if not is_shape.all():  # a cast would make another shape of it
+        raise ValueError("kind: a shape that is not a whole number within 0 to 255")
+    return columns
 
 
 def _put(place: Array, field: str, values: Any, name: str) -> None:
