@@ -41,7 +41,8 @@ typedef struct {
     int64_t sent_us;    /* own time of the latest command */
     int64_t traffic_us; /* own time of the latest traffic messages */
     bool gave_up;       /* the layer gave up an obstacle since then: it is not known to be passed */
-    uint32_t named; /* slots of the obstacles that the order was about since then, as bits; without those seen passed */
+    uint32_t
+        named; /* slots of the obstacles that the order was about since then, as bits; without those that were passed */
     uint32_t ids[GOE_FLIGHT_SLOTS]; /* of the obstacles, at the assessment before */
     uint16_t evicted;               /* the flight layer's count, then */
     bool from_landing; /* the autopilot was landing since the first of the active orders: no mode is resumed */

@@ -374,7 +374,7 @@ static void an_obstacle_whose_track_ends_under_another_order_may_be_ahead() {
     }
 }
 
-/* The slot of a new obstacle was without a position before; what is gone elsewhere does not count. */
+/* The slot of a new obstacle was without a position before. Another slot without one does not count. */
 static void an_obstacle_that_comes_into_a_slot_is_no_loss() {
     vehicle.gone = 1u << 0 | 1u << 3;
     TEST_ASSERT_TRUE(follow(ALL, true));

@@ -71,7 +71,7 @@ class GoeOrders {
     int8_t _slot{-1};
     uint8_t _mode_before{0};
     bool _given{false}, _has_led{false}, _overruled{false}, _wants_mission{false};
-    uint32_t _named{0};   /* since the order began: slots that it was about, as bits; without those seen passed */
+    uint32_t _named{0};   /* since the order began: slots that it was about, as bits; without those that were passed */
     bool _gave_up{false}; /* ... the layer, an obstacle of it */
     bool _breaks_off{false}, _raised{false}; /* since the order began: a landing; the altitude where PX4 holds */
     uint8_t _resumes_left{0};
