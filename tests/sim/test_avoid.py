@@ -295,7 +295,7 @@ def test_the_latency_of_an_order_is_that_of_its_flight(flown: list[dict[str, flo
 
 @pytest.mark.parametrize(("kind", "seed"), [(24, 5202), (72, 5746)])
 def test_a_turn_away_is_obeyed_as_late_as_a_first_order(avoid_probe: Path, kind: int, seed: int) -> None:
-    """The aircraft flies a side's turn. A HOLD that was judged as if it began at once led both flights into a known obstacle."""
+    """In the turn of a side, a HOLD that was judged as if it began at once led both flights into a known obstacle."""
     text = avoid(avoid_probe, "flights", str(kind + 1), str(seed), "0")
     row = list(csv.DictReader(io.StringIO(text)))[-1]
     assert row["ordered"] == "1" and float(row["obey_s"]) >= 1.5
