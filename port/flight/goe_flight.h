@@ -507,7 +507,7 @@ goe_flight_status_t goe_flight_pose(const goe_flight_t *flight, uint32_t time_us
                                     float *attitude_sd_deg);
 
 /* Sets the offset of the sender's clock from a two-way exchange: autopilot's minus sender's time (modulo 2^32), and its one sigma.
- * It replaces the one-way estimate until a call with sd_us 0xFFFFFFFF, which means unknown. It holds for all cameras with
+ * It replaces the one-way estimate until a call with sd_us 0xFFFFFFFF, which means unknown. It applies to all cameras with
  * GOE_FLIGHT_SENDER_CLOCK: call it only if their senders have one clock.
  * Returns GOE_FLIGHT_OK, _BAD_ARGUMENT, _NOT_INITIALIZED. */
 goe_flight_status_t goe_flight_timesync(goe_flight_t *flight, uint32_t offset_us, uint32_t sd_us);

@@ -285,7 +285,7 @@ static void the_view_of_a_dead_detector_is_unknown(void) {
 }
 
 /* [GOE_FLIGHT_SENDER_CLOCK] GIVEN two cameras whose senders have clocks of their own WHEN these are apart by less or more than a second, and no
- * exchange gives their offsets THEN each image counts from its exposure; one exchange holds for the images of both. */
+ * exchange gives their offsets THEN each image counts from its exposure; one exchange applies to the images of both. */
 static void each_sender_has_its_own_clock(void) {
     const uint32_t apart_us[] = {150000u, 300000u, 495000000u};
     for (int n = 0; n < 4; n++) {
