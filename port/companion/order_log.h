@@ -1,8 +1,8 @@
 /* Orders in the log: orders.csv, next to frames.csv. SPDX-License-Identifier: MIT
  *
- * The file has a row for each order, command, acknowledgement and end. Each row goes to the operating system at once: it outlives the
- * companion. A wait for the disk would delay poses and commands in flight, so only the row that ends the activity of an order waits: no loss
- * of power makes an order active again. After a restart the companion reads the last row and thus knows the order that was active. */
+ * The file has a row for each order, command, acknowledgement and end. Each row goes to the operating system at once, so it outlives the
+ * companion. A wait for the disk delays poses and commands in flight. Therefore, only the row with which an order is no longer active waits:
+ * a loss of power makes no order active again. After a restart the companion reads the last row, which shows the order that was active. */
 #ifndef ORDER_LOG_H
 #define ORDER_LOG_H
 

@@ -220,10 +220,9 @@ static void ask_for_mode_before(orders_t *orders, int64_t now_us) {
 
 /* The flight layer ends an order when its obstacle lies behind or the course back is clear, and then still knows where it is; or when it
  * gives the obstacle up, or its track ends, as by a reset of the heading. */
-static bool is_obstacle_known(const orders_t *orders) {
-    goe_flight_obstacle_t obstacle;
-    return orders->slot >= 0 && goe_flight_obstacle(orders->flight, orders->slot, &obstacle) == GOE_FLIGHT_OK &&
-           (obstacle.valid & GOE_HAS_POSITION) != 0u;
+static bool is_known(const orders_t *orders, int slot, goe_flight_obstacle_t *obstacle) {
+    return goe_flight_obstacle(orders->flight, slot, obstacle) == GOE_FLIGHT_OK &&
+           (obstacle->valid & GOE_HAS_POSITION) != 0u;
 }
 
 /* Along a course, by the outline and the margin. */
@@ -236,7 +235,8 @@ static bool is_behind(const orders_t *orders, const float course_ne[2], const fl
 /* Why the autopilot stays where it loiters; null: it need not. An obstacle that is only out of view may be ahead in the previous mode. A
  * landing would be continued from next to the runway. */
 static const char *find_stay(const orders_t *orders, goe_flight_action_t ended) {
-    const bool is_past = is_obstacle_known(orders) && !orders->gave_up &&
+    goe_flight_obstacle_t obstacle;
+    const bool is_past = is_known(orders, orders->slot, &obstacle) && !orders->gave_up &&
                          (ended == GOE_FLIGHT_LEFT || ended == GOE_FLIGHT_RIGHT || ended == GOE_FLIGHT_CLIMB);
     if (!is_past) {
         return "the obstacle is not known to be passed";
@@ -565,12 +565,11 @@ static void watch_obstacles(orders_t *orders) {
     orders->evicted = orders->flight->counters.evicted;
     for (int slot = 0; slot < GOE_FLIGHT_SLOTS; slot++) {
         goe_flight_obstacle_t obstacle;
-        const bool is_known = goe_flight_obstacle(orders->flight, slot, &obstacle) == GOE_FLIGHT_OK &&
-                              (obstacle.valid & GOE_HAS_POSITION) != 0u;
+        const bool known = is_known(orders, slot, &obstacle);
         const bool is_another = evicted && (obstacle.id == 0u || obstacle.id != orders->ids[slot]);
         const uint32_t bit = UINT32_C(1) << (unsigned)slot;
-        orders->gave_up = orders->gave_up || ((orders->named & bit) != 0u && (!is_known || is_another));
-        if (is_known && is_behind(orders, orders->active.course_ne, obstacle.center_ned_m, obstacle.radius_m)) {
+        orders->gave_up = orders->gave_up || ((orders->named & bit) != 0u && (!known || is_another));
+        if (known && is_behind(orders, orders->active.course_ne, obstacle.center_ned_m, obstacle.radius_m)) {
             orders->named &= ~bit;
         }
         orders->ids[slot] = obstacle.id;

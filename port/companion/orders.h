@@ -6,9 +6,9 @@
  *             raises the target, because PX4 flies DO_GO_AROUND only while it lands.
  * arduplane:  ADSB_VEHICLE for all obstacles while the order is active; the autopilot chooses the reaction.
  *
- * The conditions for an order (armed, no failsafe, mode, origin) are checked while it is active. While the autopilot lands, an order that they prevent
- * becomes a go-around, if they do not prevent that. If the pilot chooses another mode (mode_watch.h),
- * no command is sent until all orders have ended. */
+ * The conditions for an order (armed, no failsafe, mode, origin) are checked while it is active. While the autopilot lands, an order that
+ * they prevent becomes a go-around, if they do not prevent that. If the pilot chooses another mode (mode_watch.h), no command is sent until
+ * all orders have ended. */
 #ifndef ORDERS_H
 #define ORDERS_H
 
@@ -41,8 +41,7 @@ typedef struct {
     int64_t sent_us;    /* own time of the latest command */
     int64_t traffic_us; /* own time of the latest traffic messages */
     bool gave_up;       /* the layer gave up an obstacle since then: it is not known to be passed */
-    uint32_t
-        named; /* slots of the obstacles that the order was about since then, as bits; without those that were passed */
+    uint32_t named;     /* slots of the obstacles that the order was about since then, as bits; not of passed ones */
     uint32_t ids[GOE_FLIGHT_SLOTS]; /* of the obstacles, at the assessment before */
     uint16_t evicted;               /* the flight layer's count, then */
     bool from_landing; /* the autopilot was landing since the first of the active orders: no mode is resumed */

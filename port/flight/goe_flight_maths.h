@@ -9,6 +9,7 @@
 #define GOE_FLIGHT_DEG_PER_RAD 57.2957795f
 #define GOE_FLIGHT_RAD_PER_DEG 0.0174532925f
 #define GOE_FLIGHT_S_PER_US 1.0e-6f
+#define GOE_FLIGHT_COURSE_MIN_M_S 1.0f /* a slower aircraft has no course */
 
 /* Bits of |x|. They have the same order as the magnitudes, and may be compared under -ffast-math even if x is NaN or infinite. */
 static inline uint32_t goe_flight_magnitude(float x) {

@@ -17,7 +17,6 @@
 #define GRAVITY_M_S2 9.80665f
 #define SURE_SIGMA 2.0f
 #define LIKELY_SIGMA 1.0f /* an active order is replaced only if another one is likely to be better */
-#define SPEED_MIN_M_S 1.0f
 #define TIME_MAX_S 1.0e4f
 #define CLEAR_MAX_M 1000.0f
 #define LATE_VIOLATION                                                                                                 \
@@ -123,8 +122,8 @@ static bool set_course(const goe_flight_t *flight, look_t *look) {
     const float north = flight->velocity_ned_m_s[0];
     const float east = flight->velocity_ned_m_s[1];
     const float speed_m_s = sqrtf(north * north + east * east);
-    look->has_course = speed_m_s > SPEED_MIN_M_S;
-    look->speed_m_s = look->has_course ? speed_m_s : SPEED_MIN_M_S;
+    look->has_course = speed_m_s > GOE_FLIGHT_COURSE_MIN_M_S;
+    look->speed_m_s = look->has_course ? speed_m_s : GOE_FLIGHT_COURSE_MIN_M_S;
     look->at.course_ne[0] = look->has_course ? north / speed_m_s : flight->reaction.course_ne[0];
     look->at.course_ne[1] = look->has_course ? east / speed_m_s : flight->reaction.course_ne[1];
     return look->has_course || flight->reaction.action != GOE_FLIGHT_NONE;
@@ -418,6 +417,7 @@ static bool is_due(goe_flight_reaction_t *r, const goe_flight_settings_t *settin
     return e->earliest_tcpa_s <= needed_s || goe_flight_between_s(now_us, r->rising_us) >= settings->confirm_s;
 }
 
+/* goe_flight_clear_slots() leaves 0 for a slot without a position. */
 static bool has_position(const look_t *look, int i) { return look->slot[i].margin_m > 0.0f; }
 
 /* Distance of the target to the right of the line, as one obstacle requires: past its outline on the side of the order; in a gap, at the
@@ -488,8 +488,8 @@ static void find_better(goe_flight_t *flight, look_t *look, float share, int nea
     encounter_t e;
     meet(look, nearest, &e);
     option_t option = choose(look, nearest, &e, r->side);
-    if (option.action !=
-        (goe_flight_action_t)r->action) { /* an autopilot obeys another action as late as a first order */
+    /* An autopilot obeys another action as late as a first order. */
+    if (option.action != (goe_flight_action_t)r->action) {
         set_delay(look, 0.0f);
         option = choose(look, nearest, &e, r->side);
     }

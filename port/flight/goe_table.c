@@ -10,7 +10,6 @@
 #define PIXEL_SD_MAX_PX 100.0f
 #define UNDETECTED_S 2.0f /* after this time a track without a position, or a passed one, may be evicted */
 #define WORTH_KEPT 0.5f   /* a slot of a higher worth is never evicted */
-#define SLOW_M_S 1.0f     /* a slower aircraft has no course */
 #define ABEAM_DEG 90.0f
 #define ORDERED_S 30.0f /* while an order is active no track ends sooner: the way back leads past its obstacle */
 #define NOBODY (-1)
@@ -141,7 +140,7 @@ static bool may_be_ahead(const goe_flight_t *flight, const goe_flight_bearings_t
     const float *v = flight->velocity_ned_m_s;
     const float course_deg = goe_flight_atan2_deg(v[1], v[0]);
     const float off_deg = goe_flight_positive_deg((float)bearings->middle_deg - course_deg + 180.0f) - 180.0f;
-    const bool moves = goe_flight_square(v[0]) + goe_flight_square(v[1]) > SLOW_M_S * SLOW_M_S;
+    const bool moves = goe_flight_square(v[0]) + goe_flight_square(v[1]) > goe_flight_square(GOE_FLIGHT_COURSE_MIN_M_S);
     return moves && goe_flight_within(off_deg, ABEAM_DEG + (float)bearings->half_deg);
 }
 

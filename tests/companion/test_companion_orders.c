@@ -976,18 +976,36 @@ static void an_order_of_another_flight_is_not_taken_over(void) {
     TEST_ASSERT_EQUAL_INT(0, count_commands(MAV_CMD_DO_SET_MODE));
 }
 
-/* An order that was left to the pilot is not resumed; a torn row does not count. */
-static void the_log_shows_whether_an_order_is_active(void) {
-    char folder[] = "/tmp/goe_orders_XXXXXX", path[64];
-    order_log_t log = {NULL, false};
-    order_left_t read;
-    waits = 0;
+static char folder[64], path[80];
+static order_log_t order_log;
+
+static void make_folder(void) {
+    (void)snprintf(folder, sizeof folder, "/tmp/goe_orders_XXXXXX");
     TEST_ASSERT_NOT_NULL(mkdtemp(folder));
     (void)snprintf(path, sizeof path, "%s/orders.csv", folder);
+}
+
+static void open_log(void) {
+    (void)memset(&order_log, 0, sizeof order_log);
+    TEST_ASSERT_TRUE(order_log_open(&order_log, folder));
+    orders.log = &order_log;
+}
+
+static void remove_log(void) {
+    orders.log = NULL;
+    order_log_close(&order_log);
+    (void)remove(path);
+    (void)rmdir(folder);
+}
+
+/* An order that was left to the pilot is not resumed; a torn row does not count. */
+static void the_log_shows_whether_an_order_is_active(void) {
+    order_left_t read;
+    waits = 0;
+    make_folder();
     TEST_ASSERT_FALSE(order_log_read(folder, &read));
-    TEST_ASSERT_TRUE(order_log_open(&log, folder));
+    open_log();
     TEST_ASSERT_FALSE(order_log_read(folder, &read));
-    orders.log = &log;
     know_obstacle(true);
     ordered();
     TEST_ASSERT_TRUE(order_log_read(folder, &read));
@@ -1010,27 +1028,20 @@ static void the_log_shows_whether_an_order_is_active(void) {
     decide(GOE_FLIGHT_LEFT);
     go_on(1, MISSION);
     TEST_ASSERT_TRUE(order_log_read(folder, &read));
-    (void)fputs("1,2,0,1,3,1,0,5,6,7,en", log.stream);
-    (void)fflush(log.stream);
+    (void)fputs("1,2,0,1,3,1,0,5,6,7,en", order_log.stream);
+    (void)fflush(order_log.stream);
     TEST_ASSERT_TRUE(order_log_read(folder, &read));
-    (void)fputs("d\n", log.stream);
-    (void)fflush(log.stream);
+    (void)fputs("d\n", order_log.stream);
+    (void)fflush(order_log.stream);
     TEST_ASSERT_FALSE(order_log_read(folder, &read));
-    orders.log = NULL;
-    order_log_close(&log);
-    (void)remove(path);
-    (void)rmdir(folder);
+    remove_log();
 }
 
 /* A restarted companion leaves the pilot's Hold alone. */
 static void the_log_has_no_order_that_led_nowhere(void) {
-    char folder[] = "/tmp/goe_orders_XXXXXX", path[64];
-    order_log_t log = {NULL, false};
     order_left_t read;
-    TEST_ASSERT_NOT_NULL(mkdtemp(folder));
-    (void)snprintf(path, sizeof path, "%s/orders.csv", folder);
-    TEST_ASSERT_TRUE(order_log_open(&log, folder));
-    orders.log = &log;
+    make_folder();
+    open_log();
     know_obstacle(true);
     autopilot.base_mode = 0; /* hindered */
     decide(GOE_FLIGHT_LEFT);
@@ -1046,21 +1057,14 @@ static void the_log_has_no_order_that_led_nowhere(void) {
     decide(GOE_FLIGHT_RIGHT);
     go_on(1, MISSION);
     TEST_ASSERT_TRUE(order_log_read(folder, &read));
-    orders.log = NULL;
-    order_log_close(&log);
-    (void)remove(path);
-    (void)rmdir(folder);
+    remove_log();
 }
 
 /* A restarted companion waits for the obstacle that the order was about last, and for none that was given up. */
 static void the_log_follows_the_obstacle_of_the_order(void) {
-    char folder[] = "/tmp/goe_orders_XXXXXX", path[64];
-    order_log_t log = {NULL, false};
     order_left_t read;
-    TEST_ASSERT_NOT_NULL(mkdtemp(folder));
-    (void)snprintf(path, sizeof path, "%s/orders.csv", folder);
-    TEST_ASSERT_TRUE(order_log_open(&log, folder));
-    orders.log = &log;
+    make_folder();
+    open_log();
     know_obstacle(true);
     flight.slot[0].center_ne_m[0] = 200.0f;
     flight.slot[3] = flight.slot[0];
@@ -1087,21 +1091,14 @@ static void the_log_follows_the_obstacle_of_the_order(void) {
     assessment.avoided = -1;
     go_on(1, LOITER);
     TEST_ASSERT_FALSE(order_log_read(folder, &read));
-    orders.log = NULL;
-    order_log_close(&log);
-    (void)remove(path);
-    (void)rmdir(folder);
+    remove_log();
 }
 
 /* GIVEN a companion that is restarted twice without a new order in between THEN the second log still contains the order and its end. */
 static void an_order_that_was_taken_over_is_in_the_next_log(void) {
-    char folder[] = "/tmp/goe_orders_XXXXXX", path[64];
-    order_log_t log = {NULL, false};
     order_left_t read;
-    TEST_ASSERT_NOT_NULL(mkdtemp(folder));
-    (void)snprintf(path, sizeof path, "%s/orders.csv", folder);
-    TEST_ASSERT_TRUE(order_log_open(&log, folder));
-    orders.log = &log;
+    make_folder();
+    open_log();
     take_over(100.0f, 3000000);
     TEST_ASSERT_TRUE(order_log_read(folder, &read));
     TEST_ASSERT_EQUAL_UINT32(MISSION, read.mode_before);
@@ -1111,13 +1108,10 @@ static void an_order_that_was_taken_over_is_in_the_next_log(void) {
     go_on(20, POSITION);
     TEST_ASSERT_FALSE(order_log_read(folder, &read));
     orders_init(&orders, &wire, &config, &autopilot, &flight);
-    orders.log = &log;
+    orders.log = &order_log;
     take_over(230.0f, 3000000);
     TEST_ASSERT_FALSE(order_log_read(folder, &read)); /* passed */
-    orders.log = NULL;
-    order_log_close(&log);
-    (void)remove(path);
-    (void)rmdir(folder);
+    remove_log();
 }
 
 int main(void) {

@@ -266,8 +266,7 @@ void Goe::publish_status(uint64_t now_us) {
 
 bool Goe::is_armed() const { return _vehicle_status.arming_state == vehicle_status_s::ARMING_STATE_ARMED; }
 
-bool Goe::is_followed(int slot) const {
-    goe_flight_obstacle_t obstacle;
+bool Goe::is_followed(int slot, goe_flight_obstacle_t &obstacle) const {
     return goe_flight_obstacle(&_flight, slot, &obstacle) == GOE_FLIGHT_OK && (obstacle.valid & GOE_HAS_POSITION) != 0u;
 }
 
@@ -286,8 +285,7 @@ void Goe::watch_obstacles(GoeOrders::Vehicle &vehicle) {
     _evicted = _flight.counters.evicted;
     for (int slot = 0; slot < GOE_FLIGHT_SLOTS; slot++) {
         goe_flight_obstacle_t obstacle;
-        const bool is_known = goe_flight_obstacle(&_flight, slot, &obstacle) == GOE_FLIGHT_OK &&
-                              (obstacle.valid & GOE_HAS_POSITION) != 0u;
+        const bool is_known = is_followed(slot, obstacle);
         const bool is_another = evicted && (obstacle.id == 0u || obstacle.id != _ids[slot]);
         const uint32_t bit = 1u << static_cast<unsigned>(slot);
         vehicle.gone |= !is_known || is_another ? bit : 0u;
@@ -298,6 +296,7 @@ void Goe::watch_obstacles(GoeOrders::Vehicle &vehicle) {
 
 void Goe::follow_orders(uint64_t now_us) {
     vehicle_command_s command;
+    goe_flight_obstacle_t avoided;
     GoeOrders::Vehicle vehicle{};
     vehicle.armed = is_armed();
     vehicle.has_wings = has_wings();
@@ -306,7 +305,7 @@ void Goe::follow_orders(uint64_t now_us) {
     vehicle.nav_state = _vehicle_status.nav_state;
     vehicle.failsafe = _vehicle_status.failsafe && !_vehicle_status.failsafe_and_user_took_over;
     vehicle.origin_known = _flight.origin_known;
-    vehicle.obstacle_known = is_followed(_orders.slot());
+    vehicle.obstacle_known = is_followed(_orders.slot(), avoided);
     watch_obstacles(vehicle);
     vehicle.altitude_known = _position.z_global;
     vehicle.origin_alt_m = _position.ref_alt;

@@ -60,7 +60,7 @@ class Goe final : public GoeModuleBase, public px4::ScheduledWorkItem {
     bool is_armed() const;
     bool has_wings() const;
     void read_parameters();
-    bool is_followed(int slot) const;
+    bool is_followed(int slot, goe_flight_obstacle_t &obstacle) const;
     bool is_behind(const goe_flight_obstacle_t &obstacle) const;
     void watch_obstacles(GoeOrders::Vehicle &vehicle);
     void follow_parameters();

@@ -12,8 +12,8 @@
  * PX4 acknowledges it. Go around becomes DO_GO_AROUND, and when PX4 has taken that, DO_REPOSITION upwards if its height is too low
  * for the obstacle's top. Only while armed, in Mission or Hold, and to break off a landing in Land. A side that may not be flown
  * breaks a landing off like go around. A pilot or a failsafe that chooses another mode has priority: no command follows until the
- * end of the order. So has a failsafe that waits in Hold, which a command would cancel. The mission continues only when the obstacle is known to be passed, and never after a landing that was broken
- * off. */
+ * end of the order. So has a failsafe that waits in Hold, which a command would cancel. The mission continues only when the obstacle is
+ * known to be passed, and never after a landing that was broken off. */
 class GoeOrders {
   public:
     /* Where the aircraft is and how PX4 flies it. */
