@@ -11,6 +11,7 @@
 #define DIRECTION_MIN 0.1f /* least length of a vertical in the image, focal lengths: from above it has no direction */
 #define WIDE (GOE_SIDE_LEFT | GOE_SIDE_RIGHT)
 #define LEVEL (GOE_SIDE_TOP | GOE_SIDE_BOTTOM)
+#define LEANS 0.2f      /* tangent of a lean beyond which two borders cut the same end */
 #define CUT_SIGMAS 3.0f /* of a side's slow error, by which a detector may place a cut side inside the border */
 
 GOE_STATIC_ASSERT(GOE_SIDE_LEFT == 1u << GOE_BOX_LEFT && GOE_SIDE_TOP == 1u << GOE_BOX_TOP &&
@@ -44,13 +45,19 @@ static void compare_with_border(const goe_camera_t *camera, unsigned seen, float
     sides->doubtful = (uint8_t)(doubtful & sides->usable);
 }
 
-/* Notes which ends of the obstacle the border may cut. The camera may be rolled, even upside down. down: the vertical, in its axes. */
+/* Exchanges left and right. */
+static unsigned opposite(unsigned wide) { return (wide << 2 | wide >> 2) & WIDE; }
+
+/* Notes which ends of the obstacle the border may cut. down: the vertical, in the camera's axes. The horizontal to the obstacle's right is
+ * (down y, -down x). Each side of the box opens the end that lies in its direction: with a lean, the border above or below also cuts a wide
+ * obstacle, and left or right of the box is then where its outline crosses this border. */
 static void find_ends(const float down[2], goe_sides_t *sides) {
-    const bool rolled = goe_absolute(down[0]) > goe_absolute(down[1]);
+    const bool rolled = goe_absolute(down[0]) > LEANS * goe_absolute(down[1]);
+    const bool upright = goe_absolute(down[1]) >= LEANS * goe_absolute(down[0]);
     const unsigned open = sides->cut | sides->doubtful;
-    const unsigned ends = (rolled ? open >> 1 : open) & WIDE; /* top for left */
-    const bool turned = rolled ? down[0] > 0.0f : down[1] < 0.0f;
-    sides->ends = (uint8_t)(turned ? (ends << 2 | ends >> 2) & WIDE : ends);
+    const unsigned across = upright ? open & WIDE : 0u;
+    const unsigned along = rolled ? open >> 1 & WIDE : 0u; /* top for left */
+    sides->ends = (uint8_t)((down[1] < 0.0f ? opposite(across) : across) | (down[0] > 0.0f ? opposite(along) : along));
     sides->truncated = (sides->cut & (rolled ? GOE_SIDES_ALL : WIDE)) != 0u;
 }
 

@@ -169,24 +169,33 @@ static void a_building_below_the_image_is_not_cleared(void) {
 #define WALL_FLIGHTS 40
 #define WALL_MARGIN_M 10.0
 
-/* The box of the part of a wall across the course that a level camera turned by yaw shows; its end on the right is behind the border. */
-static bool see_wall(double yaw_rad, double ahead_m, const double ends_m[2], double above_m, double below_m,
-                     double box[4]) {
+/* A point in the axes of a camera that is pitched, then rolled; before: x right, y down, z ahead. */
+static void include_turned(double box[4], const double turned_rad[2], double x, double y, double z) {
+    const double pitched = y * cos(turned_rad[0]) + z * sin(turned_rad[0]);
+    include(box, x * cos(turned_rad[1]) + pitched * sin(turned_rad[1]),
+            pitched * cos(turned_rad[1]) - x * sin(turned_rad[1]), z * cos(turned_rad[0]) - y * sin(turned_rad[0]));
+}
+
+/* The box of the part of a wall across the course that a camera turned by yaw, then pitch and roll, shows. */
+static bool see_wall(double yaw_rad, const double turned_rad[2], double ahead_m, const double ends_m[2], double above_m,
+                     double below_m, double box[4]) {
     box[0] = box[1] = SIZE_PX;
     box[2] = box[3] = 0.0;
     for (int i = 0; i <= 400; i++) {
         const double across_m = ends_m[0] + (ends_m[1] - ends_m[0]) * i / 400.0;
         const double x = across_m * cos(yaw_rad) - ahead_m * sin(yaw_rad);
         const double z = across_m * sin(yaw_rad) + ahead_m * cos(yaw_rad);
-        include(box, x, -above_m, z);
-        include(box, x, below_m, z);
+        for (int row = 0; row <= 8; row++) {
+            include_turned(box, turned_rad, x, below_m - (above_m + below_m) * row / 8.0, z);
+        }
     }
     return box[2] - box[0] > 10.0 && box[3] - box[1] > 2.0;
 }
 
 /* Decisions in the last 10 s before the wall, by goe_decision_t. */
-static void fly_at_wall(double yaw_deg, int count[4]) {
+static void fly_at_wall(double yaw_deg, double pitch_deg, double roll_deg, int count[4]) {
     const double yaw_rad = yaw_deg / 57.29577951308232;
+    const double turned_rad[2] = {pitch_deg / 57.29577951308232, roll_deg / 57.29577951308232};
     const double kept = exp(-1.0 / (HZ * NOISE_TIME_S));
     const double ends_m[2] = {-check_random_between(&any, 30.0, 130.0), check_random_between(&any, 5.0, 15.0)};
     const double high_m = check_random_between(&any, 15.0, 30.0);
@@ -198,6 +207,8 @@ static void fly_at_wall(double yaw_deg, int count[4]) {
     settings.camera.cx_px = settings.camera.cy_px = (float)(0.5 * SIZE_PX);
     settings.camera.width_px = settings.camera.height_px = (float)SIZE_PX;
     settings.camera.mount_yaw_deg = (float)yaw_deg;
+    settings.camera.mount_pitch_deg = (float)pitch_deg;
+    settings.camera.mount_roll_deg = (float)roll_deg;
     CHECK_STATUS(GOE_OK, goe_init(&estimator, sizeof estimator, &settings, NULL));
     for (int k = 0; k < 150; k++) {
         goe_image_t image;
@@ -211,7 +222,7 @@ static void fly_at_wall(double yaw_deg, int count[4]) {
         image.pose.position_ned_m[2] = (float)-high_m;
         image.pose.height_m = (float)(high_m + 0.5 * check_random_normal(&any));
         image.pose.attitude[0] = 1.0f;
-        const bool seen = see_wall(yaw_rad, ahead_m, ends_m, above_m, high_m, box);
+        const bool seen = see_wall(yaw_rad, turned_rad, ahead_m, ends_m, above_m, high_m, box);
         for (int i = 0; i < 4; i++) {
             slow[i] =
                 (k == 0 ? 0.0 : kept) * slow[i] + sqrt(1.0 - (k == 0 ? 0.0 : kept * kept)) * check_random_normal(&any);
@@ -241,7 +252,7 @@ static void a_wall_that_goes_on_beyond_the_border_is_not_cleared(void) {
     static const double yaw_deg[] = {-46.0, -48.0, -54.0, -60.0};
     int count[4] = {0, 0, 0, 0};
     for (int flight = 0; flight < WALL_FLIGHTS; flight++) {
-        fly_at_wall(yaw_deg[flight % 4], count);
+        fly_at_wall(yaw_deg[flight % 4], 0.0, 0.0, count);
     }
     check_report("decisions within 10 s of the wall: clear", count[GOE_DECISION_CLEAR]);
     check_report("... act", count[GOE_DECISION_ACT]);
@@ -249,9 +260,26 @@ static void a_wall_that_goes_on_beyond_the_border_is_not_cleared(void) {
     TEST_ASSERT_TRUE(4 * count[GOE_DECISION_ACT] > WALL_FLIGHTS * 100);
 }
 
+/* [camera.mount_roll_deg]
+ * GIVEN a camera that is rolled by less than 45 degrees WHEN its upper border cuts the end of the wall that the course meets THEN the box ends
+ * where the roof crosses this border, in the middle of the image, and the wall is not cleared. Before, 161 of 12,000 decisions were "clear". */
+static void a_wall_that_a_rolled_camera_cuts_above_is_not_cleared(void) {
+    static const double roll_deg[] = {15.0, 20.0, 30.0, 40.0};
+    static const double yaw_deg[] = {-25.0, -35.0, -45.0};
+    int count[4] = {0, 0, 0, 0};
+    for (int flight = 0; flight < 3 * WALL_FLIGHTS; flight++) {
+        fly_at_wall(yaw_deg[flight % 3], flight % 2 == 0 ? -25.0 : -35.0, roll_deg[flight % 4], count);
+    }
+    check_report("rolled cameras: clear", count[GOE_DECISION_CLEAR]);
+    check_report("... act", count[GOE_DECISION_ACT]);
+    TEST_ASSERT_EQUAL_INT(0, count[GOE_DECISION_CLEAR]);
+    TEST_ASSERT_TRUE(2 * count[GOE_DECISION_ACT] > 3 * WALL_FLIGHTS * 100);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_building_below_the_image_is_not_cleared);
     RUN_TEST(a_wall_that_goes_on_beyond_the_border_is_not_cleared);
+    RUN_TEST(a_wall_that_a_rolled_camera_cuts_above_is_not_cleared);
     return UNITY_END();
 }
