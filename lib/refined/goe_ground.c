@@ -73,10 +73,12 @@ void goe_ground_read(goe_filter_t *filter, const goe_navigation_t *navigation, c
         datum->scatter_m2 = goe_square(navigation->height_white_sd_m);
         filter->has_datum = true;
     }
+    const float before_m = datum->ground_m;
     if (!lacks_height) {
         begin_heights(filter, view->image->noise.height_sd_m);
         average(datum, navigation, goe_filter_has_started(filter), ground_m - datum->ground_m, since_s);
     }
+    filter->answer.height_bias_m -= datum->ground_m - before_m; /* an estimate from before a restart keeps its height */
     datum->height_m = datum->ground_m - down_m;
 }
 

@@ -535,6 +535,30 @@ static void the_center_of_a_moving_obstacle_moves_on(void) {
     }
 }
 
+/* GIVEN a first height 5 m too low WHEN the filter starts again, which averages all heights, THEN the kept estimate keeps its clearance in a
+ * level flight: its height refers to the zero of its time. */
+static void a_new_start_leaves_the_clearance(void) {
+    start();
+    for (int k = 0; k < IMAGES; k++) {
+        look(BY_BOXES, k);
+        image.pose.height_m -= k == 0 ? 5.0f : 0.0f;
+        (void)goe_update(&estimator, &image, &estimate);
+    }
+    CHECK_STATUS(GOE_OK, ask(0.0));
+    TEST_ASSERT_TRUE(hazard.has_clearance);
+    const double before_m = (double)hazard.clearance_m;
+    const double moved_m = (double)estimator.filter.datum.mean_m;
+    TEST_ASSERT_TRUE(moved_m > 2.0);
+    goe_filter_enter(&estimator.filter, GOE_PHASE_NONE);
+    for (int k = IMAGES; k < IMAGES + 8; k++) {
+        look(BY_BOXES, k);
+        hide_all();
+        (void)goe_update(&estimator, &image, &estimate);
+        CHECK_STATUS(GOE_OK, ask(0.0));
+        CHECK_CLOSE(0.05, before_m, hazard.clearance_m);
+    }
+}
+
 /* GIVEN an obstacle that is passed at a distance, whose last box comes too soon after another one, WHEN the detector is silent from then on,
  * THEN it stays clear. */
 static void a_box_too_soon_does_not_end_clear(void) {
@@ -557,6 +581,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(an_image_without_a_detection_takes_no_warning_back);
     RUN_TEST(a_new_start_of_the_filter_takes_no_warning_back);
+    RUN_TEST(a_new_start_leaves_the_clearance);
     RUN_TEST(a_wide_building_stays_wide);
     RUN_TEST(the_reach_is_that_of_the_state);
     RUN_TEST(a_turn_before_first_sight_costs_nothing);
