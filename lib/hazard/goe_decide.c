@@ -151,20 +151,23 @@ static bool is_open(goe_decision_t decision) {
     return decision == GOE_DECISION_CLEAR || decision == GOE_DECISION_UNKNOWN;
 }
 
-/* Whether the aircraft is too near now, judged as if it were at rest relative to the obstacle. At a creeping speed, the closest approach is
- * far in the future even if it is near. At a higher speed it is not: within the margin, it comes within the rule's time. The way since the
- * latest image counts as flown toward the obstacle. */
-static GOE_NOINLINE bool is_too_near(const goe_estimator_t *estimator, const goe_intent_t *wide, const goe_rule_t *rule,
-                                     goe_hazard_t *met) {
+/* Whether the aircraft is too near now, judged as if it were at rest relative to the obstacle. On its course, with the closest approach `met`,
+ * it may be near for longer than the rule's time: at a creeping speed, or beside a long wall that the rule clears. The way since the latest
+ * image counts as flown toward the obstacle, and a descent at a creeping speed for the rule's time.
+ *   speed_m_s  relative to the obstacle
+ *   clears     the rule clears the course */
+static bool is_too_near(const goe_estimator_t *estimator, const goe_intent_t *wide, const goe_rule_t *rule,
+                                     float speed_m_s, bool clears, goe_hazard_t *met) {
     const goe_estimate_t *estimate = &estimator->estimate;
-    const goe_xz_t velocity = relative_velocity(estimate, wide);
-    const float speed_m_s = sqrtf(goe_xz_dot(velocity, velocity));
-    if (speed_m_s * rule->act_within_s > wide->margin_m) {
-        return false;
-    }
     goe_intent_t still = *wide;
     goe_hazard_t now;
+    const bool creeps = speed_m_s * rule->act_within_s <= wide->margin_m;
+    if (!creeps && !(clears && met->tcpa_s > rule->act_within_s)) {
+        return false;
+    }
+    const float sinks_m_s = creeps ? goe_larger(wide->velocity_ned_m_s[2], 0.0f) : 0.0f;
     still.margin_m = enlarged(wide->margin_m, 1.0f, speed_m_s * wide->since_image_s);
+    still.clearance_m = enlarged(wide->clearance_m, 1.0f, sinks_m_s * rule->act_within_s);
     still.velocity_ned_m_s[0] = estimate->velocity_north_m_s;
     still.velocity_ned_m_s[1] = estimate->velocity_east_m_s;
     if (judge(estimator, &still, rule, &now) != GOE_DECISION_ACT) {
@@ -174,6 +177,33 @@ static GOE_NOINLINE bool is_too_near(const goe_estimator_t *estimator, const goe
     return true;
 }
 
+/* The caller may not know that images are refused, and since when. The rule therefore also judges the time of the newest refused image. That
+ * time may be wrong: it can only make the decision more severe, and makes no speed creeping. */
+static goe_decision_t decide_checked(const goe_estimator_t *estimator, const goe_intent_t *intent,
+                                     const goe_rule_t *rule, goe_hazard_t *met) {
+    const goe_xz_t velocity = relative_velocity(&estimator->estimate, intent);
+    const float speed_m_s = sqrtf(goe_xz_dot(velocity, velocity));
+    goe_intent_t wide;
+    widen(estimator, intent, intent->since_image_s, rule, &wide);
+    goe_decision_t decision = judge(estimator, &wide, rule, met);
+    const bool clears = decision == GOE_DECISION_CLEAR;
+    const float refused_s = estimator->estimate.age_s;
+    if (is_open(decision) && refused_s > intent->since_image_s) {
+        goe_hazard_t then;
+        goe_intent_t later;
+        widen(estimator, intent, refused_s, rule, &later);
+        const goe_decision_t refused = judge(estimator, &later, rule, &then);
+        if (refused == GOE_DECISION_ACT || (clears && refused != GOE_DECISION_CLEAR)) {
+            *met = then;
+            decision = refused;
+        }
+        if (speed_m_s * rule->act_within_s <= intent->margin_m) {
+            wide = later;
+        }
+    }
+    return is_open(decision) && is_too_near(estimator, &wide, rule, speed_m_s, clears, met) ? GOE_DECISION_ACT : decision;
+}
+
 goe_decision_t goe_decide(const goe_estimator_t *estimator, const goe_intent_t *intent, const goe_rule_t *rule,
                           goe_hazard_t *hazard) {
     goe_hazard_t met;
@@ -181,23 +211,7 @@ goe_decision_t goe_decide(const goe_estimator_t *estimator, const goe_intent_t *
     memset(&met, 0, sizeof met);
     const goe_rule_t *const used = rule ? rule : &by_default;
     if (estimator && intent && is_rule(used) && goe_conflict_check(intent) == GOE_OK) {
-        goe_hazard_t then;
-        goe_intent_t wide;
-        widen(estimator, intent, intent->since_image_s, used, &wide);
-        decision = judge(estimator, &wide, used, &met);
-        if (is_open(decision) && is_too_near(estimator, &wide, used, &met)) {
-            decision = GOE_DECISION_ACT;
-        }
-        /* The caller may not know that images are refused, and since when. The rule therefore also judges the time of the newest refused
-         * image. That time may be wrong: it can only make the decision more severe. */
-        if (is_open(decision) && estimator->estimate.age_s > intent->since_image_s) {
-            widen(estimator, intent, estimator->estimate.age_s, used, &wide);
-            const goe_decision_t refused = judge(estimator, &wide, used, &then);
-            if (refused == GOE_DECISION_ACT || (decision == GOE_DECISION_CLEAR && refused != GOE_DECISION_CLEAR)) {
-                met = then;
-                decision = refused;
-            }
-        }
+        decision = decide_checked(estimator, intent, used, &met);
     }
     if (hazard) {
         *hazard = met;

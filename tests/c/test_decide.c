@@ -142,6 +142,35 @@ static void a_violation_at_a_creeping_speed_is_one_of_now(void) {
     TEST_ASSERT_EQUAL_INT(GOE_DECISION_CLEAR, decide());
 }
 
+/* GIVEN a roof 60 m below and 5 m aside of a hover WHEN the aircraft sinks at 5 m/s THEN the rule acts from act_within_s before the clearance
+ * on; at 1 m/s, at rest and in a climb it does not. */
+static void a_descent_next_to_a_roof_is_foreseen(void) {
+    for (int k = -10; k <= 10; k++) {
+        const stated_t hall = {0.0f, 15.0f, 20.0f, 20.0f, 0.5f, 0.5f, 80.0f}; /* 60 m below; 50 m until the clearance */
+        const float sinks_m_s = 0.7f * (float)k;
+        stated_answer(&estimator, &hall);
+        intent.velocity_ned_m_s[0] = 0.05f;
+        intent.velocity_ned_m_s[2] = sinks_m_s;
+        const bool soon = 12.0f * sinks_m_s > 50.0f;
+        TEST_ASSERT_EQUAL_INT(soon ? GOE_DECISION_ACT : GOE_DECISION_CLEAR, decide());
+    }
+}
+
+/* GIVEN a tank of 40 m radius, 20 m aside of the aircraft, WHEN the course passes it at 6 m, in 14 s, THEN the aircraft is within the margin
+ * of 30 m now; 45 m aside it is not. */
+static void within_the_margin_of_a_wide_obstacle_the_rule_acts(void) {
+    for (int far_aside = 0; far_aside < 2; far_aside++) {
+        const float beyond_m = far_aside == 1 ? 45.0f : 20.0f;
+        const float z_m = sqrtf((40.0f + beyond_m) * (40.0f + beyond_m) - 46.0f * 46.0f);
+        const stated_t tank = {46.0f, z_m, 80.0f, 40.0f, 0.5f, 0.5f, 20.0f};
+        stated_answer(&estimator, &tank);
+        intent.margin_m = 30.0f;
+        intent.velocity_ned_m_s[0] = z_m / 14.0f; /* faster than creeping */
+        TEST_ASSERT_TRUE(12.0f * intent.velocity_ned_m_s[0] > intent.margin_m);
+        TEST_ASSERT_EQUAL_INT(far_aside == 1 ? GOE_DECISION_CLEAR : GOE_DECISION_ACT, decide());
+    }
+}
+
 /* GIVEN a wall ahead that is nearer than the margin which a suspect or an old estimate has widened, or than the margin after the flight
  * since the latest image, WHEN the aircraft flies a little slower or faster THEN the rule acts at every speed: more doubt and more way never
  * end an order. */
@@ -405,6 +434,8 @@ int main(void) {
     RUN_TEST(ahead_is_along_the_course);
     RUN_TEST(the_largest_margin_is_none_too_large);
     RUN_TEST(a_violation_at_a_creeping_speed_is_one_of_now);
+    RUN_TEST(a_descent_next_to_a_roof_is_foreseen);
+    RUN_TEST(within_the_margin_of_a_wide_obstacle_the_rule_acts);
     RUN_TEST(a_widened_margin_counts_at_every_speed);
     RUN_TEST(doubt_and_age_widen);
     RUN_TEST(a_refused_image_moves_the_aircraft_on);
