@@ -116,10 +116,14 @@ static void find_rows(goe_filter_t *filter, goe_observation_t *obs, goe_rows_t *
     goe_model_recall(filter, obs, rows);
 }
 
-/* Notes an image with rows. Returns the ends of the obstacle that no image shows: another camera may have shown them lately, or all of it. */
+/* Notes an image with rows. Returns the ends of the obstacle that no image shows: another camera may have shown them lately, or all of it.
+ * An image without a box shows no end. */
 static unsigned open_ends(goe_filter_t *filter, const goe_observation_t *obs) {
     unsigned open = obs->sides->ends;
     note_use(filter, obs->number);
+    if ((obs->sides->usable | open) == 0u) {
+        return filter->answer.cut;
+    }
 #if GOE_CAMERAS_MAX > 1
     bool whole = false;
     filter->ends[obs->number] = (uint8_t)open;
