@@ -300,7 +300,9 @@ float *goe_rows_add_edge(goe_rows_t *rows, const goe_observation_t *obs, goe_xz_
     if (!measured->usable) {
         return NULL;
     }
-    goe_observation_project_x(obs, place.x, goe_observation_unbiased(obs, feature).y * place.z, place.z, of_x);
+    const float y = goe_observation_unbiased(obs, feature).y;
+    goe_observation_project_x(obs, place.x, y * place.z, place.z, of_x);
+    of_x->z += of_x->y * y; /* the height moves with the distance */
     add_height_of_edge(measured, place.z, of_x);
     return goe_rows_add(rows, feature, GOE_ALONG_X, measured->x, goe_observation_spread(obs, feature).xx + more, of_x);
 }

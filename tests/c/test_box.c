@@ -22,7 +22,6 @@ static check_random_t any;
 static sighting_t sighting;
 static double truth[GOE_STATES];
 static int seen_at[GOE_FEATURES];   /* corner behind each feature */
-static double held_z[GOE_FEATURES]; /* Z of a silhouette point: its height on the edge does not hang on the state's */
 static size_t kind[GOE_ROWS_MAX];   /* feature of each row that should come */
 static bool along_y[GOE_ROWS_MAX];  /* its coordinate */
 static size_t expected_rows;
@@ -128,7 +127,7 @@ static void see(const double state[GOE_STATES], int feature, double seen[2]) {
     const corner_t at = corner[seen_at[feature]];
     const bool silhouette = feature == GOE_POINT_LEFT || feature == GOE_POINT_RIGHT;
     const double y =
-        silhouette ? sighting_height(&sighting, state, (size_t)feature) * held_z[feature] : height_of(state, feature);
+        silhouette ? sighting_height(&sighting, state, (size_t)feature) * at.z : height_of(state, feature);
     const double point[3] = {at.x, y, at.z};
     sighting_project(&sighting, state, point, seen);
 }
@@ -190,7 +189,6 @@ static void measure(int feature, int corner) {
     corners_of(truth, corners);
     seen_at[feature] = corner;
     sighting.sight.point[feature].y = (float)check_random_between(&any, -0.15, 0.15);
-    held_z[feature] = corners[corner].z;
     sighting.sight.point[feature].x = 0.0f;
     for (int i = 0; i < SETTLED; i++) { /* the height that is freed of the bias hangs on x a little */
         see(truth, feature, seen);
