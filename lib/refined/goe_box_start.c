@@ -272,7 +272,7 @@ static void start_box(goe_filter_t *filter, const goe_observation_t *obs, const 
     float *x = filter->state;
     const float size = goe_larger(box->width, box->length);
     goe_observation_age(filter, obs);
-    goe_srif_marginal(&filter->root, c);
+    goe_srif_marginal(&filter->root, obs->settings->navigation.velocity_bias_sd_m_s, c);
     turn_covariance(x, box->turn_cos, box->turn_sin, c);
     c[GOE_BEARING][GOE_BEARING] =
         BEARING_GROWTH * c[GOE_BEARING][GOE_BEARING] + goe_square(BEARING_FREEDOM * size) + BEARING_FLOOR2;

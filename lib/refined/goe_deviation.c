@@ -7,14 +7,16 @@
 
 GOE_STATIC_ASSERT(GOE_GROUND == GOE_UNWEIGHTED, no_quantity_depends_on_the_attitude_bias);
 
-/* Sets the part of the augmented states, if they exist. */
-static void project_augmented(const goe_filter_t *filter, goe_counted_t counted, goe_deviation_t *error) {
+/* (R21), (R35): sets the part of the augmented states, if they exist. A constant error of the own velocity equals a velocity of the obstacle:
+ * it is considered where the latter is not estimated, and part of it where it is. */
+static void project_augmented(const goe_filter_t *filter, const goe_widening_t *wider, goe_counted_t counted,
+                              goe_deviation_t *error) {
 #if GOE_AUGMENTED
     const float direct[GOE_AUGMENTED] = {0.0f, counted.x * counted.at_s, counted.z * counted.at_s};
-    const bool moves = filter->mover.followed;
-    goe_srif_augmented(&filter->root, error->by, GOE_UNWEIGHTED, moves ? direct : NULL, error->augmented);
+    goe_srif_augmented(&filter->root, error->by, GOE_UNWEIGHTED, direct, wider->own_m_s, error->augmented);
 #else
     (void)filter;
+    (void)wider;
     (void)counted;
     error->augmented[0] = 0.0f;
 #endif
@@ -23,7 +25,7 @@ static void project_augmented(const goe_filter_t *filter, goe_counted_t counted,
 float goe_deviation_project(const goe_filter_t *filter, const goe_widening_t *wider, goe_counted_t counted,
                             goe_deviation_t *error) {
     float variance = goe_srif_project(&filter->root, wider->reciprocal, GOE_UNWEIGHTED, error->by);
-    project_augmented(filter, counted, error);
+    project_augmented(filter, wider, counted, error);
     if (goe_filter_traits(filter)->is_ellipse) {
         float *depth = &error->by[GOE_LOG_DEPTH];
         variance += (goe_square(wider->bend) - 1.0f) * goe_square(*depth);

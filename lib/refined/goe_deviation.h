@@ -11,6 +11,7 @@ typedef struct {
     float scatter;                /* factor on the variances by the filter, (R32) */
     float reciprocal[GOE_STATES]; /* of R's diagonal, for the projections */
     float bend;                   /* factor on the part of a footprint's depth, goe_footprint_bend() */
+    float own_m_s;                /* sigma of the own velocity's constant error, over the root of the scatter, which no image shows */
 } goe_widening_t;
 
 typedef struct {
@@ -19,7 +20,7 @@ typedef struct {
 } goe_deviation_t;
 
 /* A direction in T, and the time after the filter's start for which a position along it is valid: the position of a followed obstacle
- * depends on the time. (0, 0) for a quantity that is no position. */
+ * and that by a path with a constant error of the own velocity depend on the time. (0, 0) for a quantity that is no position. */
 typedef struct {
     float x, z, at_s;
 } goe_counted_t;

@@ -8,23 +8,47 @@
 
 #if GOE_WITH_FILTER
 
+#if !GOE_AUGMENTED
 #define PATH_MIN_M 0.1f
 
-static float path_over_ground(const goe_filter_t *filter, const goe_motion_t *motion) {
+/* Without the columns of the obstacle's velocity, an error of the own velocity counts as if it scaled and turned the path. */
+static void scale_path(const goe_filter_t *filter, const goe_motion_t *motion, float drift_m, goe_drift_t *drift) {
     const float dx_m = motion->dx_m - filter->axes.start_dx_m;
     const float dz_m = motion->dz_m - filter->axes.start_dz_m;
-    return sqrtf(dx_m * dx_m + dz_m * dz_m);
+    const float path_m = sqrtf(dx_m * dx_m + dz_m * dz_m);
+    const float straight = filter->flown_m > path_m ? path_m / filter->flown_m : 1.0f;
+    drift->share = drift_m / goe_larger(path_m, PATH_MIN_M);
+    drift->turned_m2 = goe_square(drift_m) * (1.0f - straight * straight);
 }
+
+/* Variance by this scale. */
+static float scaled_m2(const goe_motion_t *motion, const goe_drift_t *drift, const goe_shape_t *shape, bool box,
+                       int quantity) {
+    const float value = shape->quantity[quantity].value;
+    const float far_m = shape->quantity[GOE_Z0].value;
+    const float share2 = goe_square(drift->share);
+    switch (quantity) {
+        case GOE_X0:
+        case GOE_Z0:
+            return share2 * goe_square(far_m) + drift->turned_m2;
+        case GOE_ORIENTATION:
+            return box ? share2 : 0.0f;
+        case GOE_HEIGHT:
+            return share2 * goe_larger(goe_square(value), goe_square(value - motion->height_m));
+        default:
+            return share2 * goe_square(value);
+    }
+}
+#endif
 
 goe_drift_t goe_drift_of(const goe_filter_t *filter, const goe_navigation_t *navigation, const goe_motion_t *motion) {
     goe_drift_t drift;
     const float s = goe_filter_elapsed_s(filter, motion);
     drift.camera_m = goe_filter_camera(filter, motion);
-    const float path_m = path_over_ground(filter, motion);
-    drift.share = navigation->velocity_bias_sd_m_s * s / (path_m > PATH_MIN_M ? path_m : PATH_MIN_M);
-    drift.walk_m2 = goe_square(navigation->position_walk_sd_m) * s;
-    const float straight = filter->flown_m > path_m ? path_m / filter->flown_m : 1.0f;
-    drift.turned_m2 = goe_square(navigation->velocity_bias_sd_m_s * s) * (1.0f - straight * straight);
+    drift.walk_m2 = goe_square(navigation->position_walk_sd_m) * s + goe_square(navigation->position_white_sd_m);
+#if !GOE_AUGMENTED
+    scale_path(filter, motion, navigation->velocity_bias_sd_m_s * s, &drift);
+#endif
     return drift;
 }
 
@@ -34,24 +58,32 @@ float goe_drift_before_start(const goe_filter_t *filter, const goe_navigation_t 
     return goe_square(navigation->velocity_bias_sd_m_s * s) + goe_square(navigation->position_walk_sd_m) * s;
 }
 
-float goe_drift_variance(const goe_motion_t *motion, const goe_drift_t *drift, const goe_shape_t *shape, bool box,
-                         int quantity) {
-    const float share2 = goe_square(drift->share);
-    const float value = shape->quantity[quantity].value;
+/* Variance by the walk of the own position, and by properties of the shape that no image shows. */
+static float given_m2(const goe_drift_t *drift, const goe_shape_t *shape, bool box, int quantity) {
     switch (quantity) {
         case GOE_X0:
         case GOE_Z0:
-            return share2 * goe_square(shape->quantity[GOE_Z0].value) + drift->walk_m2 + drift->turned_m2 +
-                   shape->place_m2;
+            return drift->walk_m2 + shape->place_m2;
         case GOE_ORIENTATION:
-            return box ? share2 + shape->turned_rad2 : 0.0f;
+            return box ? shape->turned_rad2 : 0.0f;
         case GOE_HEIGHT:
-            return share2 * goe_larger(goe_square(value), goe_square(value - motion->height_m)) + shape->top_m2;
+            return shape->top_m2;
         case GOE_WIDTH:
-            return share2 * goe_square(value) + shape->width_m2;
+            return shape->width_m2;
         default:
-            return share2 * goe_square(value);
+            return 0.0f;
     }
+}
+
+float goe_drift_variance(const goe_motion_t *motion, const goe_drift_t *drift, const goe_shape_t *shape, bool box,
+                         int quantity) {
+    const float given = given_m2(drift, shape, box, quantity);
+#if GOE_AUGMENTED
+    (void)motion;
+    return given;
+#else
+    return given + scaled_m2(motion, drift, shape, box, quantity);
+#endif
 }
 
 #endif

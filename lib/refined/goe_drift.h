@@ -5,13 +5,15 @@
 #include "image/goe_ego_motion.h"
 #include "refined/goe_shape.h"
 
-/* A constant velocity error scales and turns the path flown since the filter's start, together with the obstacle: no image shows this
- * error. */
+/* A constant error of the own velocity looks like a velocity of the obstacle: goe_deviation.h considers it. Without the states for it, it
+ * counts as a scale and a turn of the path flown since the filter's start. */
 typedef struct {
     goe_xz_t camera_m; /* displacement since the filter's start */
-    float share;       /* relative error of lengths, error of directions in rad */
     float walk_m2;
+#if !GOE_AUGMENTED
+    float share;     /* relative error of lengths, error of directions in rad */
     float turned_m2; /* the drift's variance that does not scale the path, if the path leads back on itself */
+#endif
 } goe_drift_t;
 
 goe_drift_t goe_drift_of(const goe_filter_t *filter, const goe_navigation_t *navigation, const goe_motion_t *motion);

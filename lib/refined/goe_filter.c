@@ -55,7 +55,7 @@ float goe_filter_error(const goe_filter_t *filter, goe_state_index_t state, floa
     const float variance = goe_srif_project(&filter->root, reciprocal, first, error);
 #if GOE_AUGMENTED
     float part[GOE_AUGMENTED];
-    goe_srif_augmented(&filter->root, error, first, NULL, part);
+    goe_srif_augmented(&filter->root, error, first, NULL, 0.0f, part);
     return variance + goe_srif_augmented_dot(part, part);
 #else
     return variance;

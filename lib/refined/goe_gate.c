@@ -45,7 +45,7 @@ static void gather(const goe_rows_t *rows, goe_axis_t axis, group_t *group) {
 /* Variance by the augmented states. They move the points of an image nearly equally, so differences of points omit it. */
 static float augmented_variance(const goe_filter_t *filter, const float *row, const float projected[GOE_STATES]) {
     float part[GOE_AUGMENTED];
-    goe_srif_augmented(&filter->root, projected, 0, &row[GOE_AUGMENTED_COLUMN], part);
+    goe_srif_augmented(&filter->root, projected, 0, &row[GOE_AUGMENTED_COLUMN], 0.0f, part);
     return goe_srif_augmented_dot(part, part);
 }
 #endif

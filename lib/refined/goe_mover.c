@@ -96,9 +96,12 @@ float goe_mover_own_variance(const goe_navigation_t *navigation, float elapsed_s
 float goe_mover_latency_sd(const goe_filter_t *filter) {
     const float wider = goe_larger(filter->health.mean_nis, 1.0f);
     const float root = filter->root.element[goe_srif_augmented_row()];
-    float part[GOE_UNKNOWNS];
     if (goe_srif_augmented_count(&filter->root) > 0) {
-        return sqrtf(wider * goe_srif_part(&filter->root, GOE_STATES + GOE_AUGMENTED_LATENCY, part) +
+        const float states[GOE_STATES] = {0.0f};
+        const float latency[GOE_AUGMENTED] = {1.0f, 0.0f, 0.0f};
+        float part[GOE_AUGMENTED];
+        goe_srif_augmented(&filter->root, states, GOE_UNWEIGHTED, latency, 0.0f, part);
+        return sqrtf(wider * goe_srif_augmented_dot(part, part) +
                      goe_square(LATENCY_SHARE * filter->mover.augmented[GOE_AUGMENTED_LATENCY]));
     }
     return sqrtf(wider + goe_square(filter->root.right[GOE_AUGMENTED_LATENCY])) / goe_absolute(root);

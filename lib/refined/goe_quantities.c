@@ -199,6 +199,25 @@ static void set_center(const finding_t *f, const goe_deviation_t place[2], goe_q
     }
 }
 
+/* X0 and Z0 count from the start. By a constant error of the own velocity, they differ from the place relative to the camera now by the drift
+ * of the reported path. */
+static void set_began(const finding_t *f, const goe_deviation_t place[2], goe_quantities_t *q) {
+    q->began_m2[0] = 0.0f;
+    q->began_m2[1] = 0.0f;
+#if GOE_AUGMENTED
+    if (!f->filter->mover.followed) {
+        const float drift = f->wider->own_m_s * goe_filter_elapsed_s(f->filter, f->motion);
+        const float x = drift * (drift - 2.0f * place[GOE_X0].augmented[GOE_AUGMENTED_VELOCITY_X]);
+        const float z = drift * (drift - 2.0f * place[GOE_Z0].augmented[GOE_AUGMENTED_VELOCITY_Z]);
+        q->began_m2[0] = f->wider->scatter * x;
+        q->began_m2[1] = f->wider->scatter * z;
+    }
+#else
+    (void)f;
+    (void)place;
+#endif
+}
+
 static void set_velocity(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
                          const goe_widening_t *wider, goe_quantities_t *q) {
     q->moves = false;
@@ -232,6 +251,7 @@ static float bend_of(const goe_filter_t *filter, bool for_hazard) {
 static void widening_of(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
                         const goe_drift_t *drift, goe_shape_t *shape, goe_widening_t *wider) {
     wider->scatter = goe_scatter_factor(filter, goe_gate_repeated(filter, settings->detector.point_correlation));
+    wider->own_m_s = settings->navigation.velocity_bias_sd_m_s / sqrtf(wider->scatter);
     goe_srif_reciprocals(&filter->root, wider->reciprocal);
     goe_shape_doubt(filter, settings->filter.top_is_highest, drift->camera_m, motion->height_m, shape);
 }
@@ -267,6 +287,7 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
     q->known = q->now & filter->known;
     q->value[GOE_X0] += from.x;
     q->value[GOE_Z0] += from.z;
+    set_began(&finding, place, q);
     set_velocity(filter, settings, motion, &wider, q);
     if ((q->known & GOE_HAS_POSITION) && (!q->box || (q->known & GOE_HAS_LENGTH))) {
         set_center(&finding, place, q);
@@ -274,6 +295,20 @@ void goe_quantities_find(const goe_filter_t *filter, const goe_settings_t *setti
 }
 
 /* --------------------------------------------------------------------------------------------------------- covariance -- */
+
+/* The time for which places count: of a followed obstacle that of the closest approach; of a static one now, where only the error of the path
+ * so far counts, or the start, without it. */
+static float counted_s(const goe_filter_t *filter, const goe_motion_t *motion, bool for_hazard, float ahead_s) {
+    const float elapsed_s = goe_filter_elapsed_s(filter, motion);
+#if GOE_AUGMENTED
+    if (!filter->mover.followed) {
+        return for_hazard ? elapsed_s : 0.0f;
+    }
+#else
+    (void)for_hazard;
+#endif
+    return elapsed_s + ahead_s;
+}
 
 void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t *settings, const goe_motion_t *motion,
                                bool for_hazard, float ahead_s, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]) {
@@ -288,7 +323,7 @@ void goe_quantities_covariance(const goe_filter_t *filter, const goe_settings_t 
     wider.bend = bend_of(filter, for_hazard);
     const float scatter = sqrtf(wider.scatter);
     const float corner = sqrtf(shape.corner_growth) * scatter;
-    const float elapsed_s = goe_filter_elapsed_s(filter, motion) + ahead_s;
+    const float elapsed_s = counted_s(filter, motion, for_hazard, ahead_s);
     goe_deviation_t error[GOE_QUANTITIES];
     for (int i = 0; i < GOE_QUANTITIES; i++) {
         error[i].by = shape.quantity[i].by;

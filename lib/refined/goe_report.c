@@ -17,8 +17,8 @@
 static void report_position(const goe_quantities_t *q, const goe_motion_t *motion, goe_estimate_t *estimate) {
     estimate->x0_m = q->value[GOE_X0];
     estimate->z0_m = q->value[GOE_Z0];
-    estimate->sigma.x0_m = sqrtf(goe_square(q->sigma[GOE_X0]) + q->before_m2);
-    estimate->sigma.z0_m = sqrtf(goe_square(q->sigma[GOE_Z0]) + q->before_m2);
+    estimate->sigma.x0_m = sqrtf(goe_larger(goe_square(q->sigma[GOE_X0]) + q->began_m2[0], 0.0f) + q->before_m2);
+    estimate->sigma.z0_m = sqrtf(goe_larger(goe_square(q->sigma[GOE_Z0]) + q->began_m2[1], 0.0f) + q->before_m2);
     goe_motion_relate(motion, estimate);
     estimate->sigma.x_m = q->sigma[GOE_X0];
     estimate->sigma.z_m = q->sigma[GOE_Z0];

@@ -269,28 +269,6 @@ void goe_srif_spread(goe_triangle_t *root, const float direction[GOE_STATES], si
 
 /* ---------------------------------------------------------------------------------------------------------- variances -- */
 
-/* Each row of R subtracts its element of the solution from the later ones. */
-float goe_srif_part(const goe_triangle_t *root, size_t unknown, float part[GOE_UNKNOWNS]) {
-    const size_t count = goe_srif_count(root);
-    const float *first = &root->element[goe_srif_row(unknown)];
-    const float own = 1.0f / first[unknown];
-    float variance = own * own;
-    part[unknown] = own;
-    for (size_t j = unknown + 1; j < count; j++) {
-        part[j] = -(first[j] * own);
-    }
-    for (size_t i = unknown + 1; i < count; i++) {
-        const float *r = &root->element[goe_srif_row(i)];
-        const float solved = part[i] / r[i];
-        part[i] = solved;
-        variance += solved * solved;
-        for (size_t j = i + 1; j < count; j++) {
-            part[j] -= r[j] * solved;
-        }
-    }
-    return variance;
-}
-
 GOE_STATIC_ASSERT(GOE_STATES == 10 && GOE_UNWEIGHTED == 3, the_projection_is_written_out_for_ten_states);
 
 /*@ requires \valid_read(root) && i <= j < GOE_UNKNOWNS; */
@@ -378,14 +356,14 @@ static GOE_INLINE void take_out(const goe_triangle_t *root, size_t i, float y, f
 }
 
 void goe_srif_augmented(const goe_triangle_t *root, const float projected[GOE_STATES], size_t first,
-                        const float direct[GOE_AUGMENTED], float part[GOE_AUGMENTED]) {
+                        const float direct[GOE_AUGMENTED], float considered, float part[GOE_AUGMENTED]) {
     const size_t count = goe_srif_augmented_count(root);
     const float *t = &root->element[goe_srif_augmented_row()];
     float p[GOE_AUGMENTED] = {0.0f, 0.0f, 0.0f};
     part[0] = 0.0f;
     part[1] = 0.0f;
     part[2] = 0.0f;
-    if (count == 0) {
+    if (count == 0 && !(considered > 0.0f)) {
         return;
     }
     if (direct) {
@@ -405,25 +383,33 @@ void goe_srif_augmented(const goe_triangle_t *root, const float projected[GOE_ST
     take_out(root, 7, projected[7], p);
     take_out(root, 8, projected[8], p);
     take_out(root, 9, projected[9], p);
-    part[0] = p[0] / t[0];
-    if (count > 1) {
-        part[1] = (p[1] - t[1] * part[0]) / t[3];
+    if (count > 0) {
+        part[0] = p[0] / t[0];
+        p[1] -= t[1] * part[0];
+        p[2] -= t[2] * part[0];
     }
-    if (count > 2) {
-        part[2] = (p[2] - t[2] * part[0] - t[4] * part[1]) / t[5];
-    }
+    part[1] = count > 1 ? p[1] / t[3] : considered * p[1];
+    part[2] = count > 2 ? (p[2] - t[4] * part[1]) / t[5] : considered * p[2];
 }
 #endif
 
-void goe_srif_marginal(const goe_triangle_t *root, float covariance[GOE_KEPT][GOE_KEPT]) {
-    float part[GOE_KEPT][GOE_UNKNOWNS];
-    const size_t count = goe_srif_count(root);
+void goe_srif_marginal(const goe_triangle_t *root, float considered, float covariance[GOE_KEPT][GOE_KEPT]) {
+    float reciprocal[GOE_STATES];
+    float error[GOE_KEPT][GOE_UNKNOWNS];
+    goe_srif_reciprocals(root, reciprocal);
+    memset(error, 0, sizeof error);
     for (size_t j = 0; j < GOE_KEPT; j++) {
-        covariance[j][j] = goe_srif_part(root, j, part[j]);
-        for (size_t i = 0; i < j; i++) {
+        error[j][j] = 1.0f;
+        (void)goe_srif_project(root, reciprocal, 0, error[j]);
+#if GOE_AUGMENTED
+        goe_srif_augmented(root, error[j], 0, NULL, considered, &error[j][GOE_STATES]);
+#else
+        (void)considered;
+#endif
+        for (size_t i = 0; i <= j; i++) {
             float sum = 0.0f;
-            for (size_t k = j; k < count; k++) {
-                sum += part[i][k] * part[j][k];
+            for (size_t k = j; k < GOE_UNKNOWNS; k++) {
+                sum += error[i][k] * error[j][k];
             }
             covariance[i][j] = sum;
         }

@@ -82,12 +82,6 @@ void goe_srif_solve(const goe_triangle_t *root, float right[GOE_UNKNOWNS]);
 /*@ requires \valid(root) && \valid_read(direction + (0 .. GOE_STATES - 1)) && first <= last < GOE_STATES; */
 void goe_srif_spread(goe_triangle_t *root, const float direction[GOE_STATES], size_t first, size_t last, float sigma);
 
-/* Sets part to R^-1' times the unit vector of an unknown, a state or an estimated augmented state: its error in terms of independent unit
- * errors. Only the elements from the unknown on are written; those before it count as 0. The covariance of two unknowns is the product of
- * their parts. Returns the variance. */
-/*@ requires \valid_read(root) && unknown < GOE_UNKNOWNS && \valid(part + (0 .. GOE_UNKNOWNS - 1)); */
-float goe_srif_part(const goe_triangle_t *root, size_t unknown, float part[GOE_UNKNOWNS]);
-
 /* One over the diagonal of R: several projections share the divisions. */
 void goe_srif_reciprocals(const goe_triangle_t *root, float reciprocal[GOE_STATES]);
 
@@ -104,12 +98,13 @@ static inline float goe_srif_last_variance(const float projected[GOE_STATES]) {
 
 #if GOE_AUGMENTED
 /* Sets part[], whose sum of squares is the contribution of the augmented states to the variance of w' x + direct' augmented. projected: the
- * projected w, whose elements before `first`, 0 or GOE_UNWEIGHTED, are 0. direct may be null. */
+ * projected w, whose elements before `first`, 0 or GOE_UNWEIGHTED, are 0. direct may be null. considered: sigma of the target's velocity
+ * while it is not estimated. */
 /*@ requires \valid_read(root) && \valid_read(projected + (0 .. GOE_STATES - 1));
     requires direct == \null || \valid_read(direct + (0 .. GOE_AUGMENTED - 1));
     requires \valid(part + (0 .. GOE_AUGMENTED - 1)); */
 void goe_srif_augmented(const goe_triangle_t *root, const float projected[GOE_STATES], size_t first,
-                        const float direct[GOE_AUGMENTED], float part[GOE_AUGMENTED]);
+                        const float direct[GOE_AUGMENTED], float considered, float part[GOE_AUGMENTED]);
 #endif
 
 /* Covariance of two such contributions, or the variance of one; 0 if there are no augmented states. */
@@ -122,9 +117,9 @@ static inline float goe_srif_augmented_dot(const float *a, const float *b) {
     return sum;
 }
 
-/* Covariance of the first GOE_KEPT states; upper half. */
+/* Covariance of the first GOE_KEPT states; upper half. considered: as for goe_srif_augmented(). */
 #define GOE_KEPT 6
-void goe_srif_marginal(const goe_triangle_t *root, float covariance[GOE_KEPT][GOE_KEPT]);
+void goe_srif_marginal(const goe_triangle_t *root, float considered, float covariance[GOE_KEPT][GOE_KEPT]);
 
 /* Sets R from the covariance of the first states, which is overwritten, and the sigmas of the others, which are independent of them. */
 void goe_srif_from_covariance(float covariance[GOE_KEPT][GOE_KEPT], const float sigma[GOE_STATES - GOE_KEPT],

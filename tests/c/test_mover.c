@@ -134,8 +134,8 @@ static void a_change_of_states_keeps_augmented_states(void) {
     CHECK_CLOSE(1.0e-6, 0.5 * 2.0, *goe_srif_at(&root, GOE_TOP, GOE_STATES) * *goe_srif_at(&root, GOE_TOP, GOE_TOP));
 }
 
-/* [(R33), (R35)] GIVEN an estimate with augmented states THEN the variance of a quantity, on which the attitude's bias has
- * no part, and of a row, is that of the whole inverse. */
+/* [(R21), (R33), (R35)] GIVEN an estimate with augmented states THEN the variance of a quantity, on which the attitude's bias has
+ * no part, and of a row, is that of the whole inverse. A velocity that is not estimated adds the square of its effect times its sigma. */
 static void the_variance_includes_augmented_states(void) {
     goe_triangle_t root;
     memset(&root, 0, sizeof root);
@@ -145,10 +145,13 @@ static void the_variance_includes_augmented_states(void) {
         }
         *goe_srif_at(&root, i, i) = 3.0f;
     }
-    root.estimated = GOE_AUGMENTED;
     float reciprocal[GOE_STATES];
     goe_srif_reciprocals(&root, reciprocal);
     for (int c = 0; c < CASES; c++) {
+        static const uint8_t estimated[] = {GOE_AUGMENTED, 1, 0};
+        root.estimated = estimated[c % 3];
+        const size_t count = (size_t)GOE_STATES + root.estimated;
+        const double considered = c % 4 == 0 ? 0.0 : 0.3;
         float weight[GOE_STATES];
         float direct[GOE_AUGMENTED];
         float part[GOE_AUGMENTED];
@@ -164,11 +167,18 @@ static void the_variance_includes_augmented_states(void) {
             v[i] /= (double)*goe_srif_at(&root, i, i);
         }
         double expected = 0.0;
-        for (size_t i = 0; i < UNKNOWNS; i++) {
+        for (size_t i = 0; i < count; i++) {
             expected += v[i] * v[i];
         }
+        for (size_t i = count > GOE_STATES ? count : GOE_STATES + 1; i < UNKNOWNS; i++) {
+            double effect = (double)direct[i - GOE_STATES];
+            for (size_t k = 0; k < count; k++) {
+                effect -= (double)*goe_srif_at(&root, k, i) * v[k];
+            }
+            expected += considered * considered * effect * effect;
+        }
         double sum = (double)goe_srif_project(&root, reciprocal, first, weight);
-        goe_srif_augmented(&root, weight, first, direct, part);
+        goe_srif_augmented(&root, weight, first, direct, (float)considered, part);
         for (size_t i = 0; i < GOE_AUGMENTED; i++) {
             sum += (double)part[i] * (double)part[i];
         }
@@ -487,6 +497,9 @@ static void be_followed(float x_m_s, float z_m_s, float sd_m_s, float latency_s,
     judged.mover.augmented[2] = z_m_s;
     judged.root.estimated = GOE_AUGMENTED;
     const float sigma[3] = {sd_s, sd_m_s, sd_m_s};
+    for (size_t i = 0; i < GOE_STATES; i++) {
+        *goe_srif_at(&judged.root, i, i) = 1.0f;
+    }
     for (size_t i = 0; i < 3; i++) {
         inverse_set(&judged.root, GOE_STATES + i, GOE_STATES + i, (double)sigma[i]);
     }

@@ -425,10 +425,10 @@ static void covariances_are_those_of_the_state(void) {
     }
 }
 
-/* [goe_drift.c, (R21)]
- * GIVEN a state that is exact and an own velocity with a constant error WHEN the aircraft has flown for ten seconds THEN all lengths
- * are off by the effect of the error on the path, as no image shows it; a path that leads back on itself is not scaled, but the place is
- * off by the sum along the way; the walk of the own position moves the place, and from the track's first image on. */
+/* [goe_deviation.c, (R21)]
+ * GIVEN a state that is exact but for an own velocity with a constant error, which images have made an error of the range, WHEN the aircraft
+ * has flown for ten seconds THEN all lengths are off by that share, and the place relative to the camera also by the path's error; not the
+ * place relative to the camera at the start. The walk of the own position moves the place, and from the track's first image on. */
 static void errors_of_own_motion_are_in_the_sigmas(void) {
     any = check_random_start("drift");
     for (int n = 0; n < CASES; n++) {
@@ -437,33 +437,41 @@ static void errors_of_own_motion_are_in_the_sigmas(void) {
         be_uncertain(CERTAIN);
         settings.navigation.velocity_bias_sd_m_s = 0.2f;
         settings.navigation.position_walk_sd_m = 0.1f;
-        const double path = hypot((double)motion.dx_m - (double)filter.axes.start_dx_m,
-                                  (double)motion.dz_m - (double)filter.axes.start_dz_m);
-        const bool turned = n % 2 != 0;
-        filter.flown_m = (float)(turned ? 2.0 * path : 0.5 * path);
+        const double q = (double)filter.state[GOE_INVERSE_RANGE];
+        const double share_s_m = between(-0.1, 0.1); /* relative error of lengths, per m/s along X */
+        inverse_start(&filter.root, CERTAIN);
+        *goe_srif_at(&filter.root, GOE_INVERSE_RANGE, GOE_STATES + GOE_AUGMENTED_VELOCITY_X) =
+            *goe_srif_at(&filter.root, GOE_INVERSE_RANGE, GOE_INVERSE_RANGE) * (float)(-q * share_s_m);
         goe_quantities_find(&filter, &settings, &motion, &quantities);
-        const double share = 0.2 * s / path;
-        const double z0 = (double)quantities.value[GOE_Z0] - (double)filter.axes.start_dz_m;
-        const double back = turned ? 0.2 * 0.2 * s * s * 0.75 : 0.0;
-        const double moved = sqrt(share * share * z0 * z0 + 0.01 * s + back + beyond_of(GOE_Z0));
+        const double share = 0.2 * share_s_m;
+        const double x = (double)quantities.value[GOE_X0] - (double)filter.axes.start_dx_m;
+        const double z = (double)quantities.value[GOE_Z0] - (double)filter.axes.start_dz_m;
+        const double rest = 0.01 * s + beyond_of(GOE_Z0);
+        const double x_now = sqrt(rest + squared(0.2 * s - share * x));
+        const double z_now = sqrt(rest + squared(share * z) + squared(0.2 * s));
+        CHECK_CLOSE(SHARE * x_now, x_now, quantities.sigma[GOE_X0]);
+        CHECK_CLOSE(SHARE * z_now, z_now, quantities.sigma[GOE_Z0]);
+        CHECK_CLOSE(SHARE, squared(share * x) - squared(0.2 * s - share * x), quantities.began_m2[0]);
+        CHECK_CLOSE(SHARE, -squared(0.2 * s), quantities.began_m2[1]);
         const double height = (double)quantities.value[GOE_HEIGHT];
-        CHECK_CLOSE(SHARE * moved, moved, quantities.sigma[GOE_X0]);
-        CHECK_CLOSE(SHARE * moved, moved, quantities.sigma[GOE_Z0]);
         const double wide = hypot(share * (double)quantities.value[GOE_WIDTH], sqrt(beyond_of(GOE_WIDTH)));
-        const double high = hypot(share * fmax(height, fabs(height - 15.0)), sqrt(beyond_of(GOE_HEIGHT) + hidden2()));
+        const double high = hypot(share * height, sqrt(beyond_of(GOE_HEIGHT) + hidden2()));
         CHECK_CLOSE(SHARE, wide, quantities.sigma[GOE_WIDTH]);
         CHECK_CLOSE(SHARE, high, quantities.sigma[GOE_HEIGHT]);
         if (quantities.box) {
-            const double askew = hypot(share, sqrt(beyond_of(GOE_ORIENTATION)));
-            CHECK_CLOSE(SHARE * askew, askew, quantities.sigma[GOE_ORIENTATION]);
-            CHECK_CLOSE(SHARE, share * (double)quantities.value[GOE_LENGTH], quantities.sigma[GOE_LENGTH]);
+            CHECK_CLOSE(SHARE, sqrt(beyond_of(GOE_ORIENTATION)), quantities.sigma[GOE_ORIENTATION]);
+            CHECK_CLOSE(SHARE, fabs(share) * (double)quantities.value[GOE_LENGTH], quantities.sigma[GOE_LENGTH]);
         }
         CHECK_CLOSE(1.0e-4, 0.2 * 0.2 * 2.0 * 2.0 + 0.01 * 2.0,
                     quantities.before_m2); /* two seconds before it started */
-        if (quantities.known & GOE_HAS_CENTER) {
-            CHECK_CLOSE(2.0 * SHARE * moved, moved, quantities.center_sd_m[0]);
-            CHECK_CLOSE(2.0 * SHARE * moved, moved, quantities.center_sd_m[1]);
+        filter.mover.followed = true;      /* then the velocity is the obstacle's, and estimated */
+        filter.root.estimated = GOE_AUGMENTED;
+        for (size_t i = 0; i < GOE_AUGMENTED; i++) {
+            *goe_srif_at(&filter.root, GOE_STATES + i, GOE_STATES + i) = 1.0e9f;
         }
+        goe_quantities_find(&filter, &settings, &motion, &quantities);
+        CHECK_CLOSE(SHARE * sqrt(rest), sqrt(rest), quantities.sigma[GOE_X0]);
+        CHECK_SAME(0.0f, quantities.began_m2[0]);
     }
 }
 
@@ -477,27 +485,34 @@ static double met_share(void) {
     return (double)aspect.across.reach / (double)filter.state[GOE_HALF];
 }
 
-/* GIVEN the same THEN that is on the covariance's diagonal alone; for X0 and Z0 including the time before the filter's start, but not
- * for a hazard, as the camera now has no part in that. */
-static void errors_of_own_motion_are_on_the_diagonal(void) {
+/* GIVEN the same THEN it is in the covariance: of X0 and Z0 relative to the start, including the time before it; for a hazard relative to the
+ * camera now, which has no part in the time before. */
+static void errors_of_own_motion_are_in_the_covariance(void) {
     any = check_random_start("drift of covariances");
     for (int n = 0; n < CASES; n++) {
         float now[GOE_QUANTITIES][GOE_QUANTITIES];
         float ahead[GOE_QUANTITIES][GOE_QUANTITIES];
+        float exact[GOE_QUANTITIES][GOE_QUANTITIES];
         make_any(phases[n % 3]);
         be_uncertain(CERTAIN);
         settings.navigation.velocity_bias_sd_m_s = 0.2f;
         settings.navigation.position_walk_sd_m = 0.1f;
         goe_quantities_find(&filter, &settings, &motion, &quantities);
         goe_quantities_covariance(&filter, &settings, &motion, false, 0.0f, now);
-        goe_quantities_covariance(&filter, &settings, &motion, true, 0.0f, ahead);
+        goe_quantities_covariance(&filter, &settings, &motion, true, 5.0f, ahead);
+        settings.navigation.velocity_bias_sd_m_s = 0.0f;
+        goe_quantities_covariance(&filter, &settings, &motion, true, 5.0f, exact);
         for (int i = 0; i < GOE_QUANTITIES; i++) {
-            const double variance = (double)quantities.sigma[i] * (double)quantities.sigma[i];
-            const double early = i <= GOE_Z0 ? (double)quantities.before_m2 : 0.0;
-            CHECK_CLOSE(SHARE * (variance + 1.0e-6), variance + early, now[i][i]);
-            const double hidden = i == GOE_HEIGHT ? hidden2() : 0.0;
-            const double met = i == GOE_WIDTH ? variance * squared(met_share()) : variance - hidden;
-            CHECK_CLOSE(SHARE * (met + 1.0e-6), met, ahead[i][i]);
+            const double variance = squared((double)quantities.sigma[i]);
+            const double early = i <= GOE_Z0 ? (double)quantities.began_m2[i] + (double)quantities.before_m2 : 0.0;
+            CHECK_CLOSE(SHARE * variance + 1.0e-7, variance + early, now[i][i]);
+            CHECK_CLOSE(1.0e-3, i <= GOE_Z0 ? squared(0.2 * 10.0) : 0.0, ahead[i][i] - exact[i][i]);
+            if (i > GOE_Z0) { /* the place is that of a circle */
+                const double met = i == GOE_WIDTH    ? variance * squared(met_share())
+                                   : i == GOE_HEIGHT ? variance - hidden2()
+                                                     : variance;
+                CHECK_CLOSE(SHARE * met + 1.0e-7, met, ahead[i][i]);
+            }
             CHECK_CLOSE(SHARE * variance + 1.0e-4, 0.0, i > 0 ? now[i][i - 1] : 0.0f);
         }
     }
@@ -555,7 +570,7 @@ static void sigmas_are_the_roots_of_the_diagonal(void) {
         goe_quantities_find(&filter, &settings, &motion, &quantities);
         goe_quantities_covariance(&filter, &settings, &motion, false, 0.0f, covariance);
         for (int i = 0; i < GOE_QUANTITIES; i++) {
-            const double early = i <= GOE_Z0 ? (double)quantities.before_m2 : 0.0;
+            const double early = i <= GOE_Z0 ? (double)quantities.began_m2[i] + (double)quantities.before_m2 : 0.0;
             const double expected = squared((double)quantities.sigma[i]) + early;
             CHECK_CLOSE(1.0e-4 * expected + 1.0e-9, expected, covariance[i][i]);
         }
@@ -644,7 +659,7 @@ int main(void) {
     RUN_TEST(augmented_states_widen_the_sigmas);
     RUN_TEST(covariances_are_those_of_the_state);
     RUN_TEST(errors_of_own_motion_are_in_the_sigmas);
-    RUN_TEST(errors_of_own_motion_are_on_the_diagonal);
+    RUN_TEST(errors_of_own_motion_are_in_the_covariance);
     RUN_TEST(the_altimeters_error_is_not_between_camera_and_top);
     RUN_TEST(sigmas_are_the_roots_of_the_diagonal);
     RUN_TEST(a_reported_value_was_known_twice);

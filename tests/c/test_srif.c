@@ -442,11 +442,13 @@ static void the_root_times_a_part_is_one(void) {
         goe_triangle_t root = no_root;
         random_root(&root);
         const dense_t r = dense_of(&root);
+        float reciprocal[N];
+        goe_srif_reciprocals(&root, reciprocal);
         for (size_t state = 0; state < N; state++) {
-            float part[GOE_UNKNOWNS];
+            float part[N] = {0.0f};
             double squares = 0.0;
-            const float variance = goe_srif_part(&root, state, part);
-            memset(part, 0, state * sizeof part[0]); /* is 0, and not written */
+            part[state] = 1.0f;
+            const float variance = goe_srif_project(&root, reciprocal, 0, part);
             for (size_t j = 0; j < N; j++) {
                 double product = 0.0;
                 double size = 1.0;
@@ -513,7 +515,7 @@ static void a_marginal_makes_a_root_again(void) {
         float sigma[N - GOE_KEPT];
         random_root(&root);
         dense_t expected = covariance_of(&root);
-        goe_srif_marginal(&root, c);
+        goe_srif_marginal(&root, 0.0f, c);
         for (size_t i = 0; i < N; i++) {
             for (size_t j = i; j < N; j++) {
                 if (j < GOE_KEPT) {

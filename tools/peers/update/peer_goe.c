@@ -37,9 +37,12 @@ void peer_solve(int slot) {
     state_t *state = &states[slot];
     state->nis = goe_srif_update(&state->root, state->nuisance_root, &state->rows, state->count, state->change);
 #if WITH_INVERSE
+    float reciprocal[GOE_STATES];
+    goe_srif_reciprocals(&state->root, reciprocal);
     for (size_t i = 0; i < GOE_STATES; i++) {
-        float part[GOE_UNKNOWNS];
-        (void)goe_srif_part(&state->root, i, part);
+        float part[GOE_STATES] = {0.0f};
+        part[i] = 1.0f;
+        (void)goe_srif_project(&state->root, reciprocal, 0, part);
         for (size_t j = i; j < GOE_STATES; j++) {
             state->inverse[j * (j + 1) / 2 + i] = part[j];
         }
