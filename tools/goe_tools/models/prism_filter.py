@@ -28,6 +28,16 @@ its prior and is not estimated (a consider parameter, Schmidt): the gain K uses 
 Later images estimate it: K, for all states, uses the covariance of all states, and P, z, var(d) follow from the
 updated one.
 
+A constant error of the own velocity is a consider parameter, too. The obstacle seems to move with it: v, m/s, along the
+axes' X and Z. No image estimates v. U v is the error of the state that v causes. With the derivatives J_v of the rows
+by a velocity of the obstacle, which the sides' memories whiten as well,
+
+    start       U = 0
+    update      U <- U + K (J_v - J U)
+    report      variance of w'x += velocity_bias^2 |U'w|^2
+
+The process noise leaves U as it is.
+
 If the residuals of a track are larger than configured, or correlated from image to image, the filter widens its sigmas:
 it multiplies the variance by ``Scatter.factor``.
 Not modeled: the library's reaction to sides that repeatedly do not fit, which is to restart."""
@@ -42,10 +52,8 @@ from ..flights.flight import Flight
 from .altimeter import Altimeter
 from .model import undistort
 from .prism import (
-    AXIS,
     BX,
     PZ,
-    STATES,
     A,
     D,
     E,
@@ -65,8 +73,8 @@ from .prism import (
     visible_row_of,
 )
 from .scatter import RATIO_MOST, Scatter
+from .side_memory import COLUMNS, COUNT, Memory, Rows, learn, slopes_with_velocity
 
-COUNT = len(STATES)
 SCATTER_SHARE = 0.01  # white part of a side's error, of the box's size
 EARLY_SHARE = 0.08  # of tau: images at a shorter distance from the last one are not used
 GAP_MAX_S = 1000.0  # longer gaps count as this
@@ -84,7 +92,6 @@ GROUND_MIN = 1e-6  # units of Z0
 NARROW, WIDE, SCALE_MIN = 0.95, 1.05, 0.05  # of 1/Z0 when the sigma of G was set, over the present one
 GROWN = 1e-3  # of the height's information: less waits for more
 RANGE_SHARE = 10.0  # largest relative sigma of a range at which the readings count: as large as the setting can be
-PATH_MIN_M = 0.1
 SHEAR_SHARE = 0.6  # sigma of s, of the first half width
 DEPTH_SD = 1.0  # of d
 ROUND_SHEAR_SHARE, ROUND_DEPTH_SD = 0.02, 1e-3  # the same if the model is a disc
@@ -99,35 +106,6 @@ def footprint_sds(errors: ErrorModel, half: float) -> tuple[float, float]:
 def knows_depth(sight: Sight, state: np.ndarray) -> bool:
     """Whether an image estimates d."""
     return abs(turned(sight, state)) > DEPTH_TURNED
-
-
-@dataclass
-class Memory:
-    """A side's correlated error, given the state: value - by (x - state), focal lengths."""
-
-    value: float
-    by: np.ndarray  # (10,)
-    variance: float
-    measured: bool = False  # in an earlier image
-
-    def predict(self, share: float, variance: float) -> None:
-        if not self.measured:
-            self.variance = variance
-            return
-        self.value *= share
-        self.by = self.by * share
-        self.variance = min(share**2 * self.variance + (1 - share**2) * variance, variance)
-
-
-@dataclass
-class Rows:
-    """The n rows of an image; variances per row."""
-
-    side: np.ndarray  # (n,)
-    residual: np.ndarray
-    slope: np.ndarray  # (n, 10)
-    own: np.ndarray
-    about: np.ndarray  # (n, 3) by unit errors of the image's attitude, which all rows share; the state's axes
 
 
 @dataclass
@@ -208,8 +186,8 @@ class PrismFilter:
         if cut:
             sd[W] = max(0.5 * size, self.errors.prior_width_m / range_m)
         self._divide(np.diag(sd**2))
-        self.memory = [Memory(0.0, np.zeros(COUNT), 0.0) for _ in range(4)]
-        self.flown_m, self.last_m = 0.0, in_t.moved_m  # along the path since the start
+        self.memory = [Memory(0.0, np.zeros(COLUMNS), 0.0) for _ in range(4)]
+        self.by_velocity = np.zeros((COUNT, 2))  # U
         self.settled, self.gained = self.full_covariance(), np.zeros(COUNT)  # after the latest image, and since
         self.due_s, self.walked_s = 0.0, np.zeros(2)  # since the walk was added along X, and along Z
         self.known = False  # the position
@@ -299,7 +277,7 @@ class PrismFilter:
             gained = 1 / self._ground_variance(self.first_m2) - 1 / self._ground_variance(self.first_m2, self.scale)
             weight = np.sqrt(gained)
             residual.append(-weight * self.state[G])
-            slope.append(weight * np.eye(COUNT)[G])
+            slope.append(weight * np.eye(COLUMNS)[G])
             self.scale = 1.0
         information, before = (1 / self._ground_variance(v) for v in (self.altimeter.sd_m**2, self.taken_m2))
         grown = information - before
@@ -307,7 +285,7 @@ class PrismFilter:
             weight, mean_m = np.sqrt(grown), self.altimeter.mean_m
             read_m = (information * mean_m - before * self.taken_mean_m) / grown
             residual.append(weight * (read_m * self.state[Q] - self.state[G]))
-            slope.append(weight * (np.eye(COUNT)[G] - self.state[G] / self.state[Q] * np.eye(COUNT)[Q]))
+            slope.append(weight * (np.eye(COLUMNS)[G] - self.state[G] / self.state[Q] * np.eye(COLUMNS)[Q]))
             self.taken_m2, self.taken_mean_m = self.altimeter.sd_m**2, mean_m
         if not residual:
             return rows
@@ -336,7 +314,8 @@ class PrismFilter:
         own += 2 * (position_sd * slope[:, PZ]) ** 2
         white = np.hypot(np.radians(errors.attitude_white_sd_deg), position_sd * self.state[Q] / ahead)
         residual = np.array([sight.side[row.side] - row.predicted for row in rows])
-        return Rows(side, residual, slope[:, :COUNT], own, white * slope[:, :3] @ sight.axes_from_body.T)
+        by = slopes_with_velocity(slope, sight.time_s - self.start_s)
+        return Rows(side, residual, by, own, white * slope[:, :3] @ sight.axes_from_body.T)
 
     def _whiten(self, sight: Sight, span_s: float, rows: Rows | None) -> None:
         errors = self.errors
@@ -351,7 +330,7 @@ class PrismFilter:
 
     def _innovation2(self, rows: Rows, weight: np.ndarray) -> float:
         """Normalized square of a weighted sum of residuals, without the contribution of a walk along Z."""
-        slope = weight @ rows.slope
+        slope = weight @ rows.slope[:, :COUNT]
         variance = slope @ (self.settled + np.diag(self.gained)) @ slope + weight**2 @ rows.own
         variance += np.sum((weight @ rows.about) ** 2)
         return float((weight @ rows.residual) ** 2 / variance)
@@ -376,18 +355,6 @@ class PrismFilter:
                 result[row] = self._innovation2(rows, unit[row] - unit[middle] if common else unit[row])
         return result
 
-    def _learn(self, rows: Rows) -> None:
-        """Of each side; the error of the attitude, which opposite sides share, is estimated and removed."""
-        common, axis = rows.about @ rows.about.T, AXIS[rows.side]
-        for i, side in enumerate(rows.side):
-            memory, pair = self.memory[side], np.flatnonzero(axis == axis[i])
-            share = common[i, pair] / rows.own[pair] / (1 + (common[pair, pair] / rows.own[pair]).sum())
-            gain = memory.variance / rows.own[i] * ((pair == i) - share)
-            memory.value += gain @ rows.residual[pair]
-            memory.by = memory.by + gain @ rows.slope[pair]
-            memory.variance -= gain[pair == i][0] * memory.variance
-            memory.measured = True
-
     def _update(self, rows: Rows, estimate_depth: bool) -> float:
         """Returns the normalized square of the residuals (nis) as expected with the depth as it is, or estimated."""
         count = COUNT if estimate_depth else D
@@ -396,6 +363,7 @@ class PrismFilter:
         expected = slope @ covariance @ slope.T + noise
         gain = np.linalg.solve(expected, slope @ covariance).T
         rest = np.eye(count) - gain @ slope
+        self.by_velocity[:count] += gain @ (rows.slope[:, COUNT:] - rows.slope[:, :COUNT] @ self.by_velocity)
         covariance = rest @ covariance @ rest.T + gain @ noise @ gain.T
         if estimate_depth:
             self._divide(covariance)
@@ -412,7 +380,7 @@ class PrismFilter:
         self.scale *= before / self.state[Q]
         self.state[D] = np.clip(self.state[D], -DEPTH_LIMIT, DEPTH_LIMIT)
         for memory in self.memory:
-            memory.value -= memory.by[: len(change)] @ change
+            memory.follow(change)
 
     def take(self, in_t: Sight) -> bool:
         """Takes an image; returns whether it was used."""
@@ -424,8 +392,6 @@ class PrismFilter:
         in_t = self.altimeter.read(in_t, started, 0.0 if too_soon else since_s)
         if too_soon or (not started and not self.start(in_t)):
             return False
-        self.flown_m += float(np.linalg.norm((in_t.moved_m - self.last_m)[[0, 2]]))
-        self.last_m = in_t.moved_m
         sight = in_t.turned(self.turn, self.origin_m)
         self.time_s = in_t.time_s
         q_variance = self.full_covariance()[Q, Q]
@@ -448,7 +414,7 @@ class PrismFilter:
             self.scatter.take_fit(RATIO_MOST)
             return False
         self.rows_s = in_t.time_s
-        self._learn(rows)
+        learn(self.memory, rows)
         self._doubt_height()
         self._age(since_s)
         rows = self._height_rows(rows)
@@ -461,27 +427,18 @@ class PrismFilter:
     # ----------------------------------------------------------------------------------------------------- quantities
 
     def report(self, in_t: Sight) -> tuple[np.ndarray, np.ndarray]:
-        """(4,) X0, Z0, W, H and their sigmas, m. Includes the effect of the configured velocity errors on the flown
-        path: they scale and turn it, and the obstacle with it."""
+        """(4,) X0, Z0, W, H and their sigmas, m. X0 and Z0 count from the track's first image."""
         errors = self.errors
         values = quantities(self.state, self.turn)
         slopes = quantity_slopes(self.state, self.turn)
         depth_sd = float(np.sqrt(self.depth_variance))
         reported = self.full_covariance(np.expm1(depth_sd) / depth_sd)  # the depth is exponential in its state
         variance = np.einsum("ij,jk,ik->i", slopes, reported, slopes) * self.scatter.factor()
-        span_s = in_t.time_s - self.start_s
-        path_m = max(float(np.linalg.norm((in_t.moved_m - self.origin_m)[[0, 2]])), PATH_MIN_M)
-        share = errors.velocity_bias_sd_m_s * span_s / path_m
-        above_m = max(abs(values[3]), abs(values[3] - in_t.given_height_m))
-        variance += (share * np.array([values[1], values[1], values[2], above_m])) ** 2
+        variance += errors.velocity_bias_sd_m_s**2 * ((slopes @ self.by_velocity) ** 2).sum(1)
         variance[3] += min(self.state[G] / self.state[Q], 0.0) ** 2  # hidden below it, or higher ground
-        before_s = self.start_s - self.first_s  # X0 and Z0 count from the track's first image
-        way_m = float(np.linalg.norm((in_t.moved_m - self.origin_m)[[0, 2]]))
-        straight = way_m / self.flown_m if self.flown_m > way_m else 1.0  # no scaling for a path that leads back
-        variance[:2] += (errors.velocity_bias_sd_m_s * span_s) ** 2 * (1 - straight**2)
-        variance[:2] += (
-            errors.position_walk_sd_m**2 * (span_s + before_s) + (errors.velocity_bias_sd_m_s * before_s) ** 2
-        )
+        span_s, before_s = in_t.time_s - self.start_s, self.start_s - self.first_s
+        variance[:2] += errors.position_walk_sd_m**2 * (span_s + before_s) + errors.position_white_sd_m**2
+        variance[:2] += (errors.velocity_bias_sd_m_s * before_s) ** 2
         values[:2] += self.origin_m[[0, 2]]
         return values, np.sqrt(variance)
 
