@@ -59,6 +59,7 @@ OUTWARD = np.array([-1.0, -1.0, 1.0, 1.0])
 AHEAD_MIN = 0.02  # of a touching point, units of Z0
 LEVEL_MIN = 1e-6  # horizontal part of a normal
 CUT_SIGMAS = 3.0  # of box_noise_rel: top and bottom this near to the border may be cut
+LEANS = 0.2  # tangent of a lean beyond which two borders cut the same end
 HIDDEN_VARIANCE = 16 / 3  # of half the edge squared: uniform, in 16 images that share it
 EXACT_ROUNDS = 60
 EXACT = 1e-15  # focal lengths
@@ -144,7 +145,7 @@ def measured_sides(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Sides (K, 4), NaN if out of order or at the border, and whether the border cuts the box (K,).
 
-    rolled: (K,) whether the image leans by more than 45 degrees: top and bottom then show the obstacle's ends.
+    rolled: (K,) whether the image leans so much that the borders above and below cut the obstacle's ends, too.
     """
     sides = np.array(box_px, float)
     with np.errstate(invalid="ignore"):
@@ -183,7 +184,7 @@ def sights(flight: Flight, errors: ErrorModel) -> list[Sight]:
     t_from_body = t_from_ned @ ned_from_body
     t_from_camera = t_from_body @ mounting(camera)
     down = np.abs(t_from_camera[:, 1])
-    px, cut = measured_sides(flight.box_px, flight.image_size_px, errors, down[:, 0] > down[:, 1])
+    px, cut = measured_sides(flight.box_px, flight.image_size_px, errors, down[:, 0] > LEANS * down[:, 1])
     doubtful = doubtful_sides(flight.box_px, flight.image_size_px[1], errors)
     side = (px - np.array([camera.cx, camera.cy])[AXIS]) / focal_px(camera)
     return [
