@@ -152,12 +152,12 @@ static bool is_open(goe_decision_t decision) {
 }
 
 /* Whether the aircraft is too near now, judged as if it were at rest relative to the obstacle. On its course, with the closest approach `met`,
- * it may be near for longer than the rule's time: at a creeping speed, or beside a long wall that the rule clears. The way since the latest
+ * it may be near for longer than the rule's time: at a creeping speed, or next to a long wall that the rule clears. The way since the latest
  * image counts as flown toward the obstacle, and a descent at a creeping speed for the rule's time.
  *   speed_m_s  relative to the obstacle
  *   clears     the rule clears the course */
 static bool is_too_near(const goe_estimator_t *estimator, const goe_intent_t *wide, const goe_rule_t *rule,
-                                     float speed_m_s, bool clears, goe_hazard_t *met) {
+                        float speed_m_s, bool clears, goe_hazard_t *met) {
     const goe_estimate_t *estimate = &estimator->estimate;
     goe_intent_t still = *wide;
     goe_hazard_t now;
@@ -201,7 +201,8 @@ static goe_decision_t decide_checked(const goe_estimator_t *estimator, const goe
             wide = later;
         }
     }
-    return is_open(decision) && is_too_near(estimator, &wide, rule, speed_m_s, clears, met) ? GOE_DECISION_ACT : decision;
+    return is_open(decision) && is_too_near(estimator, &wide, rule, speed_m_s, clears, met) ? GOE_DECISION_ACT
+                                                                                            : decision;
 }
 
 goe_decision_t goe_decide(const goe_estimator_t *estimator, const goe_intent_t *intent, const goe_rule_t *rule,

@@ -21,9 +21,9 @@ enum { FL, BL, BR, FR }; /* clockwise as viewed from above */
 static check_random_t any;
 static sighting_t sighting;
 static double truth[GOE_STATES];
-static int seen_at[GOE_FEATURES];   /* corner behind each feature */
-static size_t kind[GOE_ROWS_MAX];   /* feature of each row that should come */
-static bool along_y[GOE_ROWS_MAX];  /* its coordinate */
+static int seen_at[GOE_FEATURES];  /* corner behind each feature */
+static size_t kind[GOE_ROWS_MAX];  /* feature of each row that should come */
+static bool along_y[GOE_ROWS_MAX]; /* its coordinate */
 static size_t expected_rows;
 
 void setUp(void) {}
@@ -126,8 +126,7 @@ static void see(const double state[GOE_STATES], int feature, double seen[2]) {
     corners_of(state, corner);
     const corner_t at = corner[seen_at[feature]];
     const bool silhouette = feature == GOE_POINT_LEFT || feature == GOE_POINT_RIGHT;
-    const double y =
-        silhouette ? sighting_height(&sighting, state, (size_t)feature) * at.z : height_of(state, feature);
+    const double y = silhouette ? sighting_height(&sighting, state, (size_t)feature) * at.z : height_of(state, feature);
     const double point[3] = {at.x, y, at.z};
     sighting_project(&sighting, state, point, seen);
 }

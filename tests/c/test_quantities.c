@@ -425,7 +425,7 @@ static void covariances_are_those_of_the_state(void) {
     }
 }
 
-/* [goe_deviation.c, (R21)]
+/* [goe_deviation.c, goe_drift.c, (R21)]
  * GIVEN a state that is exact but for an own velocity with a constant error, which images have made an error of the range, WHEN the aircraft
  * has flown for ten seconds THEN all lengths are off by that share, and the place relative to the camera also by the path's error; not the
  * place relative to the camera at the start. The walk of the own position moves the place, and from the track's first image on. */
