@@ -249,8 +249,6 @@ typedef struct {
     goe_naming_t naming;
     goe_flag_t has_datum; /* the datum is set, by the track's first image */
     float ground_scale;   /* 1/Z0 at which the sigma of GOE_GROUND was set, over the present 1/Z0 */
-    float flown_m;        /* length of the path over ground since the filter's start */
-    goe_place_t last;     /* camera at the previous image, T axes */
     goe_place_t measured; /* camera at the latest image that gave rows, the state's axes */
     float walk_s[2];      /* time since the random walk of the own position was last added along X, and along Z */
     float due_s;          /* time since process noise was last added; the next image that gives rows adds it */

@@ -11,14 +11,13 @@
 #if !GOE_AUGMENTED
 #define PATH_MIN_M 0.1f
 
-/* Without the columns of the obstacle's velocity, an error of the own velocity counts as if it scaled and turned the path. */
-static void scale_path(const goe_filter_t *filter, const goe_motion_t *motion, float drift_m, goe_drift_t *drift) {
+/* Without the columns of the obstacle's velocity, an error of the own velocity counts as if it scaled and turned the path. A path that leads
+ * back is not scaled, but its end is off by the error. */
+static void scale_path(const goe_filter_t *filter, const goe_motion_t *motion, float off_m, goe_drift_t *drift) {
     const float dx_m = motion->dx_m - filter->axes.start_dx_m;
     const float dz_m = motion->dz_m - filter->axes.start_dz_m;
-    const float path_m = sqrtf(dx_m * dx_m + dz_m * dz_m);
-    const float straight = filter->flown_m > path_m ? path_m / filter->flown_m : 1.0f;
-    drift->share = drift_m / goe_larger(path_m, PATH_MIN_M);
-    drift->turned_m2 = goe_square(drift_m) * (1.0f - straight * straight);
+    drift->off_m = off_m;
+    drift->share = off_m / goe_larger(sqrtf(dx_m * dx_m + dz_m * dz_m), PATH_MIN_M);
 }
 
 /* Variance by this scale. */
@@ -30,7 +29,7 @@ static float scaled_m2(const goe_motion_t *motion, const goe_drift_t *drift, con
     switch (quantity) {
         case GOE_X0:
         case GOE_Z0:
-            return share2 * goe_square(far_m) + drift->turned_m2;
+            return goe_larger(share2 * goe_square(far_m), goe_square(drift->off_m));
         case GOE_ORIENTATION:
             return box ? share2 : 0.0f;
         case GOE_HEIGHT:

@@ -11,8 +11,8 @@ typedef struct {
     goe_xz_t camera_m; /* displacement since the filter's start */
     float walk_m2;
 #if !GOE_AUGMENTED
-    float share;     /* relative error of lengths, error of directions in rad */
-    float turned_m2; /* the drift's variance that does not scale the path, if the path leads back on itself */
+    float share; /* relative error of lengths, error of directions in rad */
+    float off_m; /* of the path's end */
 #endif
 } goe_drift_t;
 

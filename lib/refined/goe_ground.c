@@ -107,7 +107,6 @@ void goe_ground_start(goe_filter_t *filter, const goe_observation_t *obs) {
     filter->datum.taken_m2 = filter->datum.first_m2;
     filter->datum.taken_mean_m = 0.0f;
     filter->ground_scale = 1.0f;
-    filter->flown_m = 0.0f;
 }
 
 /* The changes of down, which drift, move the height. Readings that scatter more than before are less informative about it. The top counts

@@ -37,18 +37,6 @@
 
 /* --------------------------------------------------------------------------------------------------------------- time -- */
 
-/* Adds to the length of the path, which in a turn is longer than the distance from its start. */
-static void fly_on(goe_filter_t *filter, const goe_motion_t *motion) {
-    const float dx_m = motion->dx_m - filter->last.dx_m;
-    const float dz_m = motion->dz_m - filter->last.dz_m;
-    filter->flown_m += sqrtf(dx_m * dx_m + dz_m * dz_m);
-    filter->last.dx_m = motion->dx_m;
-    filter->last.dz_m = motion->dz_m;
-#if GOE_AUGMENTED
-    goe_filter_pace(filter, motion);
-#endif
-}
-
 /* Seconds to the latest image of a camera that gave rows, as of the previous image. */
 static float used_s(const goe_filter_t *filter, unsigned camera) {
 #if GOE_CAMERAS_MAX > 1
@@ -224,8 +212,6 @@ static bool open_image(goe_filter_t *filter, const goe_settings_t *settings, con
     }
     if (!running) {
         filter->time_us = view->motion->time_us;
-        filter->last.dx_m = view->motion->dx_m;
-        filter->last.dz_m = view->motion->dz_m;
         meet_cameras(filter, obs->number);
     }
     return true;
@@ -303,7 +289,9 @@ bool goe_refined_update(goe_filter_t *filter, const goe_settings_t *settings, co
         return false;
     }
     obs.since_s = goe_time_between_s(filter->time_us, view->motion->time_us, GAP_MAX_US);
-    fly_on(filter, view->motion);
+#if GOE_AUGMENTED
+    goe_filter_pace(filter, view->motion);
+#endif
     goe_filter_wait(filter, obs.since_s);
     note_time(filter, &obs);
     filter->time_us = view->motion->time_us;

@@ -116,20 +116,6 @@ static void the_walk_waits_for_rows(void) {
     CHECK_CLOSE(2.0e-2 * added, z + added, goe_filter_variance(&filter, GOE_INVERSE_RANGE));
 }
 
-/* GIVEN a flight that turns THEN the way flown is that along the path, which is longer than the way to where it began. */
-static void the_way_is_counted_along_the_path(void) {
-    const double before = (double)estimator.filter.flown_m;
-    const double legs[3][2] = {{30.0, 0.0}, {0.0, 40.0}, {-30.0, 0.0}};
-    double way = 0.0;
-    for (int i = 0; i < 3; i++) {
-        last.pose.position_ned_m[0] += (float)legs[i][0];
-        last.pose.position_ned_m[1] += (float)legs[i][1];
-        way += hypot(legs[i][0], legs[i][1]);
-        wait_s(1.0);
-        CHECK_CLOSE(1.0e-3, before + way, estimator.filter.flown_m);
-    }
-}
-
 /* GIVEN a gap of a day THEN it counts as a thousand seconds, and all stays finite. */
 static void a_long_gap_counts_as_a_bounded_one(void) {
     const double before = variance(GOE_BIAS_X);
@@ -143,7 +129,6 @@ int main(void) {
     RUN_TEST(the_attitude_drifts_with_the_root_of_time);
     RUN_TEST(the_own_position_walks_along_both_axes_in_turn);
     RUN_TEST(the_walk_waits_for_rows);
-    RUN_TEST(the_way_is_counted_along_the_path);
     RUN_TEST(a_long_gap_counts_as_a_bounded_one);
     return UNITY_END();
 }

@@ -28,7 +28,7 @@ const field_t fields[] = {
     NUMBER(filter.time_us) DECIDES(filter.phase) DECIDES(filter.phase_images) DECIDES(filter.known)
     DECIDES(filter.paced) DECIDES(filter.naming) DECIDES(motion.camera) DECIDES(filter.has_datum)
     NUMBER(filter.faded_s) NUMBER(filter.used_s)
-    NUMBER(filter.ground_scale) NUMBER(filter.flown_m) NUMBER(filter.last)
+    NUMBER(filter.ground_scale)
     NUMBER(filter.walk_s) NUMBER(filter.due_s) NUMBER(filter.candidate.extent)
     DECIDES(filter.candidate.both) DECIDES(filter.candidate.agreeing)
     NUMBER(filter.health.nis) NUMBER(filter.health.mean_nis) NUMBER(filter.health.excess)
