@@ -16,8 +16,10 @@ float goe_growth_find(const goe_observation_t *obs, const goe_rows_t *rows) {
     const goe_feature_t high = tall ? GOE_POINT_BASE_NEAR : GOE_POINT_RIGHT;
     const float ahead = goe_observation_reference(obs).z;
     const float size = goe_touch_size(obs, tall ? GOE_BOX_TOP : GOE_BOX_LEFT, 2.0f * obs->state[GOE_HALF]);
+    const float nearest = goe_larger(ahead, AHEAD_MIN);
+    const float drift = obs->settings->navigation.velocity_bias_sd_m_s * obs->elapsed_s * obs->state[GOE_INVERSE_RANGE];
     const float share2 = 2.0f * goe_square(obs->settings->detector.box_noise_rel) +
-                         obs->range_variance * goe_square(obs->camera_m.z / goe_larger(ahead, AHEAD_MIN));
+                         (obs->range_variance * goe_square(obs->camera_m.z) + goe_square(drift)) / goe_square(nearest);
     float variance = share2 * goe_square(size);
     const bool whole = tall && (obs->sides->cut & LEVEL) == 0u; /* a cut at left or right does not change the height */
     const float uncut = whole ? goe_touch_cut_variance(obs, size) : 0.0f;

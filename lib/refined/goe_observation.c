@@ -120,7 +120,6 @@ static void note_pace(goe_observation_t *obs, const goe_filter_t *filter, const 
 #if GOE_AUGMENTED
     obs->turn_cos = filter->axes.turn_cos;
     obs->turn_sin = filter->axes.turn_sin;
-    obs->elapsed_s = goe_filter_elapsed_s(filter, motion);
     obs->gained_m_s = goe_filter_gained(filter, motion);
     obs->latency_s = filter->mover.augmented[GOE_AUGMENTED_LATENCY];
     turn_rate(filter, motion->rate_rad_s, obs->rate_rad_s);
@@ -159,6 +158,7 @@ unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *sett
     obs->outline_share = settings->detector.point_noise_rel;
     obs->depth_variance = 0.0f;
     obs->two_faces = false;
+    obs->elapsed_s = goe_filter_elapsed_s(filter, view->motion);
     note_pace(obs, filter, view->motion);
     return put_in_order(obs);
 }

@@ -19,6 +19,7 @@ typedef struct {
     const goe_kind_t *kind;
     float height_sd_m; /* one sigma of the height above the obstacle's ground, without the ground's slope */
     float since_s;     /* time since the previous image */
+    float elapsed_s;   /* since the filter's start */
     float fade;        /* share of a box side's error that remains from the image used before */
     float white_rad; /* one sigma of the image's own attitude error, and of its position error, which looks the same */
     float point_px, side_px; /* one sigma of a point, and of a box's side, pixels */
@@ -36,7 +37,6 @@ typedef struct {
     uint8_t passed;       /* priors of the range that were too near */
 #if GOE_AUGMENTED
     float turn_cos, turn_sin;   /* of the state's axes from T */
-    float elapsed_s;            /* since the filter's start */
     float rate_rad_s[3];        /* of the vehicle, the state's axes */
     float rate_before_rad_s[3]; /* the same shortly before, free of this image's own attitude error */
     goe_xz_t gained_m_s;        /* change of the velocity since the filter's start, the state's axes */

@@ -38,6 +38,7 @@ static void see(double ahead, double wider, double taller) {
     sighting.sight.camera_m.z = (float)(100.0 * (1.0 - ahead));
     sighting.sight.height_m = 0.0f;
     sighting.sight.range_variance = 0.0f;
+    sighting.sight.elapsed_s = 0.0f;
     sighting.sight.sides = &sides;
     sighting.settings.detector.box_noise_rel = (float)SHARE;
     sighting.sight.side_px = (float)PIXEL * camera->fx_px;
@@ -62,8 +63,8 @@ static double growth(void) {
     return (double)goe_growth_find(&sighting.sight, &sighting.rows);
 }
 
-/* [(R34)] GIVEN a box that is larger than predicted THEN its excess counts in sigmas of the detector's errors, of the range and of the rows: the height's,
- * or the width's where a level side is missing; one that is smaller, or as predicted, is none. */
+/* [(R34)] GIVEN a box that is larger than predicted THEN its excess counts in sigmas of the detector's errors, of the range, of the own path and of the
+ * rows: the height's, or the width's where a level side is missing; one that is smaller, or as predicted, is none. */
 static void an_excess_counts_in_sigmas(void) {
     static const double factors[] = {0.5, 0.9, 1.0, 1.1, 1.5, 3.0};
     for (size_t n = 0; n < sizeof factors / sizeof factors[0]; n++) {
@@ -72,12 +73,15 @@ static void an_excess_counts_in_sigmas(void) {
             see(0.8, wide == 1 ? factors[n] : 1.0, wide == 1 ? 1.0 : factors[n]);
             sides.usable = wide == 1 ? GOE_SIDE_LEFT | GOE_SIDE_RIGHT | GOE_SIDE_BOTTOM : GOE_SIDES_ALL;
             sighting.sight.range_variance = 1.0e-6f; /* (0.1 of 1/Z0)^2, after 20 m: 0.025 of Z now */
+            sighting.settings.navigation.velocity_bias_sd_m_s = 0.3f;
+            sighting.sight.elapsed_s = 10.0f * (float)(n % 3u);
+            const double drift = 3.0 * (double)(n % 3u) / 80.0;
             const double found = growth();
             const double size = factors[n] * extent / 0.8;
             const double excess = fmax((factors[n] - 1.0) * extent / 0.8, 0.0);
             const double own =
                 (double)sighting.rows.variance[wide == 1 ? 0 : 1] + (double)sighting.rows.variance[wide == 1 ? 1 : 3];
-            const double variance = (2.0 * SHARE * SHARE + 0.025 * 0.025) * size * size + own;
+            const double variance = (2.0 * SHARE * SHARE + 0.025 * 0.025 + drift * drift) * size * size + own;
             const double expected = excess * excess / variance;
             CHECK_CLOSE(0.02 * expected + 1.0e-3, expected, found);
         }
