@@ -22,6 +22,7 @@
 
 #define RESETS GOE_OK /* fault_counts[0] counts resets of unknown size and jumps without a reset */
 #define SURE_SIGMA 2.0f
+#define LOOKS_AHEAD 0.7f           /* cosine: a camera that looks within 45 degrees of Z of T sees nothing behind */
 #define REFUSED_MAX_US 1000000000u /* 1000 s, the range of goe_intent_t.since_image_s */
 #define ASIDE_MIN 1.7320508f       /* tangent of 60 degrees */
 #define STEP_BITS 17u              /* 2^17 us, 1/8 s, in which goe_motion_t.detected counts time */
@@ -113,7 +114,7 @@ static void grow_old(goe_estimator_t *estimator) {
 static void drop_contradicted(goe_estimator_t *estimator, const goe_view_t *view) {
     goe_estimate_t *estimate = &estimator->estimate;
     const float reach_m = goe_larger(estimator->filter.answer.reach_m, 0.5f * estimate->width_m) + estimate->length_m;
-    bool ahead = false;
+    bool ahead = view->seen && view->camera_to_trajectory[8] > LOOKS_AHEAD;
     for (size_t i = 0; i < GOE_FEATURES; i++) {
         ahead = ahead || view->point[i].usable;
     }
@@ -257,8 +258,7 @@ static uint32_t step_of(int64_t time_us) { return (uint32_t)((uint64_t)time_us >
 static void note_detection(goe_estimator_t *estimator, bool detected, int64_t before_us) {
     goe_motion_t *motion = &estimator->motion;
     if (detected) {
-        const bool old = goe_latest_since_s(estimator, motion->time_us) > GOE_SUPERSEDED_S;
-        motion->detected = old ? 1u + UNANSWERED_STEPS : 1u;
+        motion->detected = !goe_is_set(&estimator->estimate.fresh) ? 1u + UNANSWERED_STEPS : 1u;
     } else if (motion->detected > 1u) { /* whole steps since time 0, so that none is lost between images */
         const uint32_t steps = step_of(motion->time_us) - step_of(before_us);
         motion->detected = steps < motion->detected ? (uint8_t)(motion->detected - steps) : 1u;

@@ -95,7 +95,8 @@ static bool may_be_ahead(const goe_estimator_t *estimator, const goe_intent_t *i
     const float hover = HOVER_M_S * (goe_absolute(to.x) + goe_absolute(to.z));
     const unsigned toward = (right > -hover ? GOE_SIDE_LEFT : 0u) | (right < hover ? GOE_SIDE_RIGHT : 0u);
     const float unsure = goe_larger(sigma->x_m, sigma->z_m) * (goe_absolute(velocity.x) + goe_absolute(velocity.z));
-    return closing > -(hover + unsure) && (answer->outgrown_s > 0.0f || (answer->cut & toward) != 0u);
+    const bool ahead = closing > -(hover + unsure);
+    return (ahead && answer->outgrown_s > 0.0f) || ((ahead || motion->detected > 1u) && (answer->cut & toward) != 0u);
 }
 #endif
 
