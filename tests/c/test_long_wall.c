@@ -50,7 +50,7 @@ static void outline(const wall_t *wall, double share, double at[2]) {
 
 static double clipped(double px) { return fmin(fmax(px, 0.0), IMAGE_PX - 1.0); }
 
-/* Sets the box that the camera sees, all of whose sides count as seen, and returns the distance of the wall. */
+/* Sets the visible box with the bits of all sides, and returns the distance of the wall. */
 static double look(const wall_t *wall, const flight_t *flight, double flown_m) {
     const double c = cos(flight->camera_right_deg * RAD_PER_DEG);
     const double s = sin(flight->camera_right_deg * RAD_PER_DEG);
@@ -121,8 +121,7 @@ static int clear_within_margin(const wall_t *wall, const flight_t *flight, doubl
     return clear;
 }
 
-/* GIVEN a wall seen end-on, whose length no image shows WHEN the aircraft flies along it, and the image shows what is still ahead of it THEN
- * no estimate that lies behind the camera clears the course. */
+/* GIVEN a wall from its end, whose length no image shows WHEN the aircraft flies along it, and the image shows the part that is ahead THEN no estimate that lies behind the camera clears the course. */
 static void a_wall_alongside_is_not_passed(void) {
     int flights = 0;
     int acted = 0;
