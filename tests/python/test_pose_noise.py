@@ -1,0 +1,40 @@
+"""Noise that is new in each pose, and configured: how far lib/DESIGN.md says that the estimate is off."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+pytest.importorskip("goe", reason="the Python package is not installed (tools/setup.sh)")
+
+from test_caller_mistakes import IMAGES, MAST_NE_M, goe, right
+
+FLIGHTS, FROM = 40, 30  # images before have little range
+WHITE_M = 0.3
+
+
+def errors_in_sigmas(white_m: float) -> np.ndarray:
+    """Of the range, the mean of each flight; positive: too far."""
+    result = []
+    for seed in range(FLIGHTS):
+        flown, rng = right(seed), np.random.default_rng(1000 + seed)
+        settings = goe.Settings.for_camera(914.0, 914.0, 640.0, 640.0, width_px=1280.0, height_px=1280.0)
+        settings.camera.mount_pitch_deg = flown.settings.camera.mount_pitch_deg
+        settings.navigation.position_white_sd_m = white_m
+        place_m = flown.images.position_ned_m + white_m * rng.normal(size=(IMAGES, 3))
+        track = goe.run(settings, replace(flown.images, position_ned_m=place_m))
+        heading = np.radians(track.estimates["trajectory_heading_deg"])
+        away_m = MAST_NE_M - flown.images.position_ned_m[:, :2]
+        true_m = np.cos(heading) * away_m[:, 0] + np.sin(heading) * away_m[:, 1]
+        fresh = np.asarray(track.estimates["fresh"], bool) & (np.arange(IMAGES) >= FROM)
+        off_m, sigma_m = track.estimates["z_m"] - true_m, track.estimates["sigma"]["z_m"]
+        result.append(np.mean(off_m[fresh] / sigma_m[fresh]))
+    return np.array(result)
+
+
+def test_position_noise_that_is_new_in_each_image_makes_the_range_too_large() -> None:
+    exact, noisy = errors_in_sigmas(0.0), errors_in_sigmas(WHITE_M)
+    assert abs(exact.mean()) < 0.5
+    assert 1.0 < noisy.mean() < 3.0
