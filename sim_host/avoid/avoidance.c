@@ -145,23 +145,24 @@ static void note_order(const run_t *run, const goe_flight_assessment_t *now, avo
     outcome->ahead_s = (run->flown.reach_m - along_m) / run->flown.speed_mps;
 }
 
-/* The middle's error in its own sigmas, squared: e' C^-1 e. */
-static double off_sigmas_squared(const goe_flight_obstacle_t *found, const obstacle_t *truth) {
-    const double n = (double)found->center_ned_m[0] - truth->center_n_m,
-                 e = (double)found->center_ned_m[1] - truth->center_e_m;
+/* The middle's error in its own sigmas, squared: e' C^-1 e. The middle counts from the place that the autopilot reports, which drifts. */
+static double off_sigmas_squared(const goe_flight_obstacle_t *found, const obstacle_t *truth, vec3_t drift_m) {
+    const double n = (double)found->center_ned_m[0] - truth->center_n_m - drift_m.x;
+    const double e = (double)found->center_ned_m[1] - truth->center_e_m - drift_m.y;
     const double nn = (double)found->covariance_ne_m2[0], ne = (double)found->covariance_ne_m2[1];
     const double ee = (double)found->covariance_ne_m2[2], determinant = nn * ee - ne * ne;
     return determinant > 0.0 ? (ee * n * n - 2.0 * ne * n * e + nn * e * e) / determinant : HUGE_VAL;
 }
 
 static void judge_places(run_t *run, avoid_outcome_t *outcome) {
+    const vec3_t drift_m = sensors_drift(&run->flown.sensors[0], run->flown.t_s);
     for (int slot = 0; slot < GOE_FLIGHT_SLOTS; slot++) {
         goe_flight_obstacle_t found;
         const bool known = goe_flight_obstacle(&run->flown.flight, slot, &found) == GOE_FLIGHT_OK &&
                            (found.valid & GOE_HAS_POSITION) != 0u;
         const bool wrong =
             known && !found.suspect &&
-            off_sigmas_squared(&found, &run->flown.obstacle[0]) > AVOID_WRONG_SIGMAS * AVOID_WRONG_SIGMAS;
+            off_sigmas_squared(&found, &run->flown.obstacle[0], drift_m) > AVOID_WRONG_SIGMAS * AVOID_WRONG_SIGMAS;
         run->wrong_times[slot] = wrong ? run->wrong_times[slot] + 1 : 0;
         outcome->confident = outcome->confident || run->wrong_times[slot] >= AVOID_WRONG_TIMES;
     }

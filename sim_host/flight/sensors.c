@@ -122,16 +122,19 @@ double sensors_time_error(sensors_t *sensors, double frame_interval_s) {
     return jitter * (2.0 * random_uniform(&sensors->time) - 1.0);
 }
 
+vec3_t sensors_drift(const sensors_t *sensors, double t_s) {
+    return vec3_add(sensors->walk_m, vec3_scale(sensors->velocity_bias_mps, t_s));
+}
+
 pose_t sensors_pose(sensors_t *sensors, const pose_t *truth, double t_s) {
     const vec3_t white = normal_vector(&sensors->attitude, radians(sensors->noise.attitude_noise_deg));
     const double step = sqrt(fmax(t_s - sensors->walked_s, 0.0));
     sensors->walk_m =
         vec3_add(sensors->walk_m, normal_vector(&sensors->position, sensors->noise.position_walk_m * step));
     sensors->walked_s = fmax(t_s, sensors->walked_s);
-    const vec3_t position_error = vec3_add(sensors->walk_m, vec3_scale(sensors->velocity_bias_mps, t_s));
     const quat_t turned = quat_from_rotation_vector(vec3_add(sensors->attitude_bias_rad, white));
     pose_t pose = *truth;
-    pose.position_ned_m = vec3_add(truth->position_ned_m, position_error);
+    pose.position_ned_m = vec3_add(truth->position_ned_m, sensors_drift(sensors, t_s));
     pose.attitude = quat_multiply(truth->attitude, turned);
     return pose;
 }

@@ -72,6 +72,9 @@ const char *sensor_noise_fault(const sensor_noise_t *noise);
 
 sensors_t sensors_start(const sensor_noise_t *noise, uint64_t seed);
 
+/* Error of the position of the latest sensors_pose(), at that time or later. */
+vec3_t sensors_drift(const sensors_t *sensors, double t_s);
+
 /* The following are called once for each frame, lost or not, in this order. */
 bool sensors_frame_lost(sensors_t *sensors);
 double sensors_time_error(sensors_t *sensors, double frame_interval_s);
