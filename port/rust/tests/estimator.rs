@@ -87,7 +87,7 @@ mod filter {
         }
         let tenth = fly(&mut Estimator::new(&settings()).expect("good settings"), 10);
         let z = tenth.position.expect("a position").z;
-        assert_eq!(format!("{:.1} +- {:.1}", z.m, z.sd_m), "183.2 +- 28.2");
+        assert_eq!(format!("{:.1} +- {:.1}", z.m, z.sd_m), "183.2 +- 28.3");
     }
 }
 

@@ -10,7 +10,7 @@ bits.
     ...     pose = goe.Pose(125_000 * k, (2 * k, 0, 0), height_m=15)
     ...     estimate = tower.update(goe.Image(pose, bounding_box=goe.BoundingBox(left, top, right, bottom)))
     >>> print("{:.1f} +- {:.1f} m ahead".format(*estimate.position.z))
-    183.2 +- 28.2 m ahead
+    183.2 +- 28.3 m ahead
 
 Frames      earth: north, east, down (NED), m, local. Body: forward, right, down; attitude: Hamilton quaternion
             (w, x, y, z) that turns body into NED. Camera: pixel (u, v) = (right, down) from the top left corner.
