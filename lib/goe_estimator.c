@@ -253,12 +253,11 @@ static void open_view(goe_estimator_t *estimator, const goe_image_t *image, cons
 
 static uint32_t step_of(int64_t time_us) { return (uint32_t)((uint64_t)time_us >> STEP_BITS); }
 
-/* Remembers for some time that a detection gave no new estimate although the latest one is old. The next estimate ends this. before_us: the
- * previous image. */
+/* Remembers for some time that a detection gave no new estimate. The next estimate ends this. before_us: the previous image. */
 static void note_detection(goe_estimator_t *estimator, bool detected, int64_t before_us) {
     goe_motion_t *motion = &estimator->motion;
     if (detected) {
-        motion->detected = !goe_is_set(&estimator->estimate.fresh) ? 1u + UNANSWERED_STEPS : 1u;
+        motion->detected = goe_is_set(&estimator->estimate.fresh) ? 1u : 1u + UNANSWERED_STEPS;
     } else if (motion->detected > 1u) { /* whole steps since time 0, so that none is lost between images */
         const uint32_t steps = step_of(motion->time_us) - step_of(before_us);
         motion->detected = steps < motion->detected ? (uint8_t)(motion->detected - steps) : 1u;

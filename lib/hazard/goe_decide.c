@@ -81,8 +81,9 @@ static goe_xz_t relative_velocity(const goe_estimate_t *estimate, const goe_inte
 
 #if GOE_WITH_FILTER
 /* Filter: whether the obstacle is ahead on the course, within a sigma, and images showed it larger than it can be at this range, or the
- * border may cut it on the side of the course. If it is nearer, it also passes sooner; if it is cut, it may reach the course. A hovering
- * aircraft has no course, and the course to the obstacle itself no side: then each end counts. */
+ * border may cut it on the side of the course. If it is nearer, it also passes sooner; if it is cut, it may reach the course, and while
+ * images show it without an estimate, even if its middle is passed. A hovering aircraft has no course, and the course to the obstacle itself
+ * no side: then each end counts. */
 static bool may_be_ahead(const goe_estimator_t *estimator, const goe_intent_t *intent) {
     const goe_motion_t *motion = &estimator->motion;
     const goe_answer_t *answer = &estimator->filter.answer;
@@ -95,8 +96,11 @@ static bool may_be_ahead(const goe_estimator_t *estimator, const goe_intent_t *i
     const float hover = HOVER_M_S * (goe_absolute(to.x) + goe_absolute(to.z));
     const unsigned toward = (right > -hover ? GOE_SIDE_LEFT : 0u) | (right < hover ? GOE_SIDE_RIGHT : 0u);
     const float unsure = goe_larger(sigma->x_m, sigma->z_m) * (goe_absolute(velocity.x) + goe_absolute(velocity.z));
-    const bool ahead = closing > -(hover + unsure);
-    return (ahead && answer->outgrown_s > 0.0f) || ((ahead || motion->detected > 1u) && (answer->cut & toward) != 0u);
+    const bool cut = (answer->cut & toward) != 0u;
+    if (closing > -(hover + unsure)) {
+        return cut || answer->outgrown_s > 0.0f;
+    }
+    return cut && motion->detected > 1u;
 }
 #endif
 

@@ -243,6 +243,32 @@ static void ahead_is_along_the_course(void) {
     }
 }
 
+/* [GOE_DECISION_UNKNOWN] GIVEN an obstacle whose middle is passed, and whose end toward the course is cut WHEN images show it without an
+ * estimate THEN it is not clear. */
+static void a_passed_middle_clears_no_cut_end_in_view(void) {
+    for (int cut = 0; cut < 2; cut++) {
+        place(60.0);
+        estimator.estimate.z_m = -1.0f;
+        intent.velocity_ned_m_s[1] = -2.0f;
+        estimator.filter.answer.cut = cut == 1 ? GOE_SIDE_LEFT : 0u;
+        estimator.motion.detected = 1u;
+        TEST_ASSERT_EQUAL_INT(GOE_DECISION_CLEAR, decide());
+        estimator.motion.detected = 2u;
+        TEST_ASSERT_EQUAL_INT(cut == 1 ? GOE_DECISION_UNKNOWN : GOE_DECISION_CLEAR, decide());
+    }
+}
+
+/* [goe_decide] GIVEN an aircraft that creeps away and whose images are refused WHEN the time since then may have led it into the margin
+ * THEN it acts. */
+static void a_creeping_aircraft_without_images_acts(void) {
+    place(60.0);
+    intent.velocity_ned_m_s[0] = -0.5f;
+    intent.velocity_ned_m_s[1] = 0.0f;
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_CLEAR, decide());
+    estimator.estimate.age_s = 80.0f;
+    TEST_ASSERT_EQUAL_INT(GOE_DECISION_ACT, decide());
+}
+
 /* [goe_intent_t.margin_m] GIVEN a creeping aircraft within the largest margin WHEN the image is old THEN the decision stays "act". */
 static void the_largest_margin_is_none_too_large(void) {
     place(60.0);
@@ -432,6 +458,8 @@ int main(void) {
     RUN_TEST(a_silent_camera_clears_nothing);
     RUN_TEST(what_goes_on_toward_the_course_is_not_clear);
     RUN_TEST(ahead_is_along_the_course);
+    RUN_TEST(a_passed_middle_clears_no_cut_end_in_view);
+    RUN_TEST(a_creeping_aircraft_without_images_acts);
     RUN_TEST(the_largest_margin_is_none_too_large);
     RUN_TEST(a_violation_at_a_creeping_speed_is_one_of_now);
     RUN_TEST(a_descent_next_to_a_roof_is_foreseen);
