@@ -46,7 +46,7 @@ static void compare_with_border(const goe_camera_t *camera, unsigned seen, float
 }
 
 /* Exchanges left and right. */
-static unsigned exchanged(unsigned wide) { return (wide << 2 | wide >> 2) & WIDE; }
+static unsigned mirrored(unsigned wide) { return (wide << 2 | wide >> 2) & WIDE; }
 
 /* Notes which ends of the obstacle the border may cut. down: the vertical, in the camera's axes. The horizontal to the obstacle's right is
  * (down y, -down x). Each side of the box opens the end that lies in its direction: with a lean, the border above or below also cuts a wide
@@ -57,7 +57,7 @@ static void find_ends(const float down[2], goe_sides_t *sides) {
     const unsigned open = sides->cut | sides->doubtful;
     const unsigned across = upright ? open & WIDE : 0u;
     const unsigned along = rolled ? open >> 1 & WIDE : 0u; /* top for left */
-    sides->ends = (uint8_t)((down[1] < 0.0f ? exchanged(across) : across) | (down[0] > 0.0f ? exchanged(along) : along));
+    sides->ends = (uint8_t)((down[1] < 0.0f ? mirrored(across) : across) | (down[0] > 0.0f ? mirrored(along) : along));
     sides->truncated = (sides->cut & (rolled ? GOE_SIDES_ALL : WIDE)) != 0u;
 }
 
