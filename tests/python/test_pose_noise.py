@@ -9,7 +9,7 @@ import pytest
 
 pytest.importorskip("goe", reason="the Python package is not installed (tools/setup.sh)")
 
-from test_caller_mistakes import IMAGES, MAST_NE_M, goe, right
+from test_caller_mistakes import FOCAL_PX, IMAGES, MAST_NE_M, SIZE_PX, goe, right
 
 FLIGHTS, FROM = 40, 30  # images before have little range
 WHITE_M = 0.3
@@ -20,7 +20,7 @@ def errors_in_sigmas(white_m: float) -> np.ndarray:
     result = []
     for seed in range(FLIGHTS):
         flown, rng = right(seed), np.random.default_rng(1000 + seed)
-        settings = goe.Settings.for_camera(914.0, 914.0, 640.0, 640.0, width_px=1280.0, height_px=1280.0)
+        settings = goe.Settings.for_camera(FOCAL_PX, FOCAL_PX, 640.0, 640.0, width_px=SIZE_PX, height_px=SIZE_PX)
         settings.camera.mount_pitch_deg = flown.settings.camera.mount_pitch_deg
         settings.navigation.position_white_sd_m = white_m
         place_m = flown.images.position_ned_m + white_m * rng.normal(size=(IMAGES, 3))

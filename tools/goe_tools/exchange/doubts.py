@@ -201,11 +201,10 @@ def _against_sensor(poses: Poses, ground_d_m: float) -> str:
     if flies.sum() < HEIGHT_SAMPLES:
         return ""
     measured, height = measured[flies], height[flies]
-    off = np.abs(height - measured) - HEIGHT_OFF_SHARE * np.maximum(measured, np.abs(height))
-    gross = (np.abs(height - measured) > HEIGHT_OFF_M) & (off > 0.0)
+    gap = np.abs(height - measured)
+    gross = (gap > HEIGHT_OFF_M) & (gap > HEIGHT_OFF_SHARE * np.maximum(measured, np.abs(height)))
     if gross.mean() <= 0.5:
         return ""
-    gap = np.abs(height - measured)
     middle = int(np.argmin(np.abs(gap - np.median(gap)).round(1)))  # the first of the typical ones, on any processor
     ratio = float(np.median(height / np.maximum(measured, 1e-6)))
     if ratio < 0.0:
