@@ -164,7 +164,7 @@ typedef struct {
 /* A detector's upright bounding box in raw pixels. Do not supply a tracker's smoothed boxes: they lag. */
 typedef struct {
     float left_px, top_px, right_px, bottom_px; /* read only with its bit in sides; each +-1e5; left < right, top < bottom */
-    uint8_t sides; /* GOE_SIDE_...; 0: no box. Bits of sides not cut, hidden or unreliable; all if it fills the image */
+    uint8_t sides; /* GOE_SIDE_...; 0: no box. Bits: sides not cut, hidden or unreliable; all if the box fills the image */
 } goe_box_t;
 
 #define GOE_SIDE_LEFT 0x01u

@@ -8,8 +8,6 @@
 #include "maths/goe_scalar.h"
 #include "maths/goe_time.h"
 
-#define GOE_SUPERSEDED_S 2.0f /* of detections without a new estimate, after which the old one clears nothing */
-
 static inline bool goe_uses_filter(const goe_estimator_t *estimator) {
 #if GOE_WITH_WINDOW && GOE_WITH_FILTER
     return estimator->settings.method == GOE_METHOD_FILTER;

@@ -14,8 +14,9 @@
 #if GOE_WITH_HAZARD
 
 #define SURE_SIGMA 2.0f
-#define HOVER_M_S 0.1f /* as for goe_hazard() */
-#define SILENT_S 2.0f  /* after this time without an image nothing is clear: the flight since is not known */
+#define HOVER_M_S 0.1f    /* as for goe_hazard() */
+#define SUPERSEDED_S 2.0f /* of detections without a new estimate, after which the old one clears nothing */
+#define SILENT_S 2.0f     /* after this time without an image nothing is clear: the flight since is not known */
 #define TIME_MAX_S 1.0e4f
 #define TIME_NUMBERS (offsetof(goe_hazard_t, tcpa_sd_s) / sizeof(float) + 1u) /* up to the sigma of the time */
 #define RULE_NUMBERS (sizeof(goe_rule_t) / sizeof(float))
@@ -119,7 +120,7 @@ static bool is_doubted(const goe_estimator_t *estimator, const goe_intent_t *int
 #else
     (void)intent;
 #endif
-    return wrong || (superseded && goe_latest_since_s(estimator, estimator->motion.time_us) > GOE_SUPERSEDED_S);
+    return wrong || (superseded && goe_latest_since_s(estimator, estimator->motion.time_us) > SUPERSEDED_S);
 }
 
 /* Whether the position is known to be wrong: the obstacle moves, and its velocity is not estimated. */

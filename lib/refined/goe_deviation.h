@@ -11,7 +11,8 @@ typedef struct {
     float scatter;                /* factor on the variances by the filter, (R32) */
     float reciprocal[GOE_STATES]; /* of R's diagonal, for the projections */
     float bend;                   /* factor on the part of a footprint's depth, goe_footprint_bend() */
-    float own_m_s; /* sigma of the own velocity's constant error, over the root of the scatter, which no image shows */
+    float
+        own_m_s; /* sigma of the own velocity's constant error, over the root of the scatter: that factor does not apply to it */
 } goe_widening_t;
 
 typedef struct {

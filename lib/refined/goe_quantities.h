@@ -10,11 +10,10 @@ typedef struct {
     float value[GOE_QUANTITIES]; /* X0, Z0 from the track's first image, T axes; m, orientation in rad */
     float sigma[GOE_QUANTITIES];
     float worked_out[GOE_QUANTITIES]; /* the sigmas for validity: without scatter, ground and a prism's depth */
-    float
-        began_m2[2]; /* variance of X0 and of Z0 from the track's first image, minus that relative to the camera now */
-    float before_m2; /* variance of X0 and of Z0 by the drift of the own position before the filter's start */
-    goe_xz_t length_axis;                      /* unit vector, T axes */
-    bool moves;                                /* the obstacle is followed; the position is that at the latest image */
+    float began_m2[2];    /* X0, Z0: variance from the filter's start on, minus that relative to the camera now */
+    float before_m2;      /* variance of X0 and of Z0 by the drift of the own position before the filter's start */
+    goe_xz_t length_axis; /* unit vector, T axes */
+    bool moves;           /* the obstacle is followed; the position is that at the latest image */
     float velocity_m_s[2], velocity_sd_m_s[2]; /* valid if it moves: north, east */
     float center_m[2], center_sd_m[2];         /* north, east; valid with GOE_HAS_CENTER */
     float center_ne_m2;                        /* covariance of the two, valid with GOE_HAS_CENTER */

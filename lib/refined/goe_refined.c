@@ -32,8 +32,7 @@
 #define DOUBTED_SIGMAS2 4.0f /* squared sigmas of a growth above which nothing is clear, for DOUBTED_S */
 #define DOUBTED_S 2.0f       /* s: as the errors of boxes fade in a second, the next growth may be smaller by chance */
 #define NEVER_S 1.0e6f       /* longer than any correlation time */
-#define FADE_MAX                                                                                                       \
-    0.9995f /* largest share of a box's error that remains from image to image, where it is not remembered */
+#define FADE_MAX 0.9995f     /* largest share of a box's error kept from image to image, where points replace sides */
 
 /* --------------------------------------------------------------------------------------------------------------- time -- */
 
