@@ -60,11 +60,13 @@ typedef struct {
     uint8_t camera; /* of the latest image */
 #endif
 #if GOE_AUGMENTED
-    uint8_t paced; /* 0: the fields below are invalid; else 1 + images in a row at the predicted place */
-    uint8_t leaps; /* images in a row far from the predicted place */
-    float rate_rad_s[3], velocity_m_s[2]; /* mean values since the mark, T axes */
-    float rate_before_rad_s[3];           /* the rate before the mark, free of the latest attitude's error */
-    float mark_attitude[4], mark_m[2];    /* attitude and place, T axes, at mark_us: the mark */
+    uint8_t
+        paced; /* 0: the fields below are invalid; else 1 + images in a row at the predicted place, + jumps in a row */
+    uint8_t marks;                     /* marks of the smoothed path, saturating */
+    float rate_rad_s[3];               /* mean since the mark, T axes */
+    float rate_before_rad_s[3];        /* the rate before the mark, free of the latest attitude's error */
+    float velocity_m_s[3];             /* of the smoothed path: X and Z in T, down */
+    float mark_attitude[4], mark_m[3]; /* attitude, and place on the smoothed path, at mark_us: the mark */
     int64_t mark_us;
 #endif
 } goe_motion_t;

@@ -18,9 +18,11 @@
 #define LEAP_MIN_M 8.0f        /* least distance of a jump from the predicted place: many positions err by less */
 #define LEAP_MIN_S 0.1f        /* added, times the speed: an error of the time stamp */
 #define LEAP_MIN_M_S2 40.0f    /* added, times the squared time: an aircraft's acceleration */
-#define LEAPS_MAX 3            /* jumps in a row; after more, the velocity is wrong */
+#define LEAPS_MAX 3u           /* jumps in a row; after more, the velocity is wrong */
 #define STEADY_SHARE 0.25f     /* of that distance: an image nearer to the predicted place confirms the velocity */
-#define STEADY_IMAGES 8        /* in a row that confirm it, before any jump: positions held from fix to fix do not */
+#define STEADY_IMAGES 8u       /* in a row that confirm it, before any jump: positions held from fix to fix do not */
+#define PATH_MARKS 6           /* marks in the memory of the smoothed path: half a second, if each image is one */
+#define PATH_MARKS_MIN 2       /* least marks that give it a velocity */
 #define MOVING_M_S 1.0f        /* least velocity that predicts a place: held positions have none */
 
 /* Sets T's Z axis in (north, east): the configured heading, or the direction of the nose. */
@@ -129,12 +131,8 @@ static void add_arm(const goe_motion_t *motion, const goe_settings_t *settings, 
 
 /* Counts images in a row that confirm the velocity; another image ends the row. */
 static void count_steady(goe_motion_t *motion, bool confirmed) {
-    motion->leaps = 0;
-    if (!confirmed) {
-        motion->paced = motion->paced > 0u ? 1u : 0u;
-    } else if (motion->paced <= STEADY_IMAGES) {
-        motion->paced++;
-    }
+    const unsigned more = motion->paced <= STEADY_IMAGES ? motion->paced + 1u : 1u + STEADY_IMAGES;
+    motion->paced = (uint8_t)(motion->paced > 0u && confirmed ? more : motion->paced > 0u);
 }
 
 /* Removes a jump that no reset announced, and that no aircraft can fly. The jump is the way from the predicted place to the given one. */
@@ -148,11 +146,13 @@ static bool undo_leap(goe_motion_t *motion, const float before_m[2], float since
     const float least2 = goe_square(LEAP_MIN_M + LEAP_MIN_S * speed_m_s + LEAP_MIN_M_S2 * since_s * since_s);
     const bool predicted = motion->paced > 0u && since_s < PACE_SPAN_MAX_S && speed_m_s > MOVING_M_S;
     float leap_ne_m[2];
-    if (!predicted || leap2 <= least2 || motion->paced <= STEADY_IMAGES || motion->leaps >= LEAPS_MAX) {
-        count_steady(motion, predicted && leap2 < STEADY_SHARE * STEADY_SHARE * least2);
+    if (!predicted || leap2 <= least2 || motion->paced <= STEADY_IMAGES || motion->paced > STEADY_IMAGES + LEAPS_MAX) {
+        const float way2 = goe_square(motion->dx_m - before_m[0]) + goe_square(motion->dz_m - before_m[1]);
+        const bool held = way2 < goe_square(MOVING_M_S * since_s); /* from fix to fix, while the path goes on */
+        count_steady(motion, predicted && !held && leap2 < STEADY_SHARE * STEADY_SHARE * least2);
         return false;
     }
-    motion->leaps++;
+    motion->paced++; /* at most by LEAPS_MAX */
     goe_motion_turn(motion, leap_m, leap_ne_m);
     motion->origin_ne_m[0] += leap_ne_m[0];
     motion->origin_ne_m[1] += leap_ne_m[1];
@@ -184,49 +184,92 @@ static void turn_rate(goe_motion_t *motion, const float half_ned[3], float since
     motion->rate_rad_s[2] = 2.0f * (c * half_ned[0] + s * half_ned[1]) / since_s;
 }
 
-static void set_mark(goe_motion_t *motion, const float attitude[4], const float body_m[2]) {
-    memcpy(motion->mark_attitude, attitude, sizeof motion->mark_attitude);
-    memcpy(motion->mark_m, body_m, sizeof motion->mark_m);
-    motion->mark_us = motion->time_us;
+/* The place minus that which the path predicts for this image: the errors of the two are independent. */
+static void leave_path(const goe_motion_t *motion, const float place_m[3], float since_s, float off_m[3]) {
+    for (size_t i = 0; i < 3; i++) {
+        off_m[i] = place_m[i] - (motion->mark_m[i] + motion->velocity_m_s[i] * since_s);
+    }
 }
 
-/* Rate and velocity from the poses since the mark. body_m: position of the vehicle, T axes, because two cameras have different arms. It
- * contains no jump. */
-static void find_pace(goe_motion_t *motion, const float attitude[4], const float body_m[2]) {
-    float half[3];
+/* Begins the path with this image. */
+static void begin_path(goe_motion_t *motion, const float place_m[3]) {
+    motion->marks = 1;
+    memcpy(motion->mark_m, place_m, sizeof motion->mark_m);
+    memset(motion->velocity_m_s, 0, sizeof motion->velocity_m_s);
+}
+
+/* The least-squares line through the marks so far, by recursion; from PATH_MARKS on, with constant gains. */
+static void extend_path(goe_motion_t *motion, const float place_m[3], const float off_m[3], float since_s) {
+    motion->marks = (uint8_t)(motion->marks < PATH_MARKS ? motion->marks + 1 : PATH_MARKS);
+    const float n = (float)motion->marks;
+    const float place_gain = (4.0f * n - 2.0f) / (n * (n + 1.0f));
+    const float velocity_gain = 6.0f / (n * (n + 1.0f));
+    for (size_t i = 0; i < 3; i++) {
+        motion->mark_m[i] = place_m[i] - (1.0f - place_gain) * off_m[i];
+        motion->velocity_m_s[i] += velocity_gain * off_m[i] / since_s;
+    }
+}
+
+/* Updates the smoothed path. place_m: the vehicle, X and Z in T, down; not the camera, because two cameras have different arms. It contains
+ * no jump. since_s: time since the mark; continues: the image follows the mark; marked: it is a mark. */
+static void follow_path(goe_motion_t *motion, const float place_m[3], float since_s, bool continues, bool marked,
+                        float off_m[3]) {
+    const bool known = continues && motion->marks >= PATH_MARKS_MIN;
+    leave_path(motion, place_m, since_s, off_m);
+    if (!continues) {
+        begin_path(motion, place_m);
+    } else if (marked) {
+        extend_path(motion, place_m, off_m, since_s);
+    } else {
+        /* the path stays */
+    }
+    if (!known) {
+        memset(off_m, 0, 3u * sizeof off_m[0]);
+    }
+}
+
+/* Updates rate and path from the poses since the mark. */
+static void find_pace(goe_motion_t *motion, const float attitude[4], const float place_m[3], float off_m[3]) {
+    float half[3] = {0.0f};
     const bool first = !motion->detected; /* no earlier image fixed T */
     const float since_s = goe_time_between_s(motion->mark_us, motion->time_us, PACE_SPAN_MAX_US);
-    if (!first && since_s < PACE_SPAN_MIN_S) {
+    const bool soon = !first && since_s < PACE_SPAN_MIN_S;
+    const bool continues =
+        !first && since_s < PACE_SPAN_MAX_S && (soon || half_turn(attitude, motion->mark_attitude, half));
+    const bool marked = !continues || since_s >= PACE_SPAN_S;
+    follow_path(motion, place_m, since_s, continues, marked, off_m);
+    if (soon) {
         return;
     }
-    const bool paced = !first && since_s < PACE_SPAN_MAX_S && half_turn(attitude, motion->mark_attitude, half);
-    motion->paced = paced && motion->paced > 0u ? motion->paced : paced;
-    if (paced) {
+    if (continues) {
         turn_rate(motion, half, since_s);
-        motion->velocity_m_s[0] = (body_m[0] - motion->mark_m[0]) / since_s;
-        motion->velocity_m_s[1] = (body_m[1] - motion->mark_m[1]) / since_s;
     } else {
         memset(motion->rate_rad_s, 0, sizeof motion->rate_rad_s);
         memset(motion->rate_before_rad_s, 0, sizeof motion->rate_before_rad_s);
     }
-    if (!paced || since_s >= PACE_SPAN_S) {
-        set_mark(motion, attitude, body_m);
+    const bool paced = continues && motion->marks >= PATH_MARKS_MIN;
+    motion->paced = paced && motion->paced > 0u ? motion->paced : paced;
+    if (marked) {
+        memcpy(motion->mark_attitude, attitude, sizeof motion->mark_attitude);
+        motion->mark_us = motion->time_us;
     }
 }
 
-/* For the filter: removes a jump that no reset announced from the own motion, and updates rate and velocity. before_m, before_us: camera
- * and time of the previous image. Returns whether there was a jump. */
-static GOE_NOINLINE bool follow_pace(goe_motion_t *motion, const goe_pose_t *pose, const float position[3],
-                                     const float before_m[2], int64_t before_us) {
+/* For the filter: removes a jump that no reset announced from the own motion, and updates rate and path. before_m, before_us: camera and
+ * time of the previous image. Returns whether there was a jump. */
+static GOE_NOINLINE bool follow_pace(goe_motion_t *motion, const float position[3], const float before_m[2],
+                                     int64_t before_us, goe_view_t *view) {
+    const goe_pose_t *pose = &view->image->pose;
     const float arm_n = position[0] - pose->position_ned_m[0];
     const float arm_e = position[1] - pose->position_ned_m[1];
     const bool leapt = undo_leap(motion, before_m, goe_time_between_s(before_us, motion->time_us, PACE_SPAN_MAX_US));
     if (motion->mark_us == before_us) { /* a span ended there: its rate does not contain this image's own error */
         memcpy(motion->rate_before_rad_s, motion->rate_rad_s, sizeof motion->rate_rad_s);
     }
-    const float body_m[2] = {motion->dx_m - (motion->heading_cos * arm_e - motion->heading_sin * arm_n),
-                             motion->dz_m - (motion->heading_cos * arm_n + motion->heading_sin * arm_e)};
-    find_pace(motion, pose->attitude, body_m);
+    const float place_m[3] = {motion->dx_m - (motion->heading_cos * arm_e - motion->heading_sin * arm_n),
+                              motion->dz_m - (motion->heading_cos * arm_n + motion->heading_sin * arm_e),
+                              pose->position_ned_m[2]};
+    find_pace(motion, pose->attitude, place_m, view->off_m);
     return leapt;
 }
 #endif
@@ -269,7 +312,8 @@ bool goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe
     turn_into_trajectory(motion, body_to_ned, view);
 #if GOE_AUGMENTED
     if (settings->method == GOE_METHOD_FILTER) {
-        leapt = follow_pace(motion, pose, position, before_m, before_us);
+        motion->mark_m[2] += jump_m[2]; /* the path jumps along */
+        leapt = follow_pace(motion, position, before_m, before_us, view);
     }
 #endif
     return leapt;

@@ -49,6 +49,9 @@ typedef struct {
     float box_noise_rel;             /* setting */
     const float *camera_to_body;     /* rotation matrices, row by row */
     float camera_to_trajectory[9];
+#if GOE_AUGMENTED
+    float off_m[3]; /* the given place minus that on the smoothed path: X and Z in T, down; 0 before there is a path */
+#endif
 } goe_view_t;
 
 /*@ predicate goe_view_is_open(goe_view_t *view) =

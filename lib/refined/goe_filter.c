@@ -170,7 +170,7 @@ goe_xz_t goe_filter_gained(const goe_filter_t *filter, const goe_motion_t *motio
 
 void goe_filter_pace(goe_filter_t *filter, const goe_motion_t *motion) {
     if (!filter->paced && motion->paced) {
-        memcpy(filter->axes.start_velocity_m_s, motion->velocity_m_s, sizeof motion->velocity_m_s);
+        memcpy(filter->axes.start_velocity_m_s, motion->velocity_m_s, sizeof filter->axes.start_velocity_m_s);
         filter->paced = true;
     }
 }

@@ -96,8 +96,7 @@ static void add_side(const goe_observation_t *obs, const goe_solid_t *o, size_t 
         return;
     }
     set_place(obs, o, &t.contact, &g, by);
-    by[GOE_INVERSE_RANGE] += g.y * obs->height_m;
-    *goe_rows_last_variance(rows) += 2.0f * goe_square(obs->shift * g.z); /* opposite sides share this error */
+    by[GOE_INVERSE_RANGE] += g.y * obs->path_height_m;
     remember(rows, memory_of(obs, side));
 }
 
@@ -147,7 +146,7 @@ static void add_rim(const goe_observation_t *obs, const goe_solid_t *o, float mo
     by[GOE_SHEAR] += slide.by.shear;
     by[GOE_HALF] += slide.by.half;
     by[GOE_LOG_DEPTH] += slide.by.depth;
-    by[GOE_INVERSE_RANGE] += g.y * obs->height_m;
+    by[GOE_INVERSE_RANGE] += g.y * obs->path_height_m;
     by[GOE_TOP] = -g.y;
 }
 
@@ -166,7 +165,7 @@ static void add_base(const goe_observation_t *obs, const goe_solid_t *o, goe_fea
     *variance = *variance * BASE_NOISE + goe_square(g.at * width);
     by[GOE_GROUND] = g.y;
     goe_rows_place(by, obs, g.x, g.z);
-    by[GOE_INVERSE_RANGE] += g.y * obs->height_m;
+    by[GOE_INVERSE_RANGE] += g.y * obs->path_height_m;
 }
 
 /* Adds the rows of the points that no sides replace, and of the base corners. */

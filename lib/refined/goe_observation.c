@@ -23,6 +23,7 @@
 #define RANGE_FREEDOM 4.0f    /* relative prior sigma of 1/Z0 */
 #define TOP_FREEDOM 10.0f     /* prior sigma of the top, over the larger of top and width */
 #define WIDTH_MIN 1.0e-5f     /* least width between two ends, focal lengths */
+#define SHARED 2.0f           /* rows that share an error of the camera's place along Z: opposite sides */
 #define FORWARD_MIN 1.0e-4f   /* least distance ahead of a predicted point, in units of Z0 */
 
 static const goe_kind_t UNKNOWN; /* replaces a class that proved wrong */
@@ -131,6 +132,23 @@ static void note_pace(goe_observation_t *obs, const goe_filter_t *filter, const 
 #endif
 }
 
+/* Places the camera on the smoothed path. */
+/*@ requires \valid(obs) && \valid_read(filter) && goe_view_is_open(view); */
+static void note_path(goe_observation_t *obs, const goe_filter_t *filter, const goe_view_t *view) {
+    obs->path_m = obs->camera_m;
+    obs->path_height_m = obs->height_m;
+#if GOE_AUGMENTED
+    const goe_xz_t level = {view->off_m[0], view->off_m[1]};
+    const goe_xz_t off_m = goe_xz_into(level, filter->axes.turn_cos, filter->axes.turn_sin);
+    obs->path_m.x -= off_m.x;
+    obs->path_m.z -= off_m.z;
+    obs->path_height_m += view->off_m[2];
+#else
+    (void)filter;
+    (void)view;
+#endif
+}
+
 /* A class knows better than a setting. */
 static bool starts_round(goe_model_t asked, const goe_kind_t *kind) {
     return kind->shape != GOE_KIND_UNKNOWN ? kind->shape == GOE_KIND_ROUND : asked == GOE_MODEL_DISC;
@@ -151,6 +169,7 @@ unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *sett
     obs->kind = filter->kind.wrong ? &UNKNOWN : &view->image->kind;
     obs->is_round = goe_filter_has_started(filter) ? filter->kind.is_round : starts_round(settings->model, obs->kind);
     obs->height_m = filter->datum.height_m;
+    note_path(obs, filter, view);
     obs->is_placed = (filter->known & GOE_HAS_POSITION) != 0u;
     obs->fade = 0.0f;
     obs->shift = 0.0f;
@@ -267,6 +286,7 @@ void goe_rows_clear(goe_rows_t *rows, goe_matrix_t *matrix) {
     rows->matrix = matrix;
     rows->remembered = 0;
     rows->count = 0;
+    rows->shift = 0.0f;
 }
 
 float *goe_rows_add(goe_rows_t *rows, goe_feature_t feature, goe_axis_t axis, float measured, float variance,
@@ -274,7 +294,7 @@ float *goe_rows_add(goe_rows_t *rows, goe_feature_t feature, goe_axis_t axis, fl
     const size_t at = rows->count++;
     float *row = rows->matrix->row[at];
     float *by = &row[GOE_STATE_COLUMN];
-    rows->variance[at] = variance;
+    rows->variance[at] = variance + SHARED * goe_square(rows->shift * gradient->z);
     rows->feature[at] = (uint8_t)feature;
     rows->axis[at] = (uint8_t)axis;
     rows->series[at] = (uint8_t)(2u * (unsigned)feature);

@@ -12,9 +12,11 @@ typedef struct {
     const float *state;
     goe_point_t point[GOE_FEATURES]; /* aligned with the state's axes; usable: measured in this image */
     float camera_to_axes[9], body_to_axes[9];
-    float ex, ey, ez;  /* attitude bias about the state's axes, rad */
-    goe_xz_t camera_m; /* camera since the filter's start, the state's axes */
-    float height_m;    /* camera above ground: by the changes of down, see goe_datum_t */
+    float ex, ey, ez;    /* attitude bias about the state's axes, rad */
+    goe_xz_t camera_m;   /* camera since the filter's start, the state's axes */
+    goe_xz_t path_m;     /* the same on the smoothed path, for derivatives: see goe_rows_place() */
+    float height_m;      /* camera above ground: by the changes of down, see goe_datum_t */
+    float path_height_m; /* the same on the smoothed path, for derivatives */
     const goe_sides_t *sides;
     const goe_kind_t *kind;
     float height_sd_m; /* one sigma of the height above the obstacle's ground, without the ground's slope */
@@ -64,6 +66,7 @@ typedef struct {
     size_t count;
     size_t remembered; /* the first rows, those whose errors are remembered */
     float white_rad;   /* one sigma of the nuisances */
+    float shift;       /* one sigma of the camera's place along Z, units of Z0: each row contains it */
 } goe_rows_t;
 
 /*@ predicate goe_rows_hold(goe_rows_t *rows) =
@@ -169,11 +172,12 @@ float *goe_rows_add_level(goe_rows_t *rows, const goe_observation_t *obs, goe_xz
 static inline float *goe_rows_last_variance(goe_rows_t *rows) { return &rows->variance[rows->count - 1u]; }
 
 /* Sets the derivatives of a coordinate whose point moves with the reference point, by whose X and Z it changes by by_x and by_z: by
- * GOE_BEARING, and by GOE_INVERSE_RANGE as far as the camera's path determines it. */
+ * GOE_BEARING, and by GOE_INVERSE_RANGE as far as the camera's path determines it. An error of the camera's place that the residual contains
+ * must not be in this derivative: their product, the square of the error, would count as range. */
 /*@ requires \valid(by + (0 .. GOE_UNKNOWNS - 1)) && goe_observation_is_open(obs); */
 static inline void goe_rows_place(float *by, const goe_observation_t *obs, float by_x, float by_z) {
     by[GOE_BEARING] = by_x;
-    by[GOE_INVERSE_RANGE] = -(by_x * obs->camera_m.x) - by_z * obs->camera_m.z;
+    by[GOE_INVERSE_RANGE] = -(by_x * obs->path_m.x) - by_z * obs->path_m.z;
 #if GOE_AUGMENTED
     by[GOE_STATES + GOE_AUGMENTED_VELOCITY_X] = by_x; /* until goe_mover_columns() */
     by[GOE_STATES + GOE_AUGMENTED_VELOCITY_Z] = by_z;

@@ -71,6 +71,13 @@ void sighting_start(sighting_t *sighting, check_random_t *random) {
 
 void sighting_look(sighting_t *sighting) { goe_observation_linearise(&sighting->sight); }
 
+void sighting_clear_rows(sighting_t *sighting) {
+    sighting->sight.path_m = sighting->sight.camera_m;
+    sighting->sight.path_height_m = sighting->sight.height_m;
+    goe_rows_clear(&sighting->rows, &sighting->matrix);
+    sighting->rows.shift = sighting->sight.shift;
+}
+
 static void attitude_bias(const sighting_t *sighting, const double state[GOE_STATES], double e[3]) {
     for (int i = 0; i < 3; i++) {
         const float *row = &sighting->sight.body_to_axes[3 * i];

@@ -29,6 +29,9 @@ void sighting_finish(sighting_t *sighting, check_random_t *random, double z0_m, 
 /* What depends on the state, after a change of it. */
 void sighting_look(sighting_t *sighting);
 
+/* Prepares an empty set of rows of the image: it lies on the smoothed path. */
+void sighting_clear_rows(sighting_t *sighting);
+
 /* Y/Z at which a point of the image was measured, freed of the attitude bias of `state`, to first order. */
 double sighting_height(const sighting_t *sighting, const double state[GOE_STATES], size_t feature);
 

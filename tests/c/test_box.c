@@ -203,7 +203,7 @@ static void check_rows(void) {
     sighting.sight.base =
         sighting.sight.point[GOE_POINT_BASE_LEFT].usable && sighting.sight.point[GOE_POINT_BASE_RIGHT].usable;
     sighting.sight.edge = sighting.sight.base;
-    goe_rows_clear(&sighting.rows, &sighting.matrix);
+    sighting_clear_rows(&sighting);
     goe_box_rows(&sighting.sight, &sighting.rows);
     TEST_ASSERT_EQUAL_size_t(expected_rows, sighting.rows.count);
     for (size_t row = 0; row < expected_rows; row++) {

@@ -100,11 +100,12 @@ static void the_velocity_is_the_vehicles(void) {
 static void only_distant_poses_give_motion(void) {
     follow(0.0);
     follow(0.04);
-    TEST_ASSERT_FALSE(motion.paced); /* nearer than 45 ms: not yet */
+    CHECK_SAME(0.0f, motion.rate_rad_s[1]); /* nearer than 45 ms: not yet */
     follow(0.06);
+    CHECK_CLOSE(1.0e-3, 0.5, motion.rate_rad_s[1]);
+    TEST_ASSERT_FALSE(motion.paced); /* nearer than 90 ms: no second mark of the path yet */
+    follow(0.10);
     TEST_ASSERT_TRUE(motion.paced);
-    CHECK_CLOSE(2.0e-3, 12.0, motion.velocity_m_s[1]);
-    follow(0.10); /* the mark is still the first: the span grows to 90 ms */
     CHECK_CLOSE(1.0e-3, 12.0, motion.velocity_m_s[1]);
     follow(0.71);
     TEST_ASSERT_FALSE(motion.paced);

@@ -66,7 +66,7 @@ static void any_footprint(double truth[GOE_STATES]) {
 }
 
 static void make_rows(void) {
-    goe_rows_clear(&sighting.rows, &sighting.matrix);
+    sighting_clear_rows(&sighting);
     goe_footprint_rows(&sighting.sight, &sighting.rows);
     goe_rows_end(&sighting.rows, &sighting.sight);
 }
@@ -178,7 +178,7 @@ static void each_side_has_its_own_memory(void) {
     float change[GOE_UNKNOWNS] = {0.0f};
     for (size_t side = 0; side < GOE_BOX_SIDES; side++) {
         memset(&filter, 0, sizeof filter);
-        goe_rows_clear(&sighting.rows, &sighting.matrix);
+        sighting_clear_rows(&sighting);
         memset(&sighting.matrix, 0, sizeof sighting.matrix);
         sighting.rows.count = sighting.rows.remembered = 1;
         sighting.rows.white_rad = 2.0f;
@@ -218,7 +218,7 @@ static void opposite_sides_learn_together(void) {
     const double residual[2] = {3.0, -1.0};
     const double common = 4.0 * (0.09 + 0.16 + 1.44);
     memset(&filter, 0, sizeof filter);
-    goe_rows_clear(&sighting.rows, &sighting.matrix);
+    sighting_clear_rows(&sighting);
     memset(&sighting.matrix, 0, sizeof sighting.matrix);
     sighting.rows.count = sighting.rows.remembered = 3;
     sighting.rows.white_rad = 2.0f;

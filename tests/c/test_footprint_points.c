@@ -168,7 +168,7 @@ static void measure(size_t feature) {
 static void make_rows(void) {
     sighting.sight.base =
         sighting.sight.point[GOE_POINT_BASE_LEFT].usable && sighting.sight.point[GOE_POINT_BASE_RIGHT].usable;
-    goe_rows_clear(&sighting.rows, &sighting.matrix);
+    sighting_clear_rows(&sighting);
     goe_footprint_rows(&sighting.sight, &sighting.rows);
 }
 

@@ -58,7 +58,7 @@ static void see(double ahead, double wider, double taller) {
 }
 
 static double growth(void) {
-    goe_rows_clear(&sighting.rows, &sighting.matrix);
+    sighting_clear_rows(&sighting);
     goe_footprint_rows(&sighting.sight, &sighting.rows);
     return (double)goe_growth_find(&sighting.sight, &sighting.rows);
 }
@@ -105,7 +105,7 @@ static void what_cannot_be_compared_is_no_growth(void) {
 /* [(R34)] GIVEN an obstacle whose reference point is exactly at the camera, with Z = 0, THEN nothing counts, and nothing is divided by 0. */
 static void an_obstacle_at_the_camera_is_no_growth(void) {
     see(0.9, 2.0, 2.0);
-    goe_rows_clear(&sighting.rows, &sighting.matrix);
+    sighting_clear_rows(&sighting);
     goe_footprint_rows(&sighting.sight, &sighting.rows);
     sighting.sight.camera_m.z = 1.0f / sighting.state[GOE_INVERSE_RANGE];
     CHECK_SAME(0.0f, goe_observation_reference(&sighting.sight).z);

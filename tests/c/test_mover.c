@@ -189,7 +189,7 @@ static void the_variance_includes_augmented_states(void) {
 /* ----------------------------------------------------------------------------------------------------------- columns -- */
 
 static void rows_of(sighting_t *s) {
-    goe_rows_clear(&s->rows, &s->matrix);
+    sighting_clear_rows(s);
     goe_observation_linearise(&s->sight);
     goe_footprint_rows(&s->sight, &s->rows);
     goe_rows_end(&s->rows, &s->sight);

@@ -93,7 +93,7 @@ static void any_obstacle(double truth[GOE_STATES]) {
 }
 
 static void make_rows(void) {
-    goe_rows_clear(&sighting.rows, &sighting.matrix);
+    sighting_clear_rows(&sighting);
     if (model == A_BOX) {
         goe_box_rows(&sighting.sight, &sighting.rows);
     } else {

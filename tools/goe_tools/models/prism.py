@@ -49,6 +49,7 @@ from ..flights.rotations import level_axes, matrices, mounting
 from ..library import MODEL_AUTO, MODEL_DISC
 from ..logs.obslog import Camera
 from .model import COMPLEX_STEP, distorted, lens_slope
+from .path import off_path
 
 STATES = ("bx", "by", "bz", "g", "a", "q", "e", "s", "w", "d")
 BX, BY, BZ, G, A, Q, E, S, W, D, PX, PY, PZ = range(13)
@@ -122,6 +123,7 @@ class Sight:
     axes_from_camera: np.ndarray  # (3, 3) estimated
     axes_from_body: np.ndarray
     moved_m: np.ndarray  # (3,) camera since the axes' origin
+    off_path_m: np.ndarray  # (3,) place minus that on the smoothed path
     height_m: float  # of the camera above ground, from the first height and the changes of down
     given_height_m: float
     image_height_px: float  # 0: not known
@@ -131,7 +133,8 @@ class Sight:
         return Sight(
             self.time_s, self.camera, self.side, self.doubtful, self.cut,
             turn @ self.axes_from_camera, turn @ self.axes_from_body,
-            turn @ (self.moved_m - origin_m), self.height_m, self.given_height_m, self.image_height_px,
+            turn @ (self.moved_m - origin_m), turn @ self.off_path_m,
+            self.height_m, self.given_height_m, self.image_height_px,
         )  # fmt: skip
 
 
@@ -181,6 +184,7 @@ def sights(flight: Flight, errors: ErrorModel) -> list[Sight]:
     t_from_ned, ned_from_body = level_axes(flight.heading_rad), matrices(flight.attitude)
     eye = flight.position_ned_m + ned_from_body @ [camera.offset_x_m, camera.offset_y_m, camera.offset_z_m]
     moved = (eye - eye[0]) @ t_from_ned.T
+    off = off_path(flight.time_s, flight.position_ned_m @ t_from_ned.T)
     t_from_body = t_from_ned @ ned_from_body
     t_from_camera = t_from_body @ mounting(camera)
     down = np.abs(t_from_camera[:, 1])
@@ -190,6 +194,7 @@ def sights(flight: Flight, errors: ErrorModel) -> list[Sight]:
     return [
         Sight(
             float(t), camera, side[k], doubtful[k], bool(cut[k]), t_from_camera[k], t_from_body[k], moved[k],
+            off[k],
             float(flight.height_m[0] - moved[k, 1]), float(flight.height_m[k]), float(flight.image_size_px[1]),
         )
         for k, t in enumerate(flight.time_s)

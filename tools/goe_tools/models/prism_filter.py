@@ -53,6 +53,7 @@ from .altimeter import Altimeter
 from .model import undistort
 from .prism import (
     BX,
+    PX,
     PZ,
     A,
     D,
@@ -304,6 +305,7 @@ class PrismFilter:
             return None
         side = np.array([row.side for row in rows])
         slope = np.array([row.slope for row in rows])
+        slope[:, Q] -= slope[:, PX : PX + 3] @ sight.off_path_m / self.state[Q]  # on the smoothed path
         size = np.array([box_size(sight, self.state, row.side % 2) for row in rows])
         own = (errors.box_noise_px / focal_px(sight.camera)[side]) ** 2 + (SCATTER_SHARE * size) ** 2
         own += (errors.truncation_noise_rel * size) ** 2 if sight.cut else 0.0
