@@ -16,6 +16,7 @@
 #define SURE_SIGMA 2.0f
 #define HOVER_M_S 0.1f    /* as for goe_hazard() */
 #define SUPERSEDED_S 2.0f /* of detections without a new estimate, after which the old one clears nothing */
+#define SHOWN_S 1.0f      /* after this time without a new estimate an obstacle whose visible part is passed counts as passed */
 #define SILENT_S 2.0f     /* after this time without an image nothing is clear: the flight since is not known */
 #define TIME_MAX_S 1.0e4f
 #define TIME_NUMBERS (offsetof(goe_hazard_t, tcpa_sd_s) / sizeof(float) + 1u) /* up to the sigma of the time */
@@ -101,7 +102,7 @@ static bool may_be_ahead(const goe_estimator_t *estimator, const goe_intent_t *i
     if (closing > -(hover + unsure)) {
         return cut || answer->outgrown_s > 0.0f;
     }
-    return cut && motion->detected > 1u;
+    return cut && (motion->detected > 1u || goe_latest_since_s(estimator, motion->time_us) < SHOWN_S);
 }
 #endif
 
