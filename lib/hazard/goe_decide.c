@@ -16,7 +16,7 @@
 #define SURE_SIGMA 2.0f
 #define HOVER_M_S 0.1f    /* as for goe_hazard() */
 #define SUPERSEDED_S 2.0f /* of detections without a new estimate, after which the old one clears nothing */
-#define SHOWN_S 1.0f      /* after this time without a new estimate an obstacle whose visible part is passed counts as passed */
+#define SHOWN_S 1.0f      /* time without a new estimate after which images no longer show an obstacle */
 #define SILENT_S 2.0f     /* after this time without an image nothing is clear: the flight since is not known */
 #define TIME_MAX_S 1.0e4f
 #define TIME_NUMBERS (offsetof(goe_hazard_t, tcpa_sd_s) / sizeof(float) + 1u) /* up to the sigma of the time */
@@ -84,7 +84,7 @@ static goe_xz_t relative_velocity(const goe_estimate_t *estimate, const goe_inte
 #if GOE_WITH_FILTER
 /* Filter: whether the obstacle is ahead on the course, within a sigma, and images showed it larger than it can be at this range, or the
  * border may cut it on the side of the course. If it is nearer, it also passes sooner; if it is cut, it may reach the course, and while
- * images show it without an estimate, even if its middle is passed. A hovering aircraft has no course, and the course to the obstacle itself
+ * images show it, even if its visible part is passed. A hovering aircraft has no course, and the course to the obstacle itself
  * no side: then each end counts. */
 static bool may_be_ahead(const goe_estimator_t *estimator, const goe_intent_t *intent) {
     const goe_motion_t *motion = &estimator->motion;

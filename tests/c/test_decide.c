@@ -243,8 +243,8 @@ static void ahead_is_along_the_course(void) {
     }
 }
 
-/* [GOE_DECISION_UNKNOWN] GIVEN an obstacle whose middle is passed, and whose end toward the course is cut WHEN images show it without an
- * estimate THEN it is not clear. */
+/* [GOE_DECISION_UNKNOWN] GIVEN an obstacle whose middle is passed, and whose end toward the course is cut WHEN images show it, with an
+ * estimate or without, THEN it is not clear. */
 static void a_passed_middle_clears_no_cut_end_in_view(void) {
     for (int cut = 0; cut < 2; cut++) {
         place(60.0);
@@ -252,6 +252,8 @@ static void a_passed_middle_clears_no_cut_end_in_view(void) {
         intent.velocity_ned_m_s[1] = -2.0f;
         estimator.filter.answer.cut = cut == 1 ? GOE_SIDE_LEFT : 0u;
         estimator.motion.detected = 1u;
+        TEST_ASSERT_EQUAL_INT(cut == 1 ? GOE_DECISION_UNKNOWN : GOE_DECISION_CLEAR, decide());
+        estimator.motion.time_us += 1100000; /* images without it: it is passed */
         TEST_ASSERT_EQUAL_INT(GOE_DECISION_CLEAR, decide());
         estimator.motion.detected = 2u;
         TEST_ASSERT_EQUAL_INT(cut == 1 ? GOE_DECISION_UNKNOWN : GOE_DECISION_CLEAR, decide());

@@ -1,4 +1,4 @@
-"""Noise that is new in each pose, and configured: how far lib/DESIGN.md says that the estimate is off."""
+"""Noise that is new in each pose, and configured: the range stays as good as lib/DESIGN.md says."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ pytest.importorskip("goe", reason="the Python package is not installed (tools/se
 from test_caller_mistakes import FOCAL_PX, IMAGES, MAST_NE_M, SIZE_PX, goe, right
 
 FLIGHTS, FROM = 40, 30  # images before have little range
-WHITE_M = 0.3
 
 
 def errors_in_sigmas(white_m: float) -> np.ndarray:
@@ -34,7 +33,9 @@ def errors_in_sigmas(white_m: float) -> np.ndarray:
     return np.array(result)
 
 
-def test_position_noise_that_is_new_in_each_image_makes_the_range_too_large() -> None:
-    exact, noisy = errors_in_sigmas(0.0), errors_in_sigmas(WHITE_M)
-    assert abs(exact.mean()) < 0.5
-    assert 1.0 < noisy.mean() < 3.0
+def test_position_noise_that_is_new_in_each_image_hardly_biases_the_range() -> None:
+    """With the noise in the derivatives as well, the mean is +1.3 sigma."""
+    for white_m, most in ((0.0, 0.5), (0.3, 0.9), (1.0, 2.0)):
+        off = errors_in_sigmas(white_m)
+        assert abs(off.mean()) < most
+        assert np.sqrt(np.mean(off**2)) < 1.2 * most
