@@ -102,7 +102,8 @@ static bool may_be_ahead(const goe_estimator_t *estimator, const goe_intent_t *i
     if (closing > -(hover + unsure)) {
         return cut || answer->outgrown_s > 0.0f;
     }
-    return cut && (motion->detected > 1u || goe_latest_since_s(estimator, motion->time_us) < SHOWN_S);
+    const bool abeam = goe_absolute(right) > -closing; /* rather than behind */
+    return cut && (motion->detected > 1u || (abeam && goe_latest_since_s(estimator, motion->time_us) < SHOWN_S));
 }
 #endif
 

@@ -31,6 +31,11 @@ void setUp(void) {
 }
 void tearDown(void) {}
 
+/* Images without the obstacle since its estimate. */
+static void last_shown_s(double seconds) {
+    estimator.motion.time_us = estimator.estimate_time_us + (int64_t)(1.0e6 * seconds);
+}
+
 static goe_decision_t decide(void) { return goe_decide(&estimator, &intent, &rule, &hazard); }
 
 /* [goe_decide]
@@ -222,6 +227,8 @@ static void what_goes_on_toward_the_course_is_not_clear(void) {
         intent.velocity_ned_m_s[0] = 20.0f;
         estimator.filter.answer.cut = (uint8_t)near_side;
         estimator.estimate.z_m = -1.0f;
+        TEST_ASSERT_EQUAL_INT(GOE_DECISION_UNKNOWN, decide());
+        last_shown_s(1.1);
         TEST_ASSERT_EQUAL_INT(GOE_DECISION_CLEAR, decide());
     }
 }
@@ -232,6 +239,7 @@ static void what_goes_on_toward_the_course_is_not_clear(void) {
 static void ahead_is_along_the_course(void) {
     for (int cut = 0; cut < 2; cut++) {
         place(60.0);
+        last_shown_s(1.1);
         estimator.estimate.z_m = -1.0f;
         estimator.filter.answer.cut = cut == 1 ? GOE_SIDE_LEFT : 0u;
         estimator.filter.answer.outgrown_s = cut == 1 ? 0.0f : 1.0f;
@@ -253,10 +261,18 @@ static void a_passed_middle_clears_no_cut_end_in_view(void) {
         estimator.filter.answer.cut = cut == 1 ? GOE_SIDE_LEFT : 0u;
         estimator.motion.detected = 1u;
         TEST_ASSERT_EQUAL_INT(cut == 1 ? GOE_DECISION_UNKNOWN : GOE_DECISION_CLEAR, decide());
-        estimator.motion.time_us += 1100000; /* images without it: it is passed */
+        last_shown_s(1.1); /* it is passed */
         TEST_ASSERT_EQUAL_INT(GOE_DECISION_CLEAR, decide());
         estimator.motion.detected = 2u;
         TEST_ASSERT_EQUAL_INT(cut == 1 ? GOE_DECISION_UNKNOWN : GOE_DECISION_CLEAR, decide());
+        place(60.0);
+        intent.velocity_ned_m_s[1] = 20.0f; /* it lies behind: the aircraft backs away */
+        intent.velocity_ned_m_s[0] = -20.0f;
+        estimator.filter.answer.cut = GOE_SIDE_LEFT | GOE_SIDE_RIGHT;
+        TEST_ASSERT_EQUAL_INT(GOE_DECISION_UNKNOWN, decide());
+        intent.velocity_ned_m_s[1] = -20.0f;
+        TEST_ASSERT_EQUAL_INT(GOE_DECISION_CLEAR, decide());
+        intent.velocity_ned_m_s[0] = 10.0f;
     }
 }
 
