@@ -164,7 +164,7 @@ def test_the_class_gives_the_range_without_ground(name: str) -> None:
 def test_the_width_of_a_pole_gives_its_range(features: str) -> None:
     """[goe_kind_t.width_m] First and last answer of a small drone at 1 m/s; sigmas hold."""
     first, last, inside = [], [], []
-    for inputs in flights(POLES.by(features=features), range(6200, 6360), pole):
+    for inputs in flights(POLES.by(features=features), range(6200, 6600), pole):
         outcome = judged(inputs, track_of(inputs, np.array([*POLE_M, 0.0, 0.0, ROUND])))
         error = np.abs(outcome.error[:, Z0])[np.isfinite(outcome.error[:, Z0])]
         if not len(error):
@@ -173,7 +173,7 @@ def test_the_width_of_a_pole_gives_its_range(features: str) -> None:
         first.append(error[0] / range_m[0])
         last.append(error[-1] / range_m[0])
         inside.append(np.mean(ratios(outcome) < 2.0))
-    assert len(first) > 150, len(first)
+    assert len(first) > 375, len(first)
     assert np.median(first) < 0.15, np.median(first)
     assert np.median(last) < 0.15, np.median(last)
     assert np.mean(inside) > 0.86, np.mean(inside)
