@@ -162,8 +162,7 @@ typedef struct {
     float first_m2;     /* variance of the height at the filter's start */
     float taken_m2;     /* variance of the height that the filter has used */
     float taken_mean_m; /* mean_m at that use */
-    uint8_t readings;   /* height readings so far, saturating */
-    goe_flag_t boxes;   /* the filter has used an upright box */
+    float start_m;      /* height_m at the filter's start */
 } goe_datum_t;
 
 /* refined/goe_side_memory.c: the slowly varying (correlated) error of a box's side, estimated from the residuals so far. The estimate
@@ -200,6 +199,7 @@ typedef struct {      /* refined/goe_health.c: how well the images fit */
     goe_flag_t base_refused;       /* the points given as base corners are other points: not used */
     goe_flag_t adrift;             /* the filter restarted twice within few images */
     uint8_t steady;                /* images since the latest restart, saturating */
+    uint8_t heights;               /* height readings of the track, saturating */
 } goe_health_t;
 
 /* refined/goe_mover.c: estimates of the latency and of the obstacle's velocity. */
@@ -250,6 +250,7 @@ typedef struct {
 #endif
     goe_naming_t naming;
     goe_flag_t has_datum; /* the datum is set, by the track's first image */
+    goe_flag_t boxes;     /* the filter has used an upright box */
     float ground_scale;   /* 1/Z0 at which the sigma of GOE_GROUND was set, over the present 1/Z0 */
     goe_place_t measured; /* camera at the latest image that gave rows, the state's axes */
     float walk_s[2];      /* time since the random walk of the own position was last added along X, and along Z */

@@ -213,7 +213,9 @@ static void extend_path(goe_motion_t *motion, const float place_m[3], const floa
 /* Updates the smoothed path. place_m: the vehicle, X and Z in T, down; not the camera, because two cameras have different arms. It contains
  * no jump. since_s: time since the mark; continues: the image follows the mark; marked: it is a mark. */
 static void follow_path(goe_motion_t *motion, const float place_m[3], float since_s, bool continues, bool marked,
-                        float off_m[3]) {
+                        goe_view_t *view) {
+    float *off_m = view->off_m;
+    const float before_m_s[2] = {motion->velocity_m_s[0], motion->velocity_m_s[1]};
     const bool known = continues && motion->marks >= PATH_MARKS_MIN;
     leave_path(motion, place_m, since_s, off_m);
     if (!continues) {
@@ -224,12 +226,14 @@ static void follow_path(goe_motion_t *motion, const float place_m[3], float sinc
         /* the path stays */
     }
     if (!known) {
-        memset(off_m, 0, 3u * sizeof off_m[0]);
+        memset(off_m, 0, sizeof view->off_m);
     }
+    view->gained_m_s[0] = known ? motion->velocity_m_s[0] - before_m_s[0] : 0.0f;
+    view->gained_m_s[1] = known ? motion->velocity_m_s[1] - before_m_s[1] : 0.0f;
 }
 
 /* Updates rate and path from the poses since the mark. */
-static void find_pace(goe_motion_t *motion, const float attitude[4], const float place_m[3], float off_m[3]) {
+static void find_pace(goe_motion_t *motion, const float attitude[4], const float place_m[3], goe_view_t *view) {
     float half[3] = {0.0f};
     const bool first = !motion->detected; /* no earlier image fixed T */
     const float since_s = goe_time_between_s(motion->mark_us, motion->time_us, PACE_SPAN_MAX_US);
@@ -237,7 +241,7 @@ static void find_pace(goe_motion_t *motion, const float attitude[4], const float
     const bool continues =
         !first && since_s < PACE_SPAN_MAX_S && (soon || half_turn(attitude, motion->mark_attitude, half));
     const bool marked = !continues || since_s >= PACE_SPAN_S;
-    follow_path(motion, place_m, since_s, continues, marked, off_m);
+    follow_path(motion, place_m, since_s, continues, marked, view);
     if (soon) {
         return;
     }
@@ -269,7 +273,7 @@ static GOE_NOINLINE bool follow_pace(goe_motion_t *motion, const float position[
     const float place_m[3] = {motion->dx_m - (motion->heading_cos * arm_e - motion->heading_sin * arm_n),
                               motion->dz_m - (motion->heading_cos * arm_n + motion->heading_sin * arm_e),
                               pose->position_ned_m[2]};
-    find_pace(motion, pose->attitude, place_m, view->off_m);
+    find_pace(motion, pose->attitude, place_m, view);
     return leapt;
 }
 #endif

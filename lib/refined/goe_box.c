@@ -181,7 +181,7 @@ static void widest_corners(const outline_t *o, size_t corner[3]) {
 /* Sets the derivatives by place and extents in a corner's row from those by (X, Z), and adds the possible linearization error. */
 /*@ requires goe_rows_hold(rows) && \valid(by + (0 .. GOE_UNKNOWNS - 1)) && goe_observation_is_open(obs);
     requires \valid_read(o) && \valid_read(g) && corner < CORNERS && 1 <= rows->count <= GOE_ROWS_MAX; */
-static void set_corner(goe_rows_t *rows, float by[restrict GOE_UNKNOWNS], const goe_observation_t *obs,
+static void set_corner(goe_rows_t *rows, float by[restrict GOE_BEHIND_STATES + 1], const goe_observation_t *obs,
                        const outline_t *o, size_t corner, const goe_gradient_t *g) {
     const goe_box_edges_t *e = &o->edges;
     const float across = across_of[corner];
@@ -216,13 +216,13 @@ GOE_NOINLINE static void add_base_corner(const goe_observation_t *obs, const out
     float *by = goe_rows_add(rows, feature, GOE_ALONG_X, measured->x, spread.xx, &gx);
     const float along_x = by[GOE_BEHIND_STATES];
     set_corner(rows, by, obs, o, corner, &gx);
-    by[GOE_INVERSE_RANGE] += gx.y * obs->path_height_m;
+    goe_rows_raise(by, obs, gx.y);
     by[GOE_GROUND] = gx.y;
     by = goe_rows_add(rows, feature, GOE_ALONG_Y, measured->y, spread.yy - share * spread.xy, &gy);
     rows->series[rows->count - 1u]++; /* that of y follows that of x */
     by[GOE_BEHIND_STATES] -= share * along_x;
     set_corner(rows, by, obs, o, corner, &gy);
-    by[GOE_INVERSE_RANGE] += gy.y * obs->path_height_m;
+    goe_rows_raise(by, obs, gy.y);
     by[GOE_GROUND] = gy.y;
 }
 
@@ -273,7 +273,7 @@ static void add_top(const goe_observation_t *obs, const outline_t *o, goe_rows_t
         goe_rows_add_level(rows, obs, o->corner[corner], o->top, GOE_POINT_TOP, goe_observation_size_variance(obs), &g);
     if (by != NULL) {
         set_corner(rows, by, obs, o, corner, &g);
-        by[GOE_INVERSE_RANGE] += g.y * obs->path_height_m;
+        goe_rows_raise(by, obs, g.y);
         by[GOE_TOP] = -g.y;
     }
 }
@@ -288,7 +288,7 @@ static void add_side(const goe_observation_t *obs, const outline_t *o, const goe
     float *by = goe_touch_add(rows, obs, solid, side, variance, &touch, &g);
     if (by != NULL) {
         set_corner(rows, by, obs, o, touch.corner, &g);
-        by[GOE_INVERSE_RANGE] += g.y * obs->path_height_m;
+        goe_rows_raise(by, obs, g.y);
     }
 }
 

@@ -193,6 +193,7 @@ void goe_filter_place_axes(goe_filter_t *filter, const goe_motion_t *motion) {
     goe_filter_turn_axes(filter, 1.0f, 0.0f);
     filter->axes.start_dx_m = motion->dx_m;
     filter->axes.start_dz_m = motion->dz_m;
+    filter->datum.start_m = filter->datum.height_m;
 #if GOE_AUGMENTED
     filter->paced = false;
     goe_filter_pace(filter, motion);

@@ -83,7 +83,7 @@ static inline bool goe_filter_is_box(const goe_filter_t *filter) { return goe_fi
 /* Whether the footprint has used an upright box. The slowly varying errors of the sides are then remembered, and no correlation of points
  * widens the variances. */
 static inline bool goe_filter_by_boxes(const goe_filter_t *filter) {
-    return goe_filter_traits(filter)->is_ellipse && filter->datum.boxes;
+    return goe_filter_traits(filter)->is_ellipse && filter->boxes;
 }
 
 /* Whether the settings allow the phase to be reported: if they force a line, only a box, not the footprint before it. */

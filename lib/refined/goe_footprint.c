@@ -54,13 +54,12 @@ static float size_of(const goe_observation_t *obs, size_t side) {
     return goe_touch_size(obs, side, goe_touch_is_level(side) ? x[GOE_TOP] + x[GOE_GROUND] : 2.0f * x[GOE_HALF]);
 }
 
-/* Sets a row's derivatives by the reference point and by the footprint, from those by the touched point. */
-/*@ requires \valid(by + (0 .. GOE_UNKNOWNS - 1)) && goe_observation_is_open(obs) && \valid_read(o) && \valid_read(g); */
-static void set_place(const goe_observation_t *obs, const goe_solid_t *o, const goe_contact_t *contact,
-                      const goe_gradient_t *g, float by[GOE_UNKNOWNS]) {
+/* Sets a row's derivatives by the footprint, from those by the touched point. */
+/*@ requires \valid(by + (0 .. GOE_UNKNOWNS - 1)) && \valid_read(o) && \valid_read(g); */
+static void set_footprint(const goe_solid_t *o, const goe_contact_t *contact, const goe_gradient_t *g,
+                          float by[GOE_UNKNOWNS]) {
     const goe_xz_t gradient = {g->x, g->z};
     const goe_by_footprint_t slope = goe_ellipse_slope(&o->ellipse, contact, gradient);
-    goe_rows_place(by, obs, g->x, g->z);
     by[GOE_SHEAR] = slope.shear;
     by[GOE_HALF] = slope.half;
     by[GOE_LOG_DEPTH] = slope.depth;
@@ -95,8 +94,9 @@ static void add_side(const goe_observation_t *obs, const goe_solid_t *o, size_t 
     if (by == NULL) {
         return;
     }
-    set_place(obs, o, &t.contact, &g, by);
-    by[GOE_INVERSE_RANGE] += g.y * obs->path_height_m;
+    set_footprint(o, &t.contact, &g, by);
+    goe_rows_place(by, obs, g.x, g.z);
+    goe_rows_raise(by, obs, g.y);
     remember(rows, memory_of(obs, side));
 }
 
@@ -117,7 +117,8 @@ static void add_edge(const goe_observation_t *obs, const goe_solid_t *o, goe_fea
     const goe_xz_t place = {o->center.x + contact.at.x, o->center.z + contact.at.z};
     float *by = place.z < GOE_AHEAD_MIN ? NULL : goe_rows_add_edge(rows, obs, place, feature, more, &g);
     if (by != NULL) {
-        set_place(obs, o, &contact, &g, by);
+        set_footprint(o, &contact, &g, by);
+        goe_rows_place(by, obs, g.x, g.z);
         remember(rows, outward > 0.0f ? SHAPE_RIGHT : SHAPE_LEFT);
     }
 }
@@ -140,13 +141,13 @@ static void add_rim(const goe_observation_t *obs, const goe_solid_t *o, float mo
     const goe_xz_t gradient = {g.x, g.z};
     const goe_slide_t slide = goe_ellipse_slide(&o->ellipse, &contact, outward, gradient);
     const float along = goe_xz_dot(slide.by_outward, outward);
-    set_place(obs, o, &contact, &g, by);
+    set_footprint(o, &contact, &g, by);
     goe_rows_place(by, obs, g.x + away * (slide.by_outward.x - along * outward.x),
                    g.z + away * (slide.by_outward.z - along * outward.z));
     by[GOE_SHEAR] += slide.by.shear;
     by[GOE_HALF] += slide.by.half;
     by[GOE_LOG_DEPTH] += slide.by.depth;
-    by[GOE_INVERSE_RANGE] += g.y * obs->path_height_m;
+    goe_rows_raise(by, obs, g.y);
     by[GOE_TOP] = -g.y;
 }
 
@@ -165,7 +166,7 @@ static void add_base(const goe_observation_t *obs, const goe_solid_t *o, goe_fea
     *variance = *variance * BASE_NOISE + goe_square(g.at * width);
     by[GOE_GROUND] = g.y;
     goe_rows_place(by, obs, g.x, g.z);
-    by[GOE_INVERSE_RANGE] += g.y * obs->path_height_m;
+    goe_rows_raise(by, obs, g.y);
 }
 
 /* Adds the rows of the points that no sides replace, and of the base corners. */

@@ -34,17 +34,19 @@ static float camera_down_m(const goe_view_t *view) {
 
 /* A Kalman filter of one state, the altimeter's zero: down drifts, and readings scatter as configured or more. Until the obstacle's filter
  * starts, the mean moves the ground. */
-static void average(goe_datum_t *datum, const goe_navigation_t *navigation, bool started, float off_m, float since_s) {
-    const float innovation2 = datum->readings > 0 ? goe_square(off_m - datum->mean_m) : 0.0f;
-    const float counted = (float)(datum->readings + SCATTER_SEEDS);
+static void average(goe_filter_t *filter, const goe_navigation_t *navigation, float off_m, float since_s) {
+    goe_datum_t *datum = &filter->datum;
+    uint8_t *readings = &filter->health.heights;
+    const float innovation2 = *readings > 0 ? goe_square(off_m - datum->mean_m) : 0.0f;
+    const float counted = (float)(*readings + SCATTER_SEEDS);
     datum->scatter_m2 += (innovation2 - datum->scatter_m2) / (counted < SCATTER_MEMORY ? counted : SCATTER_MEMORY);
     const float white2 = goe_larger(goe_square(navigation->height_white_sd_m), datum->scatter_m2);
     const float predicted = datum->noise_m2 + goe_square(navigation->position_walk_sd_m) * since_s;
-    const float gain = datum->readings > 0 ? predicted / goe_larger(predicted + white2, VARIANCE_MIN_M2) : 1.0f;
-    datum->readings = (uint8_t)(datum->readings < UINT8_MAX ? datum->readings + 1 : UINT8_MAX);
+    const float gain = *readings > 0 ? predicted / goe_larger(predicted + white2, VARIANCE_MIN_M2) : 1.0f;
+    *readings = (uint8_t)(*readings < UINT8_MAX ? *readings + 1 : UINT8_MAX);
     datum->noise_m2 = gain * white2;
     datum->mean_m += gain * (off_m - datum->mean_m);
-    if (!started) {
+    if (!goe_filter_has_started(filter)) {
         datum->ground_m += datum->mean_m;
         datum->mean_m = 0.0f;
     }
@@ -53,7 +55,7 @@ static void average(goe_datum_t *datum, const goe_navigation_t *navigation, bool
 /* Call before each height; only the first one of a track has an effect. A filter that started without it, and has found no position yet,
  * starts again with it. */
 static void begin_heights(goe_filter_t *filter, float sd_m) {
-    if (filter->datum.readings > 0) {
+    if (filter->health.heights > 0) {
         return;
     }
     filter->datum.sd_m = sd_m;
@@ -76,7 +78,7 @@ void goe_ground_read(goe_filter_t *filter, const goe_navigation_t *navigation, c
     const float before_m = datum->ground_m;
     if (!lacks_height) {
         begin_heights(filter, view->image->noise.height_sd_m);
-        average(datum, navigation, goe_filter_has_started(filter), ground_m - datum->ground_m, since_s);
+        average(filter, navigation, ground_m - datum->ground_m, since_s);
     }
     filter->answer.height_bias_m -= datum->ground_m - before_m; /* an estimate from before a restart keeps its height */
     datum->height_m = datum->ground_m - down_m;
@@ -102,7 +104,7 @@ float goe_ground_if_level(const goe_filter_t *filter, const goe_navigation_t *na
 }
 
 void goe_ground_start(goe_filter_t *filter, const goe_observation_t *obs) {
-    filter->datum.boxes = obs->sides->usable != 0;
+    filter->boxes = obs->sides->usable != 0;
     filter->datum.first_m2 = goe_square(obs->height_sd_m);
     filter->datum.taken_m2 = filter->datum.first_m2;
     filter->datum.taken_mean_m = 0.0f;

@@ -30,7 +30,7 @@ float goe_ground_if_level(const goe_filter_t *filter, const goe_navigation_t *na
 void goe_ground_start(goe_filter_t *filter, const goe_observation_t *obs);
 
 /* Notes the first upright box. */
-static inline void goe_ground_meet_box(goe_filter_t *filter) { filter->datum.boxes = true; }
+static inline void goe_ground_meet_box(goe_filter_t *filter) { filter->boxes = true; }
 
 /* Adds the uncertainty of the height that has grown since the latest rows. */
 void goe_ground_drift(goe_filter_t *filter, const goe_observation_t *obs);

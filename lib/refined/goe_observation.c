@@ -23,6 +23,7 @@
 #define RANGE_FREEDOM 4.0f    /* relative prior sigma of 1/Z0 */
 #define TOP_FREEDOM 10.0f     /* prior sigma of the top, over the larger of top and width */
 #define WIDTH_MIN 1.0e-5f     /* least width between two ends, focal lengths */
+#define SURE_SIGMAS 3.0f      /* sigmas of position_white_sd_m within which a way counts as noise */
 #define SHARED 2.0f           /* rows that share an error of the camera's place along Z: opposite sides */
 #define FORWARD_MIN 1.0e-4f   /* least distance ahead of a predicted point, in units of Z0 */
 
@@ -106,6 +107,12 @@ static void take_noise(goe_observation_t *obs, const goe_filter_t *filter, const
                              EXCESS_WEIGHT * goe_larger(excess, 0.0f));
 }
 
+/* A way as far as noise does not explain it (James and Stein 1961): most of a long one, nothing of one within the noise. */
+static float sure_way(float way_m, float noise2_m2) {
+    const float way2 = goe_square(way_m);
+    return way2 > noise2_m2 ? way_m * (1.0f - noise2_m2 / way2) : 0.0f;
+}
+
 #if GOE_AUGMENTED
 static void turn_rate(const goe_filter_t *filter, const float rate[3], float turned[3]) {
     const goe_xz_t level = {rate[0], rate[2]};
@@ -117,36 +124,55 @@ static void turn_rate(const goe_filter_t *filter, const float rate[3], float tur
 #endif
 
 /*@ requires \valid(obs) && \valid_read(filter) && \valid_read(motion); */
-static void note_pace(goe_observation_t *obs, const goe_filter_t *filter, const goe_motion_t *motion) {
+static void note_pace(goe_observation_t *obs, const goe_filter_t *filter, const goe_view_t *view) {
 #if GOE_AUGMENTED
     obs->turn_cos = filter->axes.turn_cos;
     obs->turn_sin = filter->axes.turn_sin;
-    obs->gained_m_s = goe_filter_gained(filter, motion);
+    const goe_xz_t gained = {view->gained_m_s[0],
+                             view->gained_m_s[1]}; /* by this image, whose error the residual contains */
+    const goe_xz_t by_image_m_s = goe_xz_into(gained, filter->axes.turn_cos, filter->axes.turn_sin);
+    obs->gained_m_s = goe_filter_gained(filter, view->motion);
+    obs->gained_m_s.x -= by_image_m_s.x;
+    obs->gained_m_s.z -= by_image_m_s.z;
     obs->latency_s = filter->mover.augmented[GOE_AUGMENTED_LATENCY];
-    turn_rate(filter, motion->rate_rad_s, obs->rate_rad_s);
-    turn_rate(filter, motion->rate_before_rad_s, obs->rate_before_rad_s);
+    turn_rate(filter, view->motion->rate_rad_s, obs->rate_rad_s);
+    turn_rate(filter, view->motion->rate_before_rad_s, obs->rate_before_rad_s);
 #else
     (void)obs;
     (void)filter;
-    (void)motion;
+    (void)view;
 #endif
 }
 
-/* Places the camera on the smoothed path. */
-/*@ requires \valid(obs) && \valid_read(filter) && goe_view_is_open(view); */
-static void note_path(goe_observation_t *obs, const goe_filter_t *filter, const goe_view_t *view) {
-    obs->path_m = obs->camera_m;
-    obs->path_height_m = obs->height_m;
+/* Moves the camera to the smoothed path, once the filter runs, if the places are noisy: in a turn, the path lags. */
+/*@ requires \valid(obs) && \valid_read(obs->settings) && \valid_read(obs->state + (0 .. GOE_STATES - 1));
+    requires \valid_read(filter) && goe_view_is_open(view); */
+static void take_path(goe_observation_t *obs, const goe_filter_t *filter, const goe_view_t *view) {
 #if GOE_AUGMENTED
     const goe_xz_t level = {view->off_m[0], view->off_m[1]};
     const goe_xz_t off_m = goe_xz_into(level, filter->axes.turn_cos, filter->axes.turn_sin);
-    obs->path_m.x -= off_m.x;
-    obs->path_m.z -= off_m.z;
-    obs->path_height_m += view->off_m[2];
+    const bool noisy = obs->settings->navigation.position_white_sd_m > 0.0f && goe_filter_has_started(filter);
+    const float q = noisy ? obs->state[GOE_INVERSE_RANGE] : 0.0f;
+    if (noisy) {
+        obs->camera_m.x -= off_m.x;
+        obs->camera_m.z -= off_m.z;
+        obs->height_m += view->off_m[2];
+    }
+    /* exact for a point at this Z: (X - x)/(Z - z) is X/Z minus (x - z X/Z)/(Z - z) */
+    const float ahead = goe_observation_ahead(obs);
+    const float share = ahead / goe_larger(ahead - q * off_m.z, GOE_AHEAD_MIN) * q;
+    obs->off.x = share * off_m.x;
+    obs->off.z = share * off_m.z;
+    obs->off_y = share * view->off_m[2];
 #else
-    (void)filter;
     (void)view;
+    obs->off.x = obs->off.z = obs->off_y = 0.0f;
 #endif
+    const float noise2 = goe_square(SURE_SIGMAS * obs->settings->navigation.position_white_sd_m);
+    const float start_m = filter->datum.start_m;
+    obs->sure_m.x = sure_way(obs->camera_m.x, noise2);
+    obs->sure_m.z = sure_way(obs->camera_m.z, noise2);
+    obs->sure_height_m = start_m + sure_way(obs->height_m - start_m, noise2);
 }
 
 /* A class knows better than a setting. */
@@ -169,7 +195,7 @@ unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *sett
     obs->kind = filter->kind.wrong ? &UNKNOWN : &view->image->kind;
     obs->is_round = goe_filter_has_started(filter) ? filter->kind.is_round : starts_round(settings->model, obs->kind);
     obs->height_m = filter->datum.height_m;
-    note_path(obs, filter, view);
+    take_path(obs, filter, view);
     obs->is_placed = (filter->known & GOE_HAS_POSITION) != 0u;
     obs->fade = 0.0f;
     obs->shift = 0.0f;
@@ -178,7 +204,7 @@ unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *sett
     obs->depth_variance = 0.0f;
     obs->two_faces = false;
     obs->elapsed_s = goe_filter_elapsed_s(filter, view->motion);
-    note_pace(obs, filter, view->motion);
+    note_pace(obs, filter, view);
     return put_in_order(obs);
 }
 

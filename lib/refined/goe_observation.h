@@ -13,10 +13,12 @@ typedef struct {
     goe_point_t point[GOE_FEATURES]; /* aligned with the state's axes; usable: measured in this image */
     float camera_to_axes[9], body_to_axes[9];
     float ex, ey, ez;    /* attitude bias about the state's axes, rad */
-    goe_xz_t camera_m;   /* camera since the filter's start, the state's axes */
-    goe_xz_t path_m;     /* the same on the smoothed path, for derivatives: see goe_rows_place() */
-    float height_m;      /* camera above ground: by the changes of down, see goe_datum_t */
-    float path_height_m; /* the same on the smoothed path, for derivatives */
+    goe_xz_t camera_m;   /* camera on the smoothed path since the filter's start, the state's axes */
+    goe_xz_t sure_m;     /* the same as far as noise does not explain it: see goe_rows_place() */
+    float height_m;      /* camera above ground on the path, by the changes of down: see goe_datum_t */
+    float sure_height_m; /* the same as far as noise does not explain its change since the filter's start */
+    goe_xz_t off;        /* the given place minus that on the path, units of Z0 */
+    float off_y;         /* the same along Y */
     const goe_sides_t *sides;
     const goe_kind_t *kind;
     float height_sd_m; /* one sigma of the height above the obstacle's ground, without the ground's slope */
@@ -172,16 +174,24 @@ float *goe_rows_add_level(goe_rows_t *rows, const goe_observation_t *obs, goe_xz
 static inline float *goe_rows_last_variance(goe_rows_t *rows) { return &rows->variance[rows->count - 1u]; }
 
 /* Sets the derivatives of a coordinate whose point moves with the reference point, by whose X and Z it changes by by_x and by_z: by
- * GOE_BEARING, and by GOE_INVERSE_RANGE as far as the camera's path determines it. An error of the camera's place that the residual contains
- * must not be in this derivative: their product, the square of the error, would count as range. */
-/*@ requires \valid(by + (0 .. GOE_UNKNOWNS - 1)) && goe_observation_is_open(obs); */
+ * GOE_BEARING, and by GOE_INVERSE_RANGE as far as the camera's path determines it. The coordinate is that on the smoothed path, so the residual
+ * gains the rest of the given place. An error of the place that is in both would count as range: their product is its square. */
+/*@ requires \valid(by + (0 .. GOE_BEHIND_STATES)) && goe_observation_is_open(obs); */
 static inline void goe_rows_place(float *by, const goe_observation_t *obs, float by_x, float by_z) {
     by[GOE_BEARING] = by_x;
-    by[GOE_INVERSE_RANGE] = -(by_x * obs->path_m.x) - by_z * obs->path_m.z;
+    by[GOE_INVERSE_RANGE] = -(by_x * obs->sure_m.x) - by_z * obs->sure_m.z;
+    by[GOE_BEHIND_STATES] += by_x * obs->off.x + by_z * obs->off.z;
 #if GOE_AUGMENTED
     by[GOE_STATES + GOE_AUGMENTED_VELOCITY_X] = by_x; /* until goe_mover_columns() */
     by[GOE_STATES + GOE_AUGMENTED_VELOCITY_Z] = by_z;
 #endif
+}
+
+/* Adds the same for a point at a height above the ground, or the ground, by whose Y the coordinate changes by by_y. */
+/*@ requires \valid(by + (0 .. GOE_BEHIND_STATES)) && goe_observation_is_open(obs); */
+static inline void goe_rows_raise(float *by, const goe_observation_t *obs, float by_y) {
+    by[GOE_INVERSE_RANGE] += by_y * obs->sure_height_m;
+    by[GOE_BEHIND_STATES] += by_y * obs->off_y;
 }
 
 /* Call after the last row: computes the columns of the attitude bias from those of the image's own attitude error, and clears unused

@@ -52,7 +52,7 @@ static void doubt_ellipse(const goe_filter_t *filter, goe_shape_t *shape) {
 
 /* (R37): viewed from above, the highest point of a roof is a far corner. While one face is visible, no image shows how far it is. */
 static void doubt_far_roof(const goe_filter_t *filter, bool highest, goe_shape_t *shape) {
-    if (goe_filter_traits(filter)->one_face && (filter->datum.boxes || highest)) {
+    if (goe_filter_traits(filter)->one_face && (filter->boxes || highest)) {
         const float size_m = goe_larger(shape->quantity[GOE_WIDTH].value, shape->quantity[GOE_LENGTH].value);
         shape->roof_m2 = goe_square(FAR_ROOF * size_m);
     }

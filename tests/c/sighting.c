@@ -72,8 +72,8 @@ void sighting_start(sighting_t *sighting, check_random_t *random) {
 void sighting_look(sighting_t *sighting) { goe_observation_linearise(&sighting->sight); }
 
 void sighting_clear_rows(sighting_t *sighting) {
-    sighting->sight.path_m = sighting->sight.camera_m;
-    sighting->sight.path_height_m = sighting->sight.height_m;
+    sighting->sight.sure_m = sighting->sight.camera_m;
+    sighting->sight.sure_height_m = sighting->sight.height_m;
     goe_rows_clear(&sighting->rows, &sighting->matrix);
     sighting->rows.shift = sighting->sight.shift;
 }

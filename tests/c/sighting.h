@@ -29,7 +29,7 @@ void sighting_finish(sighting_t *sighting, check_random_t *random, double z0_m, 
 /* What depends on the state, after a change of it. */
 void sighting_look(sighting_t *sighting);
 
-/* Prepares an empty set of rows of the image: it lies on the smoothed path. */
+/* Prepares an empty set of rows of the image: it lies on the smoothed path, which is free of noise. */
 void sighting_clear_rows(sighting_t *sighting);
 
 /* Y/Z at which a point of the image was measured, freed of the attitude bias of `state`, to first order. */

@@ -168,7 +168,7 @@ static void a_height_of_0_is_none(void) {
             image.box.sides = (uint8_t)sides;
             image.pose.height_m = motion.height_m = 0.0f;
             goe_ground_read(&filter, &settings.navigation, &view, 0.0f);
-            TEST_ASSERT_EQUAL_UINT8(seen == 1 && sides == 0u ? 1u : 0u, filter.datum.readings);
+            TEST_ASSERT_EQUAL_UINT8(seen == 1 && sides == 0u ? 1u : 0u, filter.health.heights);
         }
     }
 }
@@ -313,7 +313,7 @@ static void the_count_of_readings_saturates(void) {
     settings.navigation.height_white_sd_m = WHITE_M;
     for (int k = 0; k < 300; k++) {
         read_height(HEIGHT_M, 0.0f);
-        TEST_ASSERT_EQUAL_UINT8(k < 255 ? k + 1 : 255, filter.datum.readings);
+        TEST_ASSERT_EQUAL_UINT8(k < 255 ? k + 1 : 255, filter.health.heights);
         CHECK_CLOSE(1.0e-4 / (k + 1), (double)(WHITE_M * WHITE_M) / (k + 1), filter.datum.noise_m2);
     }
     CHECK_CLOSE(0.1, 0.0, filter.datum.scatter_m2);
@@ -437,7 +437,7 @@ static void a_wrong_first_range_leaves_the_height_as_given(void) {
     static const float factor[] = {0.2f, 0.5f, 0.9f, 1.0f, 1.2f, 2.0f, 5.0f};
     for (size_t i = 0; i < 2 * sizeof factor / sizeof factor[0]; i++) {
         start(RANGE_M);
-        filter.datum.boxes = i % 2 != 0;
+        filter.boxes = i % 2 != 0;
         correct_range(factor[i / 2]);
         const int reported = measure();
         check_report("sigma of the height over the configured one", ground_sd_m() / (double)CONSTANT_M);
@@ -523,11 +523,11 @@ static void a_height_that_is_not_set_is_no_reading(void) {
     image.noise.height_sd_m = 0.7f; /* of a height that is not there */
     read_height(0.0f, 0.0f);
     read_height(0.0f, 0.0f);
-    TEST_ASSERT_EQUAL_UINT8(0u, filter.datum.readings);
+    TEST_ASSERT_EQUAL_UINT8(0u, filter.health.heights);
     TEST_ASSERT_TRUE(obs.height_sd_m >= 1.0e3f);
     image.pose.height_m = HEIGHT_M;
     read_height(HEIGHT_M, 0.0f);
-    TEST_ASSERT_EQUAL_UINT8(1u, filter.datum.readings);
+    TEST_ASSERT_EQUAL_UINT8(1u, filter.health.heights);
     CHECK_CLOSE(1.0e-5, (double)HEIGHT_M, filter.datum.height_m);
     TEST_ASSERT_TRUE(filter.datum.scatter_m2 <= WHITE_M * WHITE_M);
 }

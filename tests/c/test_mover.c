@@ -435,7 +435,7 @@ static void a_target_without_scale_is_not_followed(void) {
     }
     give_rows(z); /* of a box its bottom */
     judged.phase = GOE_PHASE_FOOTPRINT;
-    judged.datum.boxes = true;
+    judged.boxes = true;
     seen.base = false;
     seen_sides.usable = GOE_SIDE_BOTTOM;
     judged.mover.nis -= 100.0f; /* more is required */

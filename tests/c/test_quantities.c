@@ -209,7 +209,7 @@ static double beyond_face(int value) {
 static double beyond_ellipse(int value) {
     const bool extent = value >= GOE_ORIENTATION && value <= GOE_HEIGHT;
     const double width = 2.0 * (double)filter.state[GOE_HALF] / (double)filter.state[GOE_INVERSE_RANGE];
-    return extent || filter.datum.boxes || settings.model == GOE_MODEL_DISC ? 0.0 : squared(0.05 * width);
+    return extent || filter.boxes || settings.model == GOE_MODEL_DISC ? 0.0 : squared(0.05 * width);
 }
 
 static double beyond_of(int value) {

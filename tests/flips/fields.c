@@ -36,7 +36,7 @@ const field_t fields[] = {
     DECIDES(filter.health.refused) DECIDES(filter.health.poor) DECIDES(filter.health.failed)
     DECIDES(filter.health.base_refused) DECIDES(filter.health.adrift) DECIDES(filter.health.steady)
     NUMBER(filter.axes.start_time_us) NUMBER(filter.axes.turn_cos) NUMBER(filter.axes.turn_sin)
-    NUMBER(filter.axes.start_dx_m) NUMBER(filter.axes.start_dz_m) NUMBER(filter.axes.start_velocity_m_s)
+    NUMBER(filter.datum.start_m) NUMBER(filter.axes.start_dx_m) NUMBER(filter.axes.start_dz_m) NUMBER(filter.axes.start_velocity_m_s)
     NUMBER(filter.datum.ground_m) NUMBER(filter.datum.height_m) NUMBER(filter.datum.sd_m)
     NUMBER(filter.datum.mean_m) NUMBER(filter.datum.noise_m2) NUMBER(filter.datum.scatter_m2) NUMBER(filter.datum.first_m2) NUMBER(filter.datum.taken_m2)
     NUMBER(filter.datum.taken_mean_m) DECIDES(filter.datum.readings) DECIDES(filter.datum.boxes) NUMBER(filter.scatter.before)

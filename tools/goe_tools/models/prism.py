@@ -137,6 +137,11 @@ class Sight:
             self.height_m, self.given_height_m, self.image_height_px,
         )  # fmt: skip
 
+    def on_path(self) -> Sight:
+        """The image from the place on the smoothed path."""
+        moved_m = self.moved_m - self.off_path_m
+        return replace(self, moved_m=moved_m, height_m=self.height_m + self.off_path_m[1])
+
 
 def focal_px(camera: Camera) -> np.ndarray:
     """(4,) by side."""

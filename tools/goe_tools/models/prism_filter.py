@@ -44,7 +44,7 @@ Not modeled: the library's reaction to sides that repeatedly do not fit, which i
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -76,6 +76,7 @@ from .prism import (
 from .scatter import RATIO_MOST, Scatter
 from .side_memory import COLUMNS, COUNT, Memory, Rows, learn, slopes_with_velocity
 
+SURE_SIGMAS = 3.0  # of the places, within which a way counts as noise
 SCATTER_SHARE = 0.01  # white part of a side's error, of the box's size
 EARLY_SHARE = 0.08  # of tau: images at a shorter distance from the last one are not used
 GAP_MAX_S = 1000.0  # longer gaps count as this
@@ -97,6 +98,12 @@ SHEAR_SHARE = 0.6  # sigma of s, of the first half width
 DEPTH_SD = 1.0  # of d
 ROUND_SHEAR_SHARE, ROUND_DEPTH_SD = 0.02, 1e-3  # the same if the model is a disc
 DEPTH_TURNED = float(np.float32(0.3))  # sine of the turn of the line of sight above which an image estimates d
+
+
+def sure_way(way_m: np.ndarray, white_m: float) -> np.ndarray:
+    """Ways as far as noise does not explain them."""
+    noise2, way2 = (SURE_SIGMAS * white_m) ** 2, way_m**2
+    return np.where(way2 > noise2, way_m * (1 - noise2 / np.maximum(way2, 1e-30)), 0.0)
 
 
 def footprint_sds(errors: ErrorModel, half: float) -> tuple[float, float]:
@@ -305,7 +312,8 @@ class PrismFilter:
             return None
         side = np.array([row.side for row in rows])
         slope = np.array([row.slope for row in rows])
-        slope[:, Q] -= slope[:, PX : PX + 3] @ sight.off_path_m / self.state[Q]  # on the smoothed path
+        by_place = slope[:, PX : PX + 3]
+        slope[:, Q] += by_place @ (sure_way(sight.moved_m, errors.position_white_sd_m) - sight.moved_m) / self.state[Q]
         size = np.array([box_size(sight, self.state, row.side % 2) for row in rows])
         own = (errors.box_noise_px / focal_px(sight.camera)[side]) ** 2 + (SCATTER_SHARE * size) ** 2
         own += (errors.truncation_noise_rel * size) ** 2 if sight.cut else 0.0
@@ -316,6 +324,8 @@ class PrismFilter:
         own += 2 * (position_sd * slope[:, PZ]) ** 2
         white = np.hypot(np.radians(errors.attitude_white_sd_deg), position_sd * self.state[Q] / ahead)
         residual = np.array([sight.side[row.side] - row.predicted for row in rows])
+        nearer = max(ahead - sight.off_path_m[2] * self.state[Q], AHEAD_MIN)  # at the given place
+        residual -= by_place @ sight.off_path_m * ahead / nearer
         by = slopes_with_velocity(slope, sight.time_s - self.start_s)
         return Rows(side, residual, by, own, white * slope[:, :3] @ sight.axes_from_body.T)
 
@@ -395,6 +405,8 @@ class PrismFilter:
         if too_soon or (not started and not self.start(in_t)):
             return False
         sight = in_t.turned(self.turn, self.origin_m)
+        noisy = started and self.errors.position_white_sd_m > 0
+        sight = sight.on_path() if noisy else replace(sight, off_path_m=np.zeros(3))
         self.time_s = in_t.time_s
         q_variance = self.full_covariance()[Q, Q]
         self._wait(since_s)
