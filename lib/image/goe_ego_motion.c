@@ -198,38 +198,36 @@ static void begin_path(goe_motion_t *motion, const float place_m[3]) {
     memset(motion->velocity_m_s, 0, sizeof motion->velocity_m_s);
 }
 
-/* The least-squares line through the marks so far, by recursion; from PATH_MARKS on, with constant gains. */
-static void extend_path(goe_motion_t *motion, const float place_m[3], const float off_m[3], float since_s) {
+/* The least-squares line through the marks so far, by recursion; from PATH_MARKS on, with constant gains. Returns the gain of the velocity. */
+static float extend_path(goe_motion_t *motion, const float place_m[3], const float off_m[3], float since_s) {
     motion->marks = (uint8_t)(motion->marks < PATH_MARKS ? motion->marks + 1 : PATH_MARKS);
     const float n = (float)motion->marks;
-    const float place_gain = (4.0f * n - 2.0f) / (n * (n + 1.0f));
-    const float velocity_gain = 6.0f / (n * (n + 1.0f));
+    const float share = 1.0f / (n * (n + 1.0f));
+    const float left = (n - 1.0f) * (n - 2.0f) * share; /* 1 minus the gain of the place */
+    const float gain = 6.0f * share / since_s;
     for (size_t i = 0; i < 3; i++) {
-        motion->mark_m[i] = place_m[i] - (1.0f - place_gain) * off_m[i];
-        motion->velocity_m_s[i] += velocity_gain * off_m[i] / since_s;
+        motion->mark_m[i] = place_m[i] - left * off_m[i];
+        motion->velocity_m_s[i] += gain * off_m[i];
     }
+    return gain;
 }
 
 /* Updates the smoothed path. place_m: the vehicle, X and Z in T, down; not the camera, because two cameras have different arms. It contains
  * no jump. since_s: time since the mark; continues: the image follows the mark; marked: it is a mark. */
 static void follow_path(goe_motion_t *motion, const float place_m[3], float since_s, bool continues, bool marked,
                         goe_view_t *view) {
-    float *off_m = view->off_m;
-    const float before_m_s[2] = {motion->velocity_m_s[0], motion->velocity_m_s[1]};
     const bool known = continues && motion->marks >= PATH_MARKS_MIN;
-    leave_path(motion, place_m, since_s, off_m);
+    view->gain_1_s = 0.0f;
     if (!continues) {
         begin_path(motion, place_m);
-    } else if (marked) {
-        extend_path(motion, place_m, off_m, since_s);
-    } else {
-        /* the path stays */
+    }
+    leave_path(motion, place_m, since_s, view->off_m);
+    if (continues && marked) {
+        view->gain_1_s = extend_path(motion, place_m, view->off_m, since_s);
     }
     if (!known) {
-        memset(off_m, 0, sizeof view->off_m);
+        memset(view->off_m, 0, sizeof view->off_m);
     }
-    view->gained_m_s[0] = known ? motion->velocity_m_s[0] - before_m_s[0] : 0.0f;
-    view->gained_m_s[1] = known ? motion->velocity_m_s[1] - before_m_s[1] : 0.0f;
 }
 
 /* Updates rate and path from the poses since the mark. */

@@ -51,7 +51,7 @@ typedef struct {
     float camera_to_trajectory[9];
 #if GOE_AUGMENTED
     float off_m[3]; /* the given place minus that on the smoothed path: X and Z in T, down; 0 before there is a path */
-    float gained_m_s[2]; /* change of the path's velocity by this image's place: X and Z in T */
+    float gain_1_s; /* by which off_m changed the path's velocity */
 #endif
 } goe_view_t;
 

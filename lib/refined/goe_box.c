@@ -179,16 +179,15 @@ static void widest_corners(const outline_t *o, size_t corner[3]) {
 /* --------------------------------------------------------------------------------------------------------------- rows -- */
 
 /* Sets the derivatives by place and extents in a corner's row from those by (X, Z), and adds the possible linearization error. */
-/*@ requires goe_rows_hold(rows) && \valid(by + (0 .. GOE_UNKNOWNS - 1)) && goe_observation_is_open(obs);
+/*@ requires goe_rows_hold(rows) && \valid(by + (0 .. GOE_UNKNOWNS - 1));
     requires \valid_read(o) && \valid_read(g) && corner < CORNERS && 1 <= rows->count <= GOE_ROWS_MAX; */
-static void set_corner(goe_rows_t *rows, float by[restrict GOE_BEHIND_STATES + 1], const goe_observation_t *obs,
-                       const outline_t *o, size_t corner, const goe_gradient_t *g) {
+static void set_corner(goe_rows_t *rows, float by[restrict GOE_UNKNOWNS], const outline_t *o, size_t corner,
+                       const goe_gradient_t *g) {
     const goe_box_edges_t *e = &o->edges;
     const float across = across_of[corner];
     const float along = along_of[corner];
     const float by_both = (along - across * e->sign) * g->z; /* by an equal change of both depths */
     const float missed = 0.5f * by_both * o->curvature;
-    goe_rows_place(by, obs, g->x, g->z);
     by[GOE_SIDE_X] = along * g->x + by_both * e->side.by[0];
     by[GOE_FRONT_X] = across * g->x + by_both * e->side.by[1];
     by[GOE_DEPTH_DIFFERENCE] = (along * e->side.by[2] + across * e->front.by[2]) * g->z;
@@ -213,16 +212,13 @@ GOE_NOINLINE static void add_base_corner(const goe_observation_t *obs, const out
     gy.ex -= share * gx.ex;
     gy.ey -= share * gx.ey;
     gy.ez -= share * gx.ez;
-    float *by = goe_rows_add(rows, feature, GOE_ALONG_X, measured->x, spread.xx, &gx);
-    const float along_x = by[GOE_BEHIND_STATES];
-    set_corner(rows, by, obs, o, corner, &gx);
-    goe_rows_raise(by, obs, gx.y);
+    float *by = goe_rows_add(rows, obs, feature, GOE_ALONG_X, measured->x, spread.xx, &gx);
+    set_corner(rows, by, o, corner, &gx);
     by[GOE_GROUND] = gx.y;
-    by = goe_rows_add(rows, feature, GOE_ALONG_Y, measured->y, spread.yy - share * spread.xy, &gy);
+    by = goe_rows_add(rows, obs, feature, GOE_ALONG_Y, measured->y, spread.yy - share * spread.xy, &gy);
     rows->series[rows->count - 1u]++; /* that of y follows that of x */
-    by[GOE_BEHIND_STATES] -= share * along_x;
-    set_corner(rows, by, obs, o, corner, &gy);
-    goe_rows_raise(by, obs, gy.y);
+    by[GOE_BEHIND_STATES] -= share * (measured->x - gx.at);
+    set_corner(rows, by, o, corner, &gy);
     by[GOE_GROUND] = gy.y;
 }
 
@@ -234,7 +230,7 @@ static void add_silhouette(const goe_observation_t *obs, const outline_t *o, goe
     goe_gradient_t g;
     float *by = goe_rows_add_edge(rows, obs, o->corner[corner], feature, goe_observation_size_variance(obs), &g);
     if (by != NULL) {
-        set_corner(rows, by, obs, o, corner, &g);
+        set_corner(rows, by, o, corner, &g);
     }
 }
 
@@ -272,8 +268,7 @@ static void add_top(const goe_observation_t *obs, const outline_t *o, goe_rows_t
     float *by =
         goe_rows_add_level(rows, obs, o->corner[corner], o->top, GOE_POINT_TOP, goe_observation_size_variance(obs), &g);
     if (by != NULL) {
-        set_corner(rows, by, obs, o, corner, &g);
-        goe_rows_raise(by, obs, g.y);
+        set_corner(rows, by, o, corner, &g);
         by[GOE_TOP] = -g.y;
     }
 }
@@ -287,8 +282,7 @@ static void add_side(const goe_observation_t *obs, const outline_t *o, const goe
     goe_gradient_t g;
     float *by = goe_touch_add(rows, obs, solid, side, variance, &touch, &g);
     if (by != NULL) {
-        set_corner(rows, by, obs, o, touch.corner, &g);
-        goe_rows_raise(by, obs, g.y);
+        set_corner(rows, by, o, touch.corner, &g);
     }
 }
 

@@ -95,8 +95,6 @@ static void add_side(const goe_observation_t *obs, const goe_solid_t *o, size_t 
         return;
     }
     set_footprint(o, &t.contact, &g, by);
-    goe_rows_place(by, obs, g.x, g.z);
-    goe_rows_raise(by, obs, g.y);
     remember(rows, memory_of(obs, side));
 }
 
@@ -118,7 +116,6 @@ static void add_edge(const goe_observation_t *obs, const goe_solid_t *o, goe_fea
     float *by = place.z < GOE_AHEAD_MIN ? NULL : goe_rows_add_edge(rows, obs, place, feature, more, &g);
     if (by != NULL) {
         set_footprint(o, &contact, &g, by);
-        goe_rows_place(by, obs, g.x, g.z);
         remember(rows, outward > 0.0f ? SHAPE_RIGHT : SHAPE_LEFT);
     }
 }
@@ -142,12 +139,11 @@ static void add_rim(const goe_observation_t *obs, const goe_solid_t *o, float mo
     const goe_slide_t slide = goe_ellipse_slide(&o->ellipse, &contact, outward, gradient);
     const float along = goe_xz_dot(slide.by_outward, outward);
     set_footprint(o, &contact, &g, by);
-    goe_rows_place(by, obs, g.x + away * (slide.by_outward.x - along * outward.x),
-                   g.z + away * (slide.by_outward.z - along * outward.z));
+    goe_rows_move(by, obs, g.x + away * (slide.by_outward.x - along * outward.x), g.y,
+                  g.z + away * (slide.by_outward.z - along * outward.z));
     by[GOE_SHEAR] += slide.by.shear;
     by[GOE_HALF] += slide.by.half;
     by[GOE_LOG_DEPTH] += slide.by.depth;
-    goe_rows_raise(by, obs, g.y);
     by[GOE_TOP] = -g.y;
 }
 
@@ -165,8 +161,6 @@ static void add_base(const goe_observation_t *obs, const goe_solid_t *o, goe_fea
     float *variance = goe_rows_last_variance(rows);
     *variance = *variance * BASE_NOISE + goe_square(g.at * width);
     by[GOE_GROUND] = g.y;
-    goe_rows_place(by, obs, g.x, g.z);
-    goe_rows_raise(by, obs, g.y);
 }
 
 /* Adds the rows of the points that no sides replace, and of the base corners. */

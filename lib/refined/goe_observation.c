@@ -126,14 +126,13 @@ static void turn_rate(const goe_filter_t *filter, const float rate[3], float tur
 /*@ requires \valid(obs) && \valid_read(filter) && \valid_read(motion); */
 static void note_pace(goe_observation_t *obs, const goe_filter_t *filter, const goe_view_t *view) {
 #if GOE_AUGMENTED
+    const goe_xz_t level = {view->off_m[0], view->off_m[1]};
+    const goe_xz_t off_m = goe_xz_into(level, filter->axes.turn_cos, filter->axes.turn_sin);
     obs->turn_cos = filter->axes.turn_cos;
     obs->turn_sin = filter->axes.turn_sin;
-    const goe_xz_t gained = {view->gained_m_s[0],
-                             view->gained_m_s[1]}; /* by this image, whose error the residual contains */
-    const goe_xz_t by_image_m_s = goe_xz_into(gained, filter->axes.turn_cos, filter->axes.turn_sin);
     obs->gained_m_s = goe_filter_gained(filter, view->motion);
-    obs->gained_m_s.x -= by_image_m_s.x;
-    obs->gained_m_s.z -= by_image_m_s.z;
+    obs->gained_m_s.x -= view->gain_1_s * off_m.x; /* by this image, whose error the residual contains */
+    obs->gained_m_s.z -= view->gain_1_s * off_m.z;
     obs->latency_s = filter->mover.augmented[GOE_AUGMENTED_LATENCY];
     turn_rate(filter, view->motion->rate_rad_s, obs->rate_rad_s);
     turn_rate(filter, view->motion->rate_before_rad_s, obs->rate_before_rad_s);
@@ -312,23 +311,33 @@ void goe_rows_clear(goe_rows_t *rows, goe_matrix_t *matrix) {
     rows->matrix = matrix;
     rows->remembered = 0;
     rows->count = 0;
-    rows->shift = 0.0f;
 }
 
-float *goe_rows_add(goe_rows_t *rows, goe_feature_t feature, goe_axis_t axis, float measured, float variance,
-                    const goe_gradient_t *gradient) {
+void goe_rows_move(float *by, const goe_observation_t *obs, float by_x, float by_y, float by_z) {
+    by[GOE_BEARING] = by_x;
+    by[GOE_INVERSE_RANGE] = by_y * obs->sure_height_m - by_x * obs->sure_m.x - by_z * obs->sure_m.z;
+#if GOE_AUGMENTED
+    by[GOE_STATES + GOE_AUGMENTED_VELOCITY_X] = by_x; /* until goe_mover_columns() */
+    by[GOE_STATES + GOE_AUGMENTED_VELOCITY_Z] = by_z;
+#endif
+}
+
+float *goe_rows_add(goe_rows_t *rows, const goe_observation_t *obs, goe_feature_t feature, goe_axis_t axis,
+                    float measured, float variance, const goe_gradient_t *gradient) {
+    const goe_gradient_t *g = gradient;
     const size_t at = rows->count++;
     float *row = rows->matrix->row[at];
     float *by = &row[GOE_STATE_COLUMN];
-    rows->variance[at] = variance + SHARED * goe_square(rows->shift * gradient->z);
+    rows->variance[at] = variance + SHARED * goe_square(obs->shift * g->z);
     rows->feature[at] = (uint8_t)feature;
     rows->axis[at] = (uint8_t)axis;
     rows->series[at] = (uint8_t)(2u * (unsigned)feature);
-    row[0] = gradient->ey;
-    row[1] = gradient->ex;
-    row[2] = gradient->ez;
+    row[0] = g->ey;
+    row[1] = g->ex;
+    row[2] = g->ez;
     goe_srif_zero(by, GOE_GROUND);
-    by[GOE_BEHIND_STATES] = measured - gradient->at;
+    goe_rows_move(by, obs, g->x, g->y, g->z);
+    by[GOE_BEHIND_STATES] = measured - g->at + (g->x * obs->off.x + g->y * obs->off_y + g->z * obs->off.z);
     return by;
 }
 
@@ -350,7 +359,9 @@ float *goe_rows_add_edge(goe_rows_t *rows, const goe_observation_t *obs, goe_xz_
     goe_observation_project_x(obs, place.x, y * place.z, place.z, of_x);
     of_x->z += of_x->y * y; /* the height moves with the distance */
     add_height_of_edge(measured, place.z, of_x);
-    return goe_rows_add(rows, feature, GOE_ALONG_X, measured->x, goe_observation_spread(obs, feature).xx + more, of_x);
+    of_x->y = 0.0f;
+    return goe_rows_add(rows, obs, feature, GOE_ALONG_X, measured->x, goe_observation_spread(obs, feature).xx + more,
+                        of_x);
 }
 
 float *goe_rows_add_level(goe_rows_t *rows, const goe_observation_t *obs, goe_xz_t place, float y,
@@ -360,7 +371,8 @@ float *goe_rows_add_level(goe_rows_t *rows, const goe_observation_t *obs, goe_xz
         return NULL;
     }
     goe_observation_project_y(obs, place.x, y, place.z, of_y);
-    return goe_rows_add(rows, feature, GOE_ALONG_Y, measured->y, goe_observation_spread(obs, feature).yy + more, of_y);
+    return goe_rows_add(rows, obs, feature, GOE_ALONG_Y, measured->y, goe_observation_spread(obs, feature).yy + more,
+                        of_y);
 }
 
 GOE_STATIC_ASSERT(GOE_NUISANCES == 3, the_nuisances_are_the_attitude_about_y_x_z);

@@ -14,7 +14,7 @@ typedef struct {
     float camera_to_axes[9], body_to_axes[9];
     float ex, ey, ez;    /* attitude bias about the state's axes, rad */
     goe_xz_t camera_m;   /* camera on the smoothed path since the filter's start, the state's axes */
-    goe_xz_t sure_m;     /* the same as far as noise does not explain it: see goe_rows_place() */
+    goe_xz_t sure_m;     /* the same as far as noise does not explain it: see goe_rows_move() */
     float height_m;      /* camera above ground on the path, by the changes of down: see goe_datum_t */
     float sure_height_m; /* the same as far as noise does not explain its change since the filter's start */
     goe_xz_t off;        /* the given place minus that on the path, units of Z0 */
@@ -68,7 +68,6 @@ typedef struct {
     size_t count;
     size_t remembered; /* the first rows, those whose errors are remembered */
     float white_rad;   /* one sigma of the nuisances */
-    float shift;       /* one sigma of the camera's place along Z, units of Z0: each row contains it */
 } goe_rows_t;
 
 /*@ predicate goe_rows_hold(goe_rows_t *rows) =
@@ -146,17 +145,26 @@ float goe_observation_size_variance(const goe_observation_t *obs);
 /*@ requires \valid(rows) && \valid(matrix); */
 void goe_rows_clear(goe_rows_t *rows, goe_matrix_t *matrix);
 
-/* Each function adds a row, and returns its derivatives by the states, all 0 so far, followed by the residual (GOE_BEHIND_STATES).
- * goe_rows_end() sets those by the attitude bias. The row's variance is the last one of rows->variance.
- *
- * Any row: the residual is the measured coordinate minus gradient->at. */
-/*@ requires goe_rows_hold(rows) && \valid_read(gradient);
-    requires rows->count < GOE_ROWS_MAX && feature < GOE_FEATURES; */
-float *goe_rows_add(goe_rows_t *rows, goe_feature_t feature, goe_axis_t axis, float measured, float variance,
-                    const goe_gradient_t *gradient);
+/* Index of the residual, from the derivatives by the states. */
+#define GOE_BEHIND_STATES (GOE_RESIDUAL - GOE_STATE_COLUMN)
 
-/* Adds the row of an upright edge at the place (X, Z), measured along x at the height of the measurement, corrected for the attitude bias.
- * Null if the feature is not usable. more: variance beyond the pixel noise. */
+/* Sets the derivatives of a coordinate whose point moves with the reference point, by whose X, Y and Z it changes by by_x, by_y and by_z: by
+ * GOE_BEARING, and by GOE_INVERSE_RANGE as far as the camera's path determines it. */
+/*@ requires \valid(by + (0 .. GOE_BEHIND_STATES)) && goe_observation_is_open(obs); */
+void goe_rows_move(float *by, const goe_observation_t *obs, float by_x, float by_y, float by_z);
+
+/* Each function adds a row, and returns its derivatives by the states, those of goe_rows_move() and otherwise 0, followed by the residual
+ * (GOE_BEHIND_STATES). goe_rows_end() sets those by the attitude bias. The row's variance is the last one of rows->variance.
+ *
+ * Any row: the residual is the measured coordinate minus the predicted one. This is gradient->at, which is that on the smoothed path, and the
+ * rest of the given place: an error of the place that is in derivatives and residual would count as range, by its square. */
+/*@ requires goe_rows_hold(rows) && goe_observation_is_open(obs) && \valid_read(gradient);
+    requires rows->count < GOE_ROWS_MAX && feature < GOE_FEATURES; */
+float *goe_rows_add(goe_rows_t *rows, const goe_observation_t *obs, goe_feature_t feature, goe_axis_t axis,
+                    float measured, float variance, const goe_gradient_t *gradient);
+
+/* Adds the row of an upright edge at the place (X, Z), measured along x at the height of the measurement, corrected for the attitude bias:
+ * it has no height of its own, of_x->y is 0. Null if the feature is not usable. more: variance beyond the pixel noise. */
 /*@ requires goe_rows_hold(rows) && goe_observation_is_open(obs) && \valid(of_x);
     requires rows->count < GOE_ROWS_MAX && feature < GOE_FEATURES; */
 float *goe_rows_add_edge(goe_rows_t *rows, const goe_observation_t *obs, goe_xz_t place, goe_feature_t feature,
@@ -168,31 +176,8 @@ float *goe_rows_add_edge(goe_rows_t *rows, const goe_observation_t *obs, goe_xz_
 float *goe_rows_add_level(goe_rows_t *rows, const goe_observation_t *obs, goe_xz_t place, float y,
                           goe_feature_t feature, float more, goe_gradient_t *of_y);
 
-#define GOE_BEHIND_STATES (GOE_RESIDUAL - GOE_STATE_COLUMN)
-
 /*@ requires goe_rows_hold(rows) && 1 <= rows->count <= GOE_ROWS_MAX; */
 static inline float *goe_rows_last_variance(goe_rows_t *rows) { return &rows->variance[rows->count - 1u]; }
-
-/* Sets the derivatives of a coordinate whose point moves with the reference point, by whose X and Z it changes by by_x and by_z: by
- * GOE_BEARING, and by GOE_INVERSE_RANGE as far as the camera's path determines it. The coordinate is that on the smoothed path, so the residual
- * gains the rest of the given place. An error of the place that is in both would count as range: their product is its square. */
-/*@ requires \valid(by + (0 .. GOE_BEHIND_STATES)) && goe_observation_is_open(obs); */
-static inline void goe_rows_place(float *by, const goe_observation_t *obs, float by_x, float by_z) {
-    by[GOE_BEARING] = by_x;
-    by[GOE_INVERSE_RANGE] = -(by_x * obs->sure_m.x) - by_z * obs->sure_m.z;
-    by[GOE_BEHIND_STATES] += by_x * obs->off.x + by_z * obs->off.z;
-#if GOE_AUGMENTED
-    by[GOE_STATES + GOE_AUGMENTED_VELOCITY_X] = by_x; /* until goe_mover_columns() */
-    by[GOE_STATES + GOE_AUGMENTED_VELOCITY_Z] = by_z;
-#endif
-}
-
-/* Adds the same for a point at a height above the ground, or the ground, by whose Y the coordinate changes by by_y. */
-/*@ requires \valid(by + (0 .. GOE_BEHIND_STATES)) && goe_observation_is_open(obs); */
-static inline void goe_rows_raise(float *by, const goe_observation_t *obs, float by_y) {
-    by[GOE_INVERSE_RANGE] += by_y * obs->sure_height_m;
-    by[GOE_BEHIND_STATES] += by_y * obs->off_y;
-}
 
 /* Call after the last row: computes the columns of the attitude bias from those of the image's own attitude error, and clears unused
  * rows. */

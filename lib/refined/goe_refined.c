@@ -93,7 +93,6 @@ static void note_growth(goe_answer_t *answer, float grown2, float since_s) {
 /* The rows of the image, before the gate. */
 static void find_rows(goe_filter_t *filter, goe_observation_t *obs, goe_rows_t *rows) {
     rows->white_rad = obs->white_rad;
-    rows->shift = obs->shift;
     goe_model_rows(filter, obs, rows);
     obs->grown2 = goe_growth_find(obs, rows);
     note_growth(&filter->answer, obs->grown2, obs->since_s);

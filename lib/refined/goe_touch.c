@@ -271,7 +271,7 @@ GOE_NOINLINE float *goe_touch_add(goe_rows_t *rows, const goe_observation_t *obs
     const line_t line = line_at(obs->camera, side, touch->x, touch->y);
     find_gradient(obs, solid, touch, &line, gradient);
     const float hidden = !level && is_hidden(obs, solid, touch) ? forget_height(solid, touch, gradient) : 0.0f;
-    float *by = goe_rows_add(rows, (goe_feature_t)feature_of[side], level ? GOE_ALONG_Y : GOE_ALONG_X, measured,
+    float *by = goe_rows_add(rows, obs, (goe_feature_t)feature_of[side], level ? GOE_ALONG_Y : GOE_ALONG_X, measured,
                              variance + hidden, gradient);
     rows->side[rows->count - 1u] = (uint8_t)side;
     /* A foot moves with the ground, a head with the top. */

@@ -75,7 +75,6 @@ void sighting_clear_rows(sighting_t *sighting) {
     sighting->sight.sure_m = sighting->sight.camera_m;
     sighting->sight.sure_height_m = sighting->sight.height_m;
     goe_rows_clear(&sighting->rows, &sighting->matrix);
-    sighting->rows.shift = sighting->sight.shift;
 }
 
 static void attitude_bias(const sighting_t *sighting, const double state[GOE_STATES], double e[3]) {

@@ -19,6 +19,7 @@ static goe_settings_t settings;
 static goe_filter_t filter;
 static goe_matrix_t matrix;
 static goe_rows_t rows;
+static goe_observation_t sight; /* at rest */
 static goe_verdict_t verdict;
 
 /* A box viewed from some way off: six points, base corners as two rows each. The filter is sure of its state. */
@@ -33,8 +34,8 @@ static void add_row(size_t feature, bool along_y) {
     g.ey = (float)(along_y ? x * y : 1.0 + x * x);
     g.ex = (float)(along_y ? -(1.0 + y * y) : -x * y);
     g.ez = (float)(along_y ? x : -y);
-    (void)goe_rows_add(&rows, (goe_feature_t)feature, along_y ? GOE_ALONG_Y : GOE_ALONG_X, 0.0f, (float)(SIGMA * SIGMA),
-                       &g);
+    (void)goe_rows_add(&rows, &sight, (goe_feature_t)feature, along_y ? GOE_ALONG_Y : GOE_ALONG_X, 0.0f,
+                       (float)(SIGMA * SIGMA), &g);
 }
 
 void setUp(void) {
