@@ -58,7 +58,7 @@ static float sane(float column) { return goe_within(column, COLUMN_MAX) ? column
 
 /* (R33): an obstacle with the velocity v has moved by v t. Poses that are late by tau have the attitude and velocity of another time, tau
  * away. */
-void goe_mover_columns(const goe_observation_t *obs, goe_rows_t *rows) {
+void goe_mover_columns(const goe_axes_t *axes, const goe_observation_t *obs, goe_rows_t *rows) {
     const float q = obs->state[GOE_INVERSE_RANGE];
     const float passed = q * obs->elapsed_s;
     const float *before = obs->rate_before_rad_s;
@@ -68,7 +68,7 @@ void goe_mover_columns(const goe_observation_t *obs, goe_rows_t *rows) {
         float *row = rows->matrix->row[i];
         float *by = &row[GOE_AUGMENTED_COLUMN];
         const goe_xz_t place = {by[GOE_AUGMENTED_VELOCITY_X], by[GOE_AUGMENTED_VELOCITY_Z]};
-        const goe_xz_t moved = goe_xz_out_of(place, obs->turn_cos, obs->turn_sin);
+        const goe_xz_t moved = goe_xz_out_of(place, axes->turn_cos, axes->turn_sin);
         const float turned = row[0] * rate[1] + row[1] * rate[0] + row[2] * rate[2];
         by[GOE_AUGMENTED_LATENCY] = sane(turned - goe_xz_dot(place, gained));
         by[GOE_AUGMENTED_VELOCITY_X] = sane(moved.x * passed);

@@ -14,7 +14,7 @@
 void goe_mover_clear(goe_filter_t *filter);
 
 /* Call after goe_rows_end(): sets the columns of the augmented states, which contain the derivatives by the place until then. */
-void goe_mover_columns(const goe_observation_t *obs, goe_rows_t *rows);
+void goe_mover_columns(const goe_axes_t *axes, const goe_observation_t *obs, goe_rows_t *rows);
 
 /* Call after an image's update: applies the changes of the augmented states, and decides on latency and motion. True if the filter must
  * restart, because the obstacle has been found to move. */

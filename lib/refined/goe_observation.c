@@ -121,35 +121,22 @@ static void turn_rate(const goe_filter_t *filter, const float rate[3], float tur
     turned[1] = rate[1];
     turned[2] = into.z;
 }
-#endif
 
-/*@ requires \valid(obs) && \valid_read(filter) && \valid_read(motion); */
-static void note_pace(goe_observation_t *obs, const goe_filter_t *filter, const goe_view_t *view) {
-#if GOE_AUGMENTED
-    const goe_xz_t level = {view->off_m[0], view->off_m[1]};
-    const goe_xz_t off_m = goe_xz_into(level, filter->axes.turn_cos, filter->axes.turn_sin);
-    obs->turn_cos = filter->axes.turn_cos;
-    obs->turn_sin = filter->axes.turn_sin;
+/* off_m: the place off the path, the state's axes. */
+/*@ requires \valid(obs) && \valid_read(filter) && goe_view_is_open(view); */
+static void note_pace(goe_observation_t *obs, const goe_filter_t *filter, const goe_view_t *view, goe_xz_t off_m) {
     obs->gained_m_s = goe_filter_gained(filter, view->motion);
     obs->gained_m_s.x -= view->gain_1_s * off_m.x; /* by this image, whose error the residual contains */
     obs->gained_m_s.z -= view->gain_1_s * off_m.z;
     obs->latency_s = filter->mover.augmented[GOE_AUGMENTED_LATENCY];
     turn_rate(filter, view->motion->rate_rad_s, obs->rate_rad_s);
     turn_rate(filter, view->motion->rate_before_rad_s, obs->rate_before_rad_s);
-#else
-    (void)obs;
-    (void)filter;
-    (void)view;
-#endif
 }
 
-/* Moves the camera to the smoothed path, once the filter runs, if the places are noisy: in a turn, the path lags. */
+/* Moves the camera to the smoothed path, once the filter runs, if the places are noisy: in a turn, the path lags. off_m: as above. */
 /*@ requires \valid(obs) && \valid_read(obs->settings) && \valid_read(obs->state + (0 .. GOE_STATES - 1));
     requires \valid_read(filter) && goe_view_is_open(view); */
-static void take_path(goe_observation_t *obs, const goe_filter_t *filter, const goe_view_t *view) {
-#if GOE_AUGMENTED
-    const goe_xz_t level = {view->off_m[0], view->off_m[1]};
-    const goe_xz_t off_m = goe_xz_into(level, filter->axes.turn_cos, filter->axes.turn_sin);
+static void take_path(goe_observation_t *obs, const goe_filter_t *filter, const goe_view_t *view, goe_xz_t off_m) {
     const bool noisy = obs->settings->navigation.position_white_sd_m > 0.0f && goe_filter_has_started(filter);
     const float q = noisy ? obs->state[GOE_INVERSE_RANGE] : 0.0f;
     if (noisy) {
@@ -163,10 +150,12 @@ static void take_path(goe_observation_t *obs, const goe_filter_t *filter, const 
     obs->off.x = share * off_m.x;
     obs->off.z = share * off_m.z;
     obs->off_y = share * view->off_m[2];
-#else
-    (void)view;
-    obs->off.x = obs->off.z = obs->off_y = 0.0f;
+}
 #endif
+
+/* Sets the ways that noise does not explain. */
+/*@ requires \valid(obs) && \valid_read(obs->settings) && \valid_read(filter); */
+static void note_sure(goe_observation_t *obs, const goe_filter_t *filter) {
     const float noise2 = goe_square(SURE_SIGMAS * obs->settings->navigation.position_white_sd_m);
     const float start_m = filter->datum.start_m;
     obs->sure_m.x = sure_way(obs->camera_m.x, noise2);
@@ -194,7 +183,15 @@ unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *sett
     obs->kind = filter->kind.wrong ? &UNKNOWN : &view->image->kind;
     obs->is_round = goe_filter_has_started(filter) ? filter->kind.is_round : starts_round(settings->model, obs->kind);
     obs->height_m = filter->datum.height_m;
-    take_path(obs, filter, view);
+#if GOE_AUGMENTED
+    const goe_xz_t level = {view->off_m[0], view->off_m[1]};
+    const goe_xz_t off_m = goe_xz_into(level, filter->axes.turn_cos, filter->axes.turn_sin);
+    take_path(obs, filter, view, off_m);
+    note_pace(obs, filter, view, off_m);
+#else
+    obs->off.x = obs->off.z = obs->off_y = 0.0f;
+#endif
+    note_sure(obs, filter);
     obs->is_placed = (filter->known & GOE_HAS_POSITION) != 0u;
     obs->fade = 0.0f;
     obs->shift = 0.0f;
@@ -203,7 +200,6 @@ unsigned goe_observation_open(goe_observation_t *obs, const goe_settings_t *sett
     obs->depth_variance = 0.0f;
     obs->two_faces = false;
     obs->elapsed_s = goe_filter_elapsed_s(filter, view->motion);
-    note_pace(obs, filter, view);
     return put_in_order(obs);
 }
 

@@ -40,7 +40,6 @@ typedef struct {
     uint8_t number;       /* number of the camera */
     uint8_t passed;       /* priors of the range that were too near */
 #if GOE_AUGMENTED
-    float turn_cos, turn_sin;   /* of the state's axes from T */
     float rate_rad_s[3];        /* of the vehicle, the state's axes */
     float rate_before_rad_s[3]; /* the same shortly before, free of this image's own attitude error */
     goe_xz_t gained_m_s;        /* change of the velocity since the filter's start, the state's axes */

@@ -98,7 +98,7 @@ static void find_rows(goe_filter_t *filter, goe_observation_t *obs, goe_rows_t *
     note_growth(&filter->answer, obs->grown2, obs->since_s);
     goe_rows_end(rows, obs);
 #if GOE_AUGMENTED
-    goe_mover_columns(obs, rows);
+    goe_mover_columns(&filter->axes, obs, rows);
 #endif
     allow_for_curvature(obs, rows);
     goe_model_recall(filter, obs, rows);

@@ -209,6 +209,8 @@ static void settle(sighting_t *s) {
 
 static void check_columns(void) {
     static sighting_t s;
+    goe_axes_t axes;
+    memset(&axes, 0, sizeof axes);
     static sighting_t moved;
     sighting_start(&s, &any);
     s.state[GOE_BEARING] = (float)check_random_between(&any, -0.1, 0.1);
@@ -222,8 +224,8 @@ static void check_columns(void) {
         s.sight.point[f].x = f == GOE_POINT_LEFT ? -0.1f : 0.1f;
         s.sight.point[f].y = 0.02f;
     }
-    s.sight.turn_cos = 0.8f;
-    s.sight.turn_sin = 0.6f;
+    axes.turn_cos = 0.8f;
+    axes.turn_sin = 0.6f;
     s.sight.elapsed_s = 3.0f;
     for (size_t i = 0; i < 3; i++) {
         s.sight.rate_rad_s[i] = (float)check_random_between(&any, -0.3, 0.3);
@@ -233,7 +235,7 @@ static void check_columns(void) {
     s.sight.gained_m_s.z = -7.0f;
     settle(&s);
     TEST_ASSERT_TRUE(s.rows.count == 3);
-    goe_mover_columns(&s.sight, &s.rows);
+    goe_mover_columns(&axes, &s.sight, &s.rows);
     for (size_t i = 0; i < GOE_AUGMENTED; i++) {
         const double step = i == GOE_AUGMENTED_LATENCY ? 0.02 : 0.2;
         double residual[2][GOE_ROWS_MAX];
