@@ -232,7 +232,7 @@ static void follow_path(goe_motion_t *motion, const float place_m[3], float sinc
 
 /* Updates rate and path from the poses since the mark. */
 static void find_pace(goe_motion_t *motion, const float attitude[4], const float place_m[3], goe_view_t *view) {
-    float half[3] = {0.0f};
+    float half[3] = {0.0f, 0.0f, 0.0f};
     const bool first = !motion->detected; /* no earlier image fixed T */
     const float since_s = goe_time_between_s(motion->mark_us, motion->time_us, PACE_SPAN_MAX_US);
     const bool soon = !first && since_s < PACE_SPAN_MIN_S;
