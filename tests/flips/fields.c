@@ -39,7 +39,7 @@ const field_t fields[] = {
     NUMBER(filter.datum.start_m) NUMBER(filter.axes.start_dx_m) NUMBER(filter.axes.start_dz_m) NUMBER(filter.axes.start_velocity_m_s)
     NUMBER(filter.datum.ground_m) NUMBER(filter.datum.height_m) NUMBER(filter.datum.sd_m)
     NUMBER(filter.datum.mean_m) NUMBER(filter.datum.noise_m2) NUMBER(filter.datum.scatter_m2) NUMBER(filter.datum.first_m2) NUMBER(filter.datum.taken_m2)
-    NUMBER(filter.datum.taken_mean_m) DECIDES(filter.datum.readings) DECIDES(filter.datum.boxes) NUMBER(filter.scatter.before)
+    NUMBER(filter.datum.taken_mean_m) DECIDES(filter.health.heights) DECIDES(filter.boxes) NUMBER(filter.scatter.before)
     NUMBER(filter.scatter.products) NUMBER(filter.scatter.squares) DECIDES(filter.scatter.seen)
     NUMBER(filter.mover.augmented) NUMBER(filter.mover.nis) NUMBER(filter.mover.rows) NUMBER(filter.mover.observed_s)
     NUMBER(filter.mover.unlike_s) DECIDES(filter.mover.images) DECIDES(filter.mover.moves)
