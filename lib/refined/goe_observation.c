@@ -23,9 +23,10 @@
 #define RANGE_FREEDOM 4.0f    /* relative prior sigma of 1/Z0 */
 #define TOP_FREEDOM 10.0f     /* prior sigma of the top, over the larger of top and width */
 #define WIDTH_MIN 1.0e-5f     /* least width between two ends, focal lengths */
-#define SURE_SIGMAS 3.0f      /* sigmas of position_white_sd_m within which a way counts as noise */
-#define SHARED 2.0f           /* rows that share an error of the camera's place along Z: opposite sides */
-#define FORWARD_MIN 1.0e-4f   /* least distance ahead of a predicted point, in units of Z0 */
+#define SURE_SIGMAS                                                                                                    \
+    3.0f            /* sigmas of position_white_sd_m up to which a way, or a distance off the path, counts as noise */
+#define SHARED 2.0f /* rows that share an error of the camera's place along Z: opposite sides */
+#define FORWARD_MIN 1.0e-4f /* least distance ahead of a predicted point, in units of Z0 */
 
 static const goe_kind_t UNKNOWN; /* replaces a class that proved wrong */
 
@@ -133,23 +134,34 @@ static void note_pace(goe_observation_t *obs, const goe_filter_t *filter, const 
     turn_rate(filter, view->motion->rate_before_rad_s, obs->rate_before_rad_s);
 }
 
-/* Moves the camera to the smoothed path, once the filter runs, if the places are noisy: in a turn, the path lags. off_m: as above. */
+/* The part of a distance off the path that noise explains: the path lags in a turn, and does not exist if the places are not those of a
+ * flight. */
+static float noise_of(float off_m, float most_m) {
+    if (off_m > most_m) {
+        return most_m;
+    }
+    return off_m < -most_m ? -most_m : off_m;
+}
+
+/* Moves the camera to the smoothed path, once the filter runs, as far as the places are noisy. off_m: as above. */
 /*@ requires \valid(obs) && \valid_read(obs->settings) && \valid_read(obs->state + (0 .. GOE_STATES - 1));
     requires \valid_read(filter) && goe_view_is_open(view); */
 static void take_path(goe_observation_t *obs, const goe_filter_t *filter, const goe_view_t *view, goe_xz_t off_m) {
-    const bool noisy = obs->settings->navigation.position_white_sd_m > 0.0f && goe_filter_has_started(filter);
-    const float q = noisy ? obs->state[GOE_INVERSE_RANGE] : 0.0f;
-    if (noisy) {
-        obs->camera_m.x -= off_m.x;
-        obs->camera_m.z -= off_m.z;
-        obs->height_m += view->off_m[2];
-    }
+    const float white_m = goe_filter_has_started(filter) ? obs->settings->navigation.position_white_sd_m : 0.0f;
+    const float most_m = SURE_SIGMAS * white_m;
+    const float q = obs->state[GOE_INVERSE_RANGE];
+    const float down_m = noise_of(view->off_m[2], most_m);
+    off_m.x = noise_of(off_m.x, most_m);
+    off_m.z = noise_of(off_m.z, most_m);
+    obs->camera_m.x -= off_m.x;
+    obs->camera_m.z -= off_m.z;
+    obs->height_m += down_m;
     /* exact for a point at this Z: (X - x)/(Z - z) is X/Z minus (x - z X/Z)/(Z - z) */
     const float ahead = goe_observation_ahead(obs);
     const float share = ahead / goe_larger(ahead - q * off_m.z, GOE_AHEAD_MIN) * q;
     obs->off.x = share * off_m.x;
     obs->off.z = share * off_m.z;
-    obs->off_y = share * view->off_m[2];
+    obs->off_y = share * down_m;
 }
 #endif
 

@@ -405,8 +405,8 @@ class PrismFilter:
         if too_soon or (not started and not self.start(in_t)):
             return False
         sight = in_t.turned(self.turn, self.origin_m)
-        noisy = started and self.errors.position_white_sd_m > 0
-        sight = sight.on_path() if noisy else replace(sight, off_path_m=np.zeros(3))
+        most_m = SURE_SIGMAS * self.errors.position_white_sd_m if started else 0.0
+        sight = replace(sight, off_path_m=np.clip(sight.off_path_m, -most_m, most_m)).on_path()
         self.time_s = in_t.time_s
         q_variance = self.full_covariance()[Q, Q]
         self._wait(since_s)
