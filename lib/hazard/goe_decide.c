@@ -84,7 +84,7 @@ static goe_xz_t relative_velocity(const goe_estimate_t *estimate, const goe_inte
 #if GOE_WITH_FILTER
 /* Filter: whether the obstacle is ahead on the course, within a sigma, and images showed it larger than it can be at this range, or the
  * border may cut it on the side of the course. If it is nearer, it also passes sooner; if it is cut, it may reach the course, and while
- * images show it, even if its visible part is passed. A hovering aircraft has no course, and the course to the obstacle itself
+ * images show it, even if its visible part is abeam. A hovering aircraft has no course, and the course to the obstacle itself
  * no side: then each end counts. */
 static bool may_be_ahead(const goe_estimator_t *estimator, const goe_intent_t *intent) {
     const goe_motion_t *motion = &estimator->motion;

@@ -23,6 +23,7 @@
 #define STEADY_IMAGES 8u       /* in a row that confirm it, before any jump: positions held from fix to fix do not */
 #define PATH_MARKS 6           /* marks in the memory of the smoothed path: half a second, if each image is one */
 #define PATH_MARKS_MIN 2       /* least marks that give it a velocity */
+#define OFF_MAX_M 1.0e7f       /* more off the path is no flight: positions are within 1e6 m */
 #define MOVING_M_S 1.0f        /* least velocity that predicts a place: held positions have none */
 
 /* Sets T's Z axis in (north, east): the configured heading, or the direction of the nose. */
@@ -222,8 +223,13 @@ static void follow_path(goe_motion_t *motion, const float place_m[3], float sinc
         begin_path(motion, place_m);
     }
     leave_path(motion, place_m, since_s, view->off_m);
-    if (continues && marked) {
+    if (!goe_within(view->off_m[0] + view->off_m[1] + view->off_m[2], OFF_MAX_M)) {
+        begin_path(motion, place_m); /* a bit was flipped */
+        memset(view->off_m, 0, sizeof view->off_m);
+    } else if (continues && marked) {
         view->gain_1_s = extend_path(motion, place_m, view->off_m, since_s);
+    } else {
+        /* the path stays */
     }
     if (!known) {
         memset(view->off_m, 0, sizeof view->off_m);

@@ -137,10 +137,8 @@ static void note_pace(goe_observation_t *obs, const goe_filter_t *filter, const 
 /* The part of a distance off the path that noise explains: the path lags in a turn, and does not exist if the places are not those of a
  * flight. */
 static float noise_of(float off_m, float most_m) {
-    if (off_m > most_m) {
-        return most_m;
-    }
-    return off_m < -most_m ? -most_m : off_m;
+    const float less_m = goe_within(off_m, most_m) ? off_m : most_m; /* also if it is not finite */
+    return off_m < -most_m ? -most_m : less_m;
 }
 
 /* Moves the camera to the smoothed path, once the filter runs, as far as the places are noisy. off_m: as above. */
@@ -149,7 +147,7 @@ static float noise_of(float off_m, float most_m) {
 static void take_path(goe_observation_t *obs, const goe_filter_t *filter, const goe_view_t *view, goe_xz_t off_m) {
     const float white_m = goe_filter_has_started(filter) ? obs->settings->navigation.position_white_sd_m : 0.0f;
     const float most_m = SURE_SIGMAS * white_m;
-    const float q = obs->state[GOE_INVERSE_RANGE];
+    const float q = white_m > 0.0f ? obs->state[GOE_INVERSE_RANGE] : 0.0f;
     const float down_m = noise_of(view->off_m[2], most_m);
     off_m.x = noise_of(off_m.x, most_m);
     off_m.z = noise_of(off_m.z, most_m);
