@@ -153,6 +153,20 @@ static void the_path_jumps_along_and_begins_again(void) {
     CHECK_SAME(0.0f, view.off_m[2]);
 }
 
+/* GIVEN a path that a flipped bit has made no number WHEN images follow THEN it begins again, and no place is off it. */
+static void a_path_that_is_no_number_begins_again(void) {
+    follow(0.0);
+    follow(0.1);
+    follow(0.2);
+    motion.velocity_m_s[0] = NAN;
+    follow(0.3);
+    CHECK_SAME(0.0f, view.off_m[0]);
+    follow(0.4);
+    follow(0.5);
+    CHECK_CLOSE(1.0e-3, 3.0, motion.velocity_m_s[0]);
+    CHECK_CLOSE(1.0e-4, 0.0, view.off_m[0]);
+}
+
 /* GIVEN poses too near to each other THEN they would give only noise, and the previous motion stays; too far apart, they would give a mean,
  * and there is no motion; nor over a jump of the autopilot's filter. */
 static void only_distant_poses_give_motion(void) {
@@ -336,6 +350,7 @@ int main(void) {
     RUN_TEST(the_velocity_is_the_vehicles);
     RUN_TEST(the_path_smooths_errors_of_the_places);
     RUN_TEST(the_path_jumps_along_and_begins_again);
+    RUN_TEST(a_path_that_is_no_number_begins_again);
     RUN_TEST(only_distant_poses_give_motion);
     RUN_TEST(a_known_jump_is_in_no_velocity);
     RUN_TEST(a_new_track_has_no_velocity);
