@@ -61,7 +61,7 @@ typedef struct {
 #endif
 #if GOE_AUGMENTED
     uint8_t
-        paced; /* 0: the fields below are invalid; else 1 + images in a row at the predicted place, + jumps in a row */
+        paced; /* 0: rate and velocity are not known; else 1 + images in a row at the predicted place, + jumps in a row */
     uint8_t marks;                     /* marks of the smoothed path, saturating */
     float rate_rad_s[3];               /* mean since the mark, T axes */
     float rate_before_rad_s[3];        /* the rate before the mark, free of the latest attitude's error */

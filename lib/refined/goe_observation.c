@@ -330,20 +330,20 @@ void goe_rows_move(float *by, const goe_observation_t *obs, float by_x, float by
 
 float *goe_rows_add(goe_rows_t *rows, const goe_observation_t *obs, goe_feature_t feature, goe_axis_t axis,
                     float measured, float variance, const goe_gradient_t *gradient) {
-    const goe_gradient_t *g = gradient;
     const size_t at = rows->count++;
     float *row = rows->matrix->row[at];
     float *by = &row[GOE_STATE_COLUMN];
-    rows->variance[at] = variance + SHARED * goe_square(obs->shift * g->z);
+    rows->variance[at] = variance + SHARED * goe_square(obs->shift * gradient->z);
     rows->feature[at] = (uint8_t)feature;
     rows->axis[at] = (uint8_t)axis;
     rows->series[at] = (uint8_t)(2u * (unsigned)feature);
-    row[0] = g->ey;
-    row[1] = g->ex;
-    row[2] = g->ez;
+    row[0] = gradient->ey;
+    row[1] = gradient->ex;
+    row[2] = gradient->ez;
     goe_srif_zero(by, GOE_GROUND);
-    goe_rows_move(by, obs, g->x, g->y, g->z);
-    by[GOE_BEHIND_STATES] = measured - g->at + (g->x * obs->off.x + g->y * obs->off_y + g->z * obs->off.z);
+    goe_rows_move(by, obs, gradient->x, gradient->y, gradient->z);
+    by[GOE_BEHIND_STATES] =
+        measured - gradient->at + (gradient->x * obs->off.x + gradient->y * obs->off_y + gradient->z * obs->off.z);
     return by;
 }
 
