@@ -15,14 +15,14 @@
 #define PACE_SPAN_MAX_S ((float)PACE_SPAN_MAX_US * GOE_S_PER_US)
 #define PACE_COSINE_MIN 0.9f   /* cosine of half the rotation in a span: more is a jump, not flight */
 #define LEVEL_NOSE_MIN 1.0e-3f /* least horizontal part of the nose's unit vector that gives a heading */
-#define LEAP_MIN_M 8.0f        /* least distance of a jump from the predicted place: many positions err by less */
-#define LEAP_MIN_S 0.1f        /* added, times the speed: an error of the time stamp */
+#define LEAP_MIN_M 0.5f        /* least distance of a jump from the predicted place: a smaller one does no harm */
+#define LEAP_MIN_S 0.02f       /* added, times the speed: an error of the time stamp */
 #define LEAP_MIN_M_S2 40.0f    /* added, times the squared time: an aircraft's acceleration */
-#define LEAPS_MAX 3u           /* jumps in a row; after more, the velocity is wrong */
-#define STEADY_SHARE 0.25f     /* of that distance: an image nearer to the predicted place confirms the velocity */
-#define STEADY_IMAGES 8u       /* in a row that confirm it, before any jump: positions held from fix to fix do not */
+#define LEAP_STRAYS 5.0f       /* added, times the largest recent distance: positions err */
+#define STRAY_M 0.0625f        /* unit of goe_motion_t.stray */
+#define STRAY_LEFT 0.7f        /* of it is left in the next image */
+#define STRAY_UNKNOWN 255u     /* 16 m, which allows no jump: eight images later 0.9 m are left */
 #define PATH_MARKS 6           /* marks in the memory of the smoothed path: half a second, if each image is one */
-#define PATH_MARKS_MIN 2       /* least marks that give it a velocity */
 #define OFF_MAX_M 1.0e7f       /* more off the path is no flight: positions are within 1e6 m */
 #define MOVING_M_S 1.0f        /* least velocity that predicts a place: held positions have none */
 
@@ -130,10 +130,16 @@ static void add_arm(const goe_motion_t *motion, const goe_settings_t *settings, 
 }
 #endif
 
-/* Counts images in a row that confirm the velocity; another image ends the row. */
-static void count_steady(goe_motion_t *motion, bool confirmed) {
-    const unsigned more = motion->paced <= STEADY_IMAGES ? motion->paced + 1u : 1u + STEADY_IMAGES;
-    motion->paced = (uint8_t)(motion->paced > 0u && confirmed ? more : motion->paced > 0u);
+/* Remembers the largest recent distance of an image from the predicted place. */
+static void note_stray(goe_motion_t *motion, float distance_m) {
+    const float stray = distance_m / STRAY_M;
+    motion->stray = (uint8_t)(stray < (float)STRAY_UNKNOWN ? stray : (float)STRAY_UNKNOWN);
+}
+
+/* Whether the path predicts this image. Positions held from fix to fix have no path, and a hover has none either. */
+static bool predicts(const goe_motion_t *motion, const float before_m[2], float since_s) {
+    const float way2 = goe_square(motion->dx_m - before_m[0]) + goe_square(motion->dz_m - before_m[1]);
+    return goe_motion_paced(motion) && since_s < PACE_SPAN_MAX_S && way2 >= goe_square(MOVING_M_S * since_s);
 }
 
 /* Removes a jump that no reset announced, and that no aircraft can fly. The jump is the way from the predicted place to the given one. */
@@ -142,18 +148,21 @@ static bool undo_leap(goe_motion_t *motion, const float before_m[2], float since
     const float x_m = before_m[0] + v[0] * since_s;
     const float z_m = before_m[1] + v[1] * since_s;
     const float leap_m[2] = {motion->dx_m - x_m, motion->dz_m - z_m};
-    const float leap2 = goe_square(leap_m[0]) + goe_square(leap_m[1]);
+    const float distance_m = sqrtf(goe_square(leap_m[0]) + goe_square(leap_m[1]));
     const float speed_m_s = sqrtf(goe_square(v[0]) + goe_square(v[1]));
-    const float least2 = goe_square(LEAP_MIN_M + LEAP_MIN_S * speed_m_s + LEAP_MIN_M_S2 * since_s * since_s);
-    const bool predicted = motion->paced > 0u && since_s < PACE_SPAN_MAX_S && speed_m_s > MOVING_M_S;
+    const float stray_m = STRAY_M * (float)motion->stray;
+    const float least_m =
+        LEAP_MIN_M + LEAP_MIN_S * speed_m_s + LEAP_MIN_M_S2 * since_s * since_s + LEAP_STRAYS * stray_m;
     float leap_ne_m[2];
-    if (!predicted || leap2 <= least2 || motion->paced <= STEADY_IMAGES || motion->paced > STEADY_IMAGES + LEAPS_MAX) {
-        const float way2 = goe_square(motion->dx_m - before_m[0]) + goe_square(motion->dz_m - before_m[1]);
-        const bool held = way2 < goe_square(MOVING_M_S * since_s); /* from fix to fix, while the path goes on */
-        count_steady(motion, predicted && !held && leap2 < STEADY_SHARE * STEADY_SHARE * least2);
+    if (!predicts(motion, before_m, since_s)) {
+        motion->stray = STRAY_UNKNOWN;
         return false;
     }
-    motion->paced++; /* at most by LEAPS_MAX */
+    if (speed_m_s <= MOVING_M_S || distance_m <= least_m || !goe_within(distance_m, OFF_MAX_M)) {
+        note_stray(motion, goe_larger(STRAY_LEFT * stray_m, distance_m));
+        return false;
+    }
+    note_stray(motion, STRAY_LEFT * stray_m); /* so the way back, from one wrong position, is the easier jump */
     goe_motion_turn(motion, leap_m, leap_ne_m);
     motion->origin_ne_m[0] += leap_ne_m[0];
     motion->origin_ne_m[1] += leap_ne_m[1];
@@ -217,7 +226,7 @@ static float extend_path(goe_motion_t *motion, const float place_m[3], const flo
  * no jump. since_s: time since the mark; continues: the image follows the mark; marked: it is a mark. */
 static void follow_path(goe_motion_t *motion, const float place_m[3], float since_s, bool continues, bool marked,
                         goe_view_t *view) {
-    const bool known = continues && motion->marks >= PATH_MARKS_MIN;
+    const bool known = continues && goe_motion_paced(motion);
     view->gain_1_s = 0.0f;
     if (!continues) {
         begin_path(motion, place_m);
@@ -236,15 +245,16 @@ static void follow_path(goe_motion_t *motion, const float place_m[3], float sinc
     }
 }
 
-/* Updates rate and path from the poses since the mark. */
-static void find_pace(goe_motion_t *motion, const float attitude[4], const float place_m[3], goe_view_t *view) {
+/* Updates rate and path from the poses since the mark. An image that leapt is no mark: a path that none confirms begins again. */
+static void find_pace(goe_motion_t *motion, const float attitude[4], const float place_m[3], bool leapt,
+                      goe_view_t *view) {
     float half[3] = {0.0f, 0.0f, 0.0f};
     const bool first = !motion->detected; /* no earlier image fixed T */
     const float since_s = goe_time_between_s(motion->mark_us, motion->time_us, PACE_SPAN_MAX_US);
     const bool soon = !first && since_s < PACE_SPAN_MIN_S;
     const bool continues =
         !first && since_s < PACE_SPAN_MAX_S && (soon || half_turn(attitude, motion->mark_attitude, half));
-    const bool marked = !continues || since_s >= PACE_SPAN_S;
+    const bool marked = !continues || (since_s >= PACE_SPAN_S && !leapt);
     follow_path(motion, place_m, since_s, continues, marked, view);
     if (soon) {
         return;
@@ -255,8 +265,6 @@ static void find_pace(goe_motion_t *motion, const float attitude[4], const float
         memset(motion->rate_rad_s, 0, sizeof motion->rate_rad_s);
         memset(motion->rate_before_rad_s, 0, sizeof motion->rate_before_rad_s);
     }
-    const bool paced = continues && motion->marks >= PATH_MARKS_MIN;
-    motion->paced = paced && motion->paced > 0u ? motion->paced : paced;
     if (marked) {
         memcpy(motion->mark_attitude, attitude, sizeof motion->mark_attitude);
         motion->mark_us = motion->time_us;
@@ -277,7 +285,7 @@ static GOE_NOINLINE bool follow_pace(goe_motion_t *motion, const float position[
     const float place_m[3] = {motion->dx_m - (motion->heading_cos * arm_e - motion->heading_sin * arm_n),
                               motion->dz_m - (motion->heading_cos * arm_n + motion->heading_sin * arm_e),
                               pose->position_ned_m[2]};
-    find_pace(motion, pose->attitude, place_m, view);
+    find_pace(motion, pose->attitude, place_m, leapt, view);
     return leapt;
 }
 #endif

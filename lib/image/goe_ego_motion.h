@@ -18,6 +18,13 @@ static inline bool goe_motion_reset(const goe_motion_t *motion, const goe_pose_t
     return motion->time_us != GOE_TIME_UNKNOWN && pose->reset_count != motion->reset_count;
 }
 
+#if GOE_AUGMENTED
+#define GOE_PATH_MARKS_MIN 2u /* least marks that give the smoothed path a velocity */
+
+/* Whether rate and velocity are known. */
+static inline bool goe_motion_paced(const goe_motion_t *motion) { return motion->marks >= GOE_PATH_MARKS_MIN; }
+#endif
+
 /* Converts (X, Z) in T, relative to T's origin, to north and east. */
 static inline void goe_motion_place(const goe_motion_t *motion, float x_m, float z_m, float *north_m, float *east_m) {
     const float c = motion->heading_cos;

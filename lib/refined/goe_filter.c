@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "image/goe_ego_motion.h"
 #include "maths/goe_angle.h"
 #include "maths/goe_scalar.h"
 #include "maths/goe_time.h"
@@ -161,7 +162,7 @@ goe_xz_t goe_filter_moved(const goe_filter_t *filter, const goe_motion_t *motion
 goe_xz_t goe_filter_gained(const goe_filter_t *filter, const goe_motion_t *motion) {
     const goe_axes_t *axes = &filter->axes;
     goe_xz_t gained = {0.0f, 0.0f};
-    if (filter->paced && motion->paced) {
+    if (filter->paced && goe_motion_paced(motion)) {
         gained.x = motion->velocity_m_s[0] - axes->start_velocity_m_s[0];
         gained.z = motion->velocity_m_s[1] - axes->start_velocity_m_s[1];
     }
@@ -169,7 +170,7 @@ goe_xz_t goe_filter_gained(const goe_filter_t *filter, const goe_motion_t *motio
 }
 
 void goe_filter_pace(goe_filter_t *filter, const goe_motion_t *motion) {
-    if (!filter->paced && motion->paced) {
+    if (!filter->paced && goe_motion_paced(motion)) {
         memcpy(filter->axes.start_velocity_m_s, motion->velocity_m_s, sizeof filter->axes.start_velocity_m_s);
         filter->paced = true;
     }

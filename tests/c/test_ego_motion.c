@@ -56,9 +56,9 @@ static void follow(double t) {
  * and along Z and X. */
 static void two_poses_give_rate_and_velocity(void) {
     follow(0.0);
-    TEST_ASSERT_FALSE(motion.paced);
+    TEST_ASSERT_FALSE(goe_motion_paced(&motion));
     follow(0.1);
-    TEST_ASSERT_TRUE(motion.paced);
+    TEST_ASSERT_TRUE(goe_motion_paced(&motion));
     CHECK_CLOSE(1.0e-3, 0.0, motion.rate_rad_s[0]);
     CHECK_CLOSE(1.0e-3, 0.5, motion.rate_rad_s[1]);
     CHECK_CLOSE(1.0e-3, 0.0, motion.rate_rad_s[2]);
@@ -175,16 +175,16 @@ static void only_distant_poses_give_motion(void) {
     CHECK_SAME(0.0f, motion.rate_rad_s[1]); /* nearer than 45 ms: not yet */
     follow(0.06);
     CHECK_CLOSE(1.0e-3, 0.5, motion.rate_rad_s[1]);
-    TEST_ASSERT_FALSE(motion.paced); /* nearer than 90 ms: no second mark of the path yet */
+    TEST_ASSERT_FALSE(goe_motion_paced(&motion)); /* nearer than 90 ms: no second mark of the path yet */
     follow(0.10);
-    TEST_ASSERT_TRUE(motion.paced);
+    TEST_ASSERT_TRUE(goe_motion_paced(&motion));
     CHECK_CLOSE(1.0e-3, 12.0, motion.velocity_m_s[1]);
     follow(0.71);
-    TEST_ASSERT_FALSE(motion.paced);
+    TEST_ASSERT_FALSE(goe_motion_paced(&motion));
     CHECK_SAME(0.0f, motion.rate_rad_s[1]);
     CHECK_SAME(0.0f, motion.rate_before_rad_s[1]);
     follow(0.81);
-    TEST_ASSERT_TRUE(motion.paced);
+    TEST_ASSERT_TRUE(goe_motion_paced(&motion));
 }
 
 /* GIVEN a known jump of the autopilot's filter THEN it is in neither velocity nor rate: the latency is corrected in that image,
@@ -199,7 +199,7 @@ static void a_known_jump_is_in_no_velocity(void) {
     image.pose.reset_delta_known = true;
     jumped = true;
     follow(0.2);
-    TEST_ASSERT_TRUE(motion.paced);
+    TEST_ASSERT_TRUE(goe_motion_paced(&motion));
     CHECK_CLOSE(1.0e-3, 0.5, motion.rate_rad_s[1]);
     CHECK_CLOSE(1.0e-3, 3.0, motion.velocity_m_s[0]);
     CHECK_CLOSE(1.0e-3, 12.0, motion.velocity_m_s[1]);
@@ -214,7 +214,7 @@ static void a_new_track_has_no_velocity(void) {
     image.pose.reset_count = 1;
     jumped = true;
     follow(0.2);
-    TEST_ASSERT_FALSE(motion.paced);
+    TEST_ASSERT_FALSE(goe_motion_paced(&motion));
     CHECK_SAME(0.0f, motion.rate_rad_s[1]);
 }
 
@@ -225,7 +225,7 @@ static void a_jump_of_the_attitude_is_no_rate(void) {
     image.pose.attitude[0] = 0.0f;
     image.pose.attitude[3] = 1.0f;
     goe_motion_follow(&motion, &settings, &view);
-    TEST_ASSERT_FALSE(motion.paced);
+    TEST_ASSERT_FALSE(goe_motion_paced(&motion));
     setUp();
     follow(0.0);
     for (int i = 0; i < 4; i++) { /* the same attitude by the other quaternion is no jump */
@@ -233,7 +233,7 @@ static void a_jump_of_the_attitude_is_no_rate(void) {
     }
     image.pose.time_us += 100000;
     goe_motion_follow(&motion, &settings, &view);
-    TEST_ASSERT_TRUE(motion.paced);
+    TEST_ASSERT_TRUE(goe_motion_paced(&motion));
     CHECK_CLOSE(1.0e-5, 0.0, motion.rate_rad_s[1]);
 }
 

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "check.h"
+#include "image/goe_ego_motion.h"
 #include "inverse.h"
 #include "refined/goe_footprint.h"
 #include "scene.h"
@@ -605,7 +606,7 @@ static void rate_and_velocity_are_those_of_the_flight(void) {
         }
         const goe_motion_t *m = &estimator.motion;
         const bool seldom = rates_hz[i] < 1.0 / 0.6;
-        TEST_ASSERT_EQUAL(!seldom, m->paced > 0);
+        TEST_ASSERT_EQUAL(!seldom, goe_motion_paced(m));
         const double turning =
             seldom ? 0.0 : scene.speed_mps / scene.arc_radius_m; /* to the right: about Y, which is down */
         CHECK_CLOSE(0.01, turning, m->rate_rad_s[1]);
