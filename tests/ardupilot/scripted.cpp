@@ -227,7 +227,7 @@ AP_Terrain *terrain() {
 void AP_AHRS::get_quat_body_to_ned(Quaternion &q) const { q = scripted.q; }
 bool AP_AHRS::have_inertial_nav() const { return scripted.has_nav; }
 bool AP_AHRS::home_is_set() const { return scripted.home_set; }
-int8_t AP_AHRS::get_ekf_type() const { return scripted.ekf_type; }
+AP_AHRS::EKFType AP_AHRS::configured_ekf_type() const { return EKFType(scripted.ekf_type); }
 int8_t AP_AHRS::get_primary_core_index() const { return scripted.core; }
 void AP_AHRS::get_relative_position_D_home(float &down) const { down = scripted.position.z - scripted.down_of_home; }
 

@@ -21,7 +21,7 @@ void AP_GOE::read_pose()
 {
     Pose pose{};
     const AP_AHRS &ahrs = AP::ahrs();
-    const int16_t filter = 16 * ahrs.get_ekf_type() + ahrs.get_primary_core_index();
+    const int16_t filter = 16 * int16_t(ahrs.configured_ekf_type()) + ahrs.get_primary_core_index();
     if (filter != _filter) {
         // another one, with another heading and perhaps another origin
         _filter = filter;

@@ -7,6 +7,7 @@
 
 class AP_AHRS {
   public:
+    enum class EKFType : uint8_t { TWO = 2, THREE = 3 };
     void get_quat_body_to_ned(Quaternion &q) const;
     bool have_inertial_nav() const;
     bool get_relative_position_NED_origin_float(Vector3f &position) const;
@@ -14,7 +15,7 @@ class AP_AHRS {
     void get_relative_position_D_home(float &down) const;
     bool home_is_set() const;
     bool get_origin(Location &origin) const;
-    int8_t get_ekf_type() const;
+    EKFType configured_ekf_type() const;
     int8_t get_primary_core_index() const;
     uint32_t getLastYawResetAngle(float &change);
     uint32_t getLastPosNorthEastReset(Vector2f &change);
