@@ -133,54 +133,57 @@ end
 
 -- --------------------------------------------------------------------------------------------------------- signature, FIPS 180-4
 
-local WORD = 0xFFFFFFFF -- integers have 32 bits in ArduPilot, 64 elsewhere: the same code for both
-local ROUND = {
-    0x428a2f98, 0x71374491, 0xb5c0fbcf, 0xe9b5dba5, 0x3956c25b, 0x59f111f1, 0x923f82a4, 0xab1c5ed5,
-    0xd807aa98, 0x12835b01, 0x243185be, 0x550c7dc3, 0x72be5d74, 0x80deb1fe, 0x9bdc06a7, 0xc19bf174,
-    0xe49b69c1, 0xefbe4786, 0x0fc19dc6, 0x240ca1cc, 0x2de92c6f, 0x4a7484aa, 0x5cb0a9dc, 0x76f988da,
-    0x983e5152, 0xa831c66d, 0xb00327c8, 0xbf597fc7, 0xc6e00bf3, 0xd5a79147, 0x06ca6351, 0x14292967,
-    0x27b70a85, 0x2e1b2138, 0x4d2c6dfc, 0x53380d13, 0x650a7354, 0x766a0abb, 0x81c2c92e, 0x92722c85,
-    0xa2bfe8a1, 0xa81a664b, 0xc24b8b70, 0xc76c51a3, 0xd192e819, 0xd6990624, 0xf40e3585, 0x106aa070,
-    0x19a4c116, 0x1e376c08, 0x2748774c, 0x34b0bcb5, 0x391c0cb3, 0x4ed8aa4a, 0x5b9cca4f, 0x682e6ff3,
-    0x748f82ee, 0x78a5636f, 0x84c87814, 0x8cc70208, 0x90befffa, 0xa4506ceb, 0xbef9a3f7, 0xc67178f2,
-}
-local BLOCK = 64
-
--- One block into the eight words of the hash.
-local function hash_block(hash, text, at)
-    local w = { string.unpack(">I4I4I4I4I4I4I4I4I4I4I4I4I4I4I4I4", text, at) }
-    for i = 17, 64 do
-        local x, y = w[i - 15], w[i - 2]
-        w[i] = (w[i - 16] + w[i - 7] + (((x >> 7) | (x << 25)) ~ ((x >> 18) | (x << 14)) ~ (x >> 3)) +
-            (((y >> 17) | (y << 15)) ~ ((y >> 19) | (y << 13)) ~ (y >> 10))) & WORD
-    end
-    local a, b, c, d, e, f, g, h = table.unpack(hash)
-    for i = 1, 64 do
-        local one = h + (((e >> 6) | (e << 26)) ~ ((e >> 11) | (e << 21)) ~ ((e >> 25) | (e << 7))) +
-            (g ~ (e & (f ~ g))) + ROUND[i] + w[i]
-        local two = (((a >> 2) | (a << 30)) ~ ((a >> 13) | (a << 19)) ~ ((a >> 22) | (a << 10))) + ((a & b) | (c & (a | b)))
-        h, g, f, e, d, c, b, a = g, f, e, (d + one) & WORD, c, b, a, (one + two) & WORD
-    end
-    local words = { a, b, c, d, e, f, g, h }
-    for i = 1, 8 do
-        hash[i] = (hash[i] + words[i]) & WORD
-    end
-end
-
-local function new_hash(text)
-    local zeros = (BLOCK - (#text + 9) % BLOCK) % BLOCK
-    return {
-        words = { 0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a, 0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19 },
-        text = text .. "\x80" .. string.rep("\0", zeros + 4) .. string.pack(">I4", 8 * #text),
-        at = 1,
+local new_hash, go_on_hashing
+do
+    local WORD = 0xFFFFFFFF -- integers have 32 bits in ArduPilot, 64 elsewhere: the same code for both
+    local ROUND = {
+        0x428a2f98, 0x71374491, 0xb5c0fbcf, 0xe9b5dba5, 0x3956c25b, 0x59f111f1, 0x923f82a4, 0xab1c5ed5,
+        0xd807aa98, 0x12835b01, 0x243185be, 0x550c7dc3, 0x72be5d74, 0x80deb1fe, 0x9bdc06a7, 0xc19bf174,
+        0xe49b69c1, 0xefbe4786, 0x0fc19dc6, 0x240ca1cc, 0x2de92c6f, 0x4a7484aa, 0x5cb0a9dc, 0x76f988da,
+        0x983e5152, 0xa831c66d, 0xb00327c8, 0xbf597fc7, 0xc6e00bf3, 0xd5a79147, 0x06ca6351, 0x14292967,
+        0x27b70a85, 0x2e1b2138, 0x4d2c6dfc, 0x53380d13, 0x650a7354, 0x766a0abb, 0x81c2c92e, 0x92722c85,
+        0xa2bfe8a1, 0xa81a664b, 0xc24b8b70, 0xc76c51a3, 0xd192e819, 0xd6990624, 0xf40e3585, 0x106aa070,
+        0x19a4c116, 0x1e376c08, 0x2748774c, 0x34b0bcb5, 0x391c0cb3, 0x4ed8aa4a, 0x5b9cca4f, 0x682e6ff3,
+        0x748f82ee, 0x78a5636f, 0x84c87814, 0x8cc70208, 0x90befffa, 0xa4506ceb, 0xbef9a3f7, 0xc67178f2,
     }
-end
+    local BLOCK = 64
 
--- One block more; true: that was the last one.
-local function go_on_hashing(work)
-    hash_block(work.words, work.text, work.at)
-    work.at = work.at + BLOCK
-    return work.at > #work.text
+    -- One block into the eight words of the hash.
+    local function hash_block(hash, text, at)
+        local w = { string.unpack(">I4I4I4I4I4I4I4I4I4I4I4I4I4I4I4I4", text, at) }
+        for i = 17, 64 do
+            local x, y = w[i - 15], w[i - 2]
+            w[i] = (w[i - 16] + w[i - 7] + (((x >> 7) | (x << 25)) ~ ((x >> 18) | (x << 14)) ~ (x >> 3)) +
+                (((y >> 17) | (y << 15)) ~ ((y >> 19) | (y << 13)) ~ (y >> 10))) & WORD
+        end
+        local a, b, c, d, e, f, g, h = table.unpack(hash)
+        for i = 1, 64 do
+            local one = h + (((e >> 6) | (e << 26)) ~ ((e >> 11) | (e << 21)) ~ ((e >> 25) | (e << 7))) +
+                (g ~ (e & (f ~ g))) + ROUND[i] + w[i]
+            local two = (((a >> 2) | (a << 30)) ~ ((a >> 13) | (a << 19)) ~ ((a >> 22) | (a << 10))) + ((a & b) | (c & (a | b)))
+            h, g, f, e, d, c, b, a = g, f, e, (d + one) & WORD, c, b, a, (one + two) & WORD
+        end
+        local words = { a, b, c, d, e, f, g, h }
+        for i = 1, 8 do
+            hash[i] = (hash[i] + words[i]) & WORD
+        end
+    end
+
+    function new_hash(text)
+        local zeros = (BLOCK - (#text + 9) % BLOCK) % BLOCK
+        return {
+            words = { 0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a, 0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19 },
+            text = text .. "\x80" .. string.rep("\0", zeros + 4) .. string.pack(">I4", 8 * #text),
+            at = 1,
+        }
+    end
+
+    -- One block more; true: that was the last one.
+    function go_on_hashing(work)
+        hash_block(work.words, work.text, work.at)
+        work.at = work.at + BLOCK
+        return work.at > #work.text
+    end
 end
 
 -- 32 bytes, or 64 hexadecimal digits. nil: there is no file; false: there is one, which is none.
@@ -204,185 +207,191 @@ local key = read_key()
 
 -- ------------------------------------------------------------------------------------------------------------- what it says
 
--- Another number at a place is the same track, renumbered, or another obstacle. A track is reported without a pause.
-local function doubt_another(before, number, doubts)
-    if before and before.number ~= number and not before.is_past then
-        local has_paused = millis() - before.heard_ms > SILENCE_MS
-        doubts[#doubts + 1] = has_paused and math.huge or before.renumbered
-    end
-end
-
-local function take_hazard(payload)
-    local lat, lon, _, _, down = string.unpack("<i4i4fff", payload, 13)
-    local action, flags = string.unpack("<BB", payload, 66)
-    local number, place = payload:sub(9, 12), payload:byte(65)
-    if flags & ORDER_FLAG == 0 or action == 0 then
-        local one = standing and standing.named[place]
-        if one and one.number == number then
-            one.is_past = true
-        end
-        return
-    end
-    if action > HOLD then
-        return
-    end
-    if action ~= GO_AROUND and (lat == NOTHING_KNOWN or lon == NOTHING_KNOWN or not (math.abs(down) < DOWN_FAR_M)) then
-        return
-    end
-    local named, doubts = standing and standing.named or {}, standing and standing.doubts or {}
-    doubt_another(named[place], number, doubts)
-    named[place] = { number = number, is_past = false, heard_ms = millis(), renumbered = renumbered }
-    standing = { named = named, doubts = doubts, action = action, lat = lat, lon = lon, down = down }
-end
-
--- A doubt is over if a track has got a new number since then. Otherwise it is never over: the obstacle was given up.
-local function judge_doubts()
-    local kept = {}
-    for _, count in ipairs(standing.doubts) do
-        if count >= renumbered then
-            kept[#kept + 1] = math.huge
+local take
+do
+    -- Another number at a place is the same track, renumbered, or another obstacle. A track is reported without a pause.
+    local function doubt_another(before, number, doubts)
+        if before and before.number ~= number and not before.is_past then
+            local has_paused = millis() - before.heard_ms > SILENCE_MS
+            doubts[#doubts + 1] = has_paused and math.huge or before.renumbered
         end
     end
-    standing.doubts = kept
-end
 
-local function take_status(payload)
-    renumbered = string.unpack("<H", payload, 15)
-    local has_ended = string.unpack("<B", payload, 30) == 0
-    if not standing then
-        overruled = overruled and not has_ended -- the order ended in a silence
-        return
+    local function take_hazard(payload)
+        local lat, lon, _, _, down = string.unpack("<i4i4fff", payload, 13)
+        local action, flags = string.unpack("<BB", payload, 66)
+        local number, place = payload:sub(9, 12), payload:byte(65)
+        if flags & ORDER_FLAG == 0 or action == 0 then
+            local one = standing and standing.named[place]
+            if one and one.number == number then
+                one.is_past = true
+            end
+            return
+        end
+        if action > HOLD then
+            return
+        end
+        if action ~= GO_AROUND and (lat == NOTHING_KNOWN or lon == NOTHING_KNOWN or not (math.abs(down) < DOWN_FAR_M)) then
+            return
+        end
+        local named, doubts = standing and standing.named or {}, standing and standing.doubts or {}
+        doubt_another(named[place], number, doubts)
+        named[place] = { number = number, is_past = false, heard_ms = millis(), renumbered = renumbered }
+        standing = { named = named, doubts = doubts, action = action, lat = lat, lon = lon, down = down }
     end
-    judge_doubts()
-    if not has_ended then
-        standing.over_ms = nil
-    elseif not standing.over_ms then
-        standing.over_ms = millis()
+
+    -- A doubt is over if a track has got a new number since then. Otherwise it is never over: the obstacle was given up.
+    local function judge_doubts()
+        local kept = {}
+        for _, count in ipairs(standing.doubts) do
+            if count >= renumbered then
+                kept[#kept + 1] = math.huge
+            end
+        end
+        standing.doubts = kept
     end
-end
 
-local function take(payload, kind)
-    received_ms = millis()
-    if kind == HAZARD then
-        take_hazard(payload)
-    else
-        take_status(payload)
+    local function take_status(payload)
+        renumbered = string.unpack("<H", payload, 15)
+        local has_ended = string.unpack("<B", payload, 30) == 0
+        if not standing then
+            overruled = overruled and not has_ended -- the order ended in a silence
+            return
+        end
+        judge_doubts()
+        if not has_ended then
+            standing.over_ms = nil
+        elseif not standing.over_ms then
+            standing.over_ms = millis()
+        end
     end
-end
 
-local beat_ms = {}   -- by sender: when the autopilot took an unsigned HEARTBEAT of it
-local signed_ms = {} -- by link: when the autopilot took a signed HEARTBEAT of anybody
-local newest = {}    -- by sender: low and high half of the time of its latest right signature
-local judged         -- the signed message that is being hashed
-local latest         -- its signature, or that of the one before: the parser hands an unknown signed message over once more when
--- the next one's checksum comes
-
--- A signature's time grows with each message of a sender. An old one is a message that somebody plays once more.
-local function is_new(sender, message)
-    local low, high = string.unpack("<I3I3", message, SIGNATURE_AT + 1)
-    local last = newest[sender]
-    if last and (high < last.high or (high == last.high and low <= last.low)) then
-        return false
-    end
-    return true, { low = low, high = high }
-end
-
-local function begin_judging(message, link, kind, frame)
-    local signature = message:sub(SIGNATURE_AT, SIGNATURE_AT + 12)
-    if signature == latest then
-        return
-    end
-    latest = signature
-    judged = {
-        message = message,
-        kind = kind,
-        sender = sender_of(message, link) .. signature:sub(1, 1),
-        signature = signature,
-        work = new_hash(key .. message:sub(3, 3) .. frame .. message:sub(CHECKSUM_AT, CHECKSUM_AT + 1) .. signature:sub(1, 7)),
-    }
-end
-
-local function go_on_judging()
-    local of = judged
-    if not go_on_hashing(of.work) then
-        return
-    end
-    judged = nil
-    local hash = string.pack(">I4I4", of.work.words[1], of.work.words[2])
-    local new, time = is_new(of.sender, of.message)
-    if hash:sub(1, 6) ~= of.signature:sub(8) or not new then
-        say_once("wrong or old signature, ignored")
-        return
-    end
-    newest[of.sender] = time
-    take(payload_of(of.message, of.kind), of.kind)
-end
-
-local function is_recent(when_ms)
-    return when_ms and millis() - when_ms <= BEAT_MS
-end
-
--- A HEARTBEAT comes only where the autopilot takes it: what it shows is how the link is used.
-local function take_heartbeat(message, link)
-    if not frame_of(message, HEARTBEAT) then
-        return
-    elseif is_signed(message) then
-        signed_ms[link] = millis()
-    else
-        beat_ms[sender_of(message, link)] = millis()
+    function take(payload, kind)
+        received_ms = millis()
+        if kind == HAZARD then
+            take_hazard(payload)
+        else
+            take_status(payload)
+        end
     end
 end
 
--- Whether a message may count at all, which costs less to know than its checksum. What the parser does not know comes as it is.
-local function may_count(message, link)
-    local is_open = is_recent(beat_ms[sender_of(message, link)]) and not is_recent(signed_ms[link])
-    if message:byte(8) ~= own_system then
-        return false
-    elseif is_signed(message) and not key then
-        say_once("signed message and no goe.key, ignored")
-        return false
-    elseif not is_signed(message) and (key or not is_open) then
-        say_once("unsigned message, ignored")
-        return false
-    end
-    return true
-end
+local receive
+do
+    local beat_ms = {}   -- by sender: when the autopilot took an unsigned HEARTBEAT of it
+    local signed_ms = {} -- by link: when the autopilot took a signed HEARTBEAT of anybody
+    local newest = {}    -- by sender: low and high half of the time of its latest right signature
+    local judged         -- the signed message that is being hashed
+    local latest         -- its signature, or that of the one before: the parser hands an unknown signed message over once more when
+    -- the next one's checksum comes
 
-local function take_message(message, link)
-    local kind = KINDS[id_of(message)]
-    if key == false or not kind then
-        return
-    elseif kind == HEARTBEAT then
-        take_heartbeat(message, link)
-        return
-    end
-    local frame = may_count(message, link) and frame_of(message, kind)
-    if not frame then
-        return
-    elseif key then
-        begin_judging(message, link, kind, frame)
-    else
-        take(payload_of(message, kind), kind)
-    end
-end
-
--- True: there may be more to do.
-local function receive()
-    if judged then
-        go_on_judging()
-        return true
-    end
-    for _ = 1, TAKEN_AT_ONCE do
-        local message, link = mavlink:receive_chan()
-        if not message then
+    -- A signature's time grows with each message of a sender. An old one is a message that somebody plays once more.
+    local function is_new(sender, message)
+        local low, high = string.unpack("<I3I3", message, SIGNATURE_AT + 1)
+        local last = newest[sender]
+        if last and (high < last.high or (high == last.high and low <= last.low)) then
             return false
         end
-        take_message(message, link)
-        if judged then
-            return true
+        return true, { low = low, high = high }
+    end
+
+    local function begin_judging(message, link, kind, frame)
+        local signature = message:sub(SIGNATURE_AT, SIGNATURE_AT + 12)
+        if signature == latest then
+            return
+        end
+        latest = signature
+        judged = {
+            message = message,
+            kind = kind,
+            sender = sender_of(message, link) .. signature:sub(1, 1),
+            signature = signature,
+            work = new_hash(key .. message:sub(3, 3) .. frame .. message:sub(CHECKSUM_AT, CHECKSUM_AT + 1) .. signature:sub(1, 7)),
+        }
+    end
+
+    local function go_on_judging()
+        local of = judged
+        if not go_on_hashing(of.work) then
+            return
+        end
+        judged = nil
+        local hash = string.pack(">I4I4", of.work.words[1], of.work.words[2])
+        local new, time = is_new(of.sender, of.message)
+        if hash:sub(1, 6) ~= of.signature:sub(8) or not new then
+            say_once("wrong or old signature, ignored")
+            return
+        end
+        newest[of.sender] = time
+        take(payload_of(of.message, of.kind), of.kind)
+    end
+
+    local function is_recent(when_ms)
+        return when_ms and millis() - when_ms <= BEAT_MS
+    end
+
+    -- A HEARTBEAT comes only where the autopilot takes it: what it shows is how the link is used.
+    local function take_heartbeat(message, link)
+        if not frame_of(message, HEARTBEAT) then
+            return
+        elseif is_signed(message) then
+            signed_ms[link] = millis()
+        else
+            beat_ms[sender_of(message, link)] = millis()
         end
     end
-    return true
+
+    -- Whether a message may count at all, which costs less to know than its checksum. What the parser does not know comes as it is.
+    local function may_count(message, link)
+        local is_open = is_recent(beat_ms[sender_of(message, link)]) and not is_recent(signed_ms[link])
+        if message:byte(8) ~= own_system then
+            return false
+        elseif is_signed(message) and not key then
+            say_once("signed message and no goe.key, ignored")
+            return false
+        elseif not is_signed(message) and (key or not is_open) then
+            say_once("unsigned message, ignored")
+            return false
+        end
+        return true
+    end
+
+    local function take_message(message, link)
+        local kind = KINDS[id_of(message)]
+        if key == false or not kind then
+            return
+        elseif kind == HEARTBEAT then
+            take_heartbeat(message, link)
+            return
+        end
+        local frame = may_count(message, link) and frame_of(message, kind)
+        if not frame then
+            return
+        elseif key then
+            begin_judging(message, link, kind, frame)
+        else
+            take(payload_of(message, kind), kind)
+        end
+    end
+
+    -- True: there may be more to do.
+    function receive()
+        if judged then
+            go_on_judging()
+            return true
+        end
+        for _ = 1, TAKEN_AT_ONCE do
+            local message, link = mavlink:receive_chan()
+            if not message then
+                return false
+            end
+            take_message(message, link)
+            if judged then
+                return true
+            end
+        end
+        return true
+    end
 end
 
 -- ------------------------------------------------------------------------------------------------------------------ bounds
