@@ -19,12 +19,15 @@
 #define LEAP_MIN_S 0.02f       /* added, times the speed: an error of the time stamp */
 #define LEAP_MIN_M_S2 40.0f    /* added, times the squared time: an aircraft's acceleration */
 #define LEAP_STRAYS 5.0f       /* added, times the largest recent distance: positions err */
-#define STRAY_M 0.0625f        /* unit of goe_motion_t.stray */
-#define STRAY_LEFT 0.7f        /* of it is left in the next image */
-#define STRAY_UNKNOWN 255u     /* 16 m, which allows no jump: eight images later 0.9 m are left */
-#define PATH_MARKS 6           /* marks in the memory of the smoothed path: half a second, if each image is one */
-#define OFF_MAX_M 1.0e7f       /* more off the path is no flight: positions are within 1e6 m */
-#define MOVING_M_S 1.0f        /* least velocity that predicts a place: held positions have none */
+#define LEAP_SIGMAS 6.0f       /* at least added, times position_white_sd_m */
+#define SINGLE_RATIO2 (1.25f * 1.25f) /* most squared sum of the recent jumps over the squared jump, of a single one */
+#define UNDONE_S 10.0f                /* in which recent jumps are forgotten */
+#define STRAY_M 0.0625f               /* unit of goe_motion_t.stray */
+#define STRAY_LEFT 0.7f               /* of it is left in the next image */
+#define STRAY_UNKNOWN 255u            /* 16 m, which allows no jump: eight images later 0.9 m are left */
+#define PATH_MARKS 6     /* marks in the memory of the smoothed path: half a second, if each image is one */
+#define OFF_MAX_M 1.0e7f /* more off the path is no flight: positions are within 1e6 m */
+#define MOVING_M_S 1.0f  /* least velocity that predicts a place: held positions have none */
 
 /* Sets T's Z axis in (north, east): the configured heading, or the direction of the nose. */
 static void fix_heading(goe_motion_t *motion, const goe_settings_t *settings, const float body_to_ned[9]) {
@@ -132,40 +135,57 @@ static void add_arm(const goe_motion_t *motion, const goe_settings_t *settings, 
 
 /* Remembers the largest recent distance of an image from the predicted place. */
 static void note_stray(goe_motion_t *motion, float distance_m) {
-    const float stray = distance_m / STRAY_M;
+    const float stray = goe_larger(STRAY_LEFT * (float)motion->stray, distance_m / STRAY_M);
     motion->stray = (uint8_t)(stray < (float)STRAY_UNKNOWN ? stray : (float)STRAY_UNKNOWN);
 }
 
 /* Whether the path predicts this image. Positions held from fix to fix have no path, and a hover has none either. */
 static bool predicts(const goe_motion_t *motion, const float before_m[2], float since_s) {
     const float way2 = goe_square(motion->dx_m - before_m[0]) + goe_square(motion->dz_m - before_m[1]);
-    return goe_motion_paced(motion) && since_s < PACE_SPAN_MAX_S && way2 >= goe_square(MOVING_M_S * since_s);
+    const float speed2 = goe_square(motion->velocity_m_s[0]) + goe_square(motion->velocity_m_s[1]);
+    return goe_motion_paced(motion) && since_s < PACE_SPAN_MAX_S && way2 >= goe_square(MOVING_M_S * since_s) &&
+           speed2 > goe_square(MOVING_M_S);
+}
+
+/* Least distance of a jump from the predicted place: what an aircraft flies, a time stamp errs by, or noise explains. */
+static float least_leap_m(const goe_motion_t *motion, float white_m, float since_s) {
+    const float *v = motion->velocity_m_s;
+    const float speed_m_s = sqrtf(goe_square(v[0]) + goe_square(v[1]));
+    const float stray_m = goe_larger(LEAP_STRAYS * STRAY_M * (float)motion->stray, LEAP_SIGMAS * white_m);
+    return LEAP_MIN_M + LEAP_MIN_S * speed_m_s + LEAP_MIN_M_S2 * since_s * since_s + stray_m;
+}
+
+/* Whether a jump is not one of a series in one direction. Such a series corrects a position that drifts, so it is motion. */
+static bool is_single(const float undone_m[2], const float leap_m[2], float leap2) {
+    const float both2 = goe_square(undone_m[0] + leap_m[0]) + goe_square(undone_m[1] + leap_m[1]);
+    return both2 <= SINGLE_RATIO2 * leap2;
 }
 
 /* Removes a jump that no reset announced, and that no aircraft can fly. The jump is the way from the predicted place to the given one. */
-static bool undo_leap(goe_motion_t *motion, const float before_m[2], float since_s) {
-    const float *v = motion->velocity_m_s;
-    const float x_m = before_m[0] + v[0] * since_s;
-    const float z_m = before_m[1] + v[1] * since_s;
+static bool undo_leap(goe_motion_t *motion, float white_m, const float before_m[2], float since_s) {
+    const float x_m = before_m[0] + motion->velocity_m_s[0] * since_s;
+    const float z_m = before_m[1] + motion->velocity_m_s[1] * since_s;
     const float leap_m[2] = {motion->dx_m - x_m, motion->dz_m - z_m};
-    const float distance_m = sqrtf(goe_square(leap_m[0]) + goe_square(leap_m[1]));
-    const float speed_m_s = sqrtf(goe_square(v[0]) + goe_square(v[1]));
-    const float stray_m = STRAY_M * (float)motion->stray;
-    const float least_m =
-        LEAP_MIN_M + LEAP_MIN_S * speed_m_s + LEAP_MIN_M_S2 * since_s * since_s + LEAP_STRAYS * stray_m;
+    const float leap2 = goe_square(leap_m[0]) + goe_square(leap_m[1]);
+    const float left = 1.0f - since_s / UNDONE_S; /* since_s ends at PACE_SPAN_MAX_S */
     float leap_ne_m[2];
+    motion->undone_m[0] *= left;
+    motion->undone_m[1] *= left;
     if (!predicts(motion, before_m, since_s)) {
         motion->stray = STRAY_UNKNOWN;
         return false;
     }
-    if (speed_m_s <= MOVING_M_S || distance_m <= least_m || !goe_within(distance_m, OFF_MAX_M)) {
-        note_stray(motion, goe_larger(STRAY_LEFT * stray_m, distance_m));
+    if (!(leap2 > goe_square(least_leap_m(motion, white_m, since_s))) || !goe_within(leap2, OFF_MAX_M * OFF_MAX_M) ||
+        !is_single(motion->undone_m, leap_m, leap2)) {
+        note_stray(motion, sqrtf(leap2));
         return false;
     }
-    note_stray(motion, STRAY_LEFT * stray_m); /* so the way back, from one wrong position, is the easier jump */
+    note_stray(motion, 0.0f);
     goe_motion_turn(motion, leap_m, leap_ne_m);
-    motion->origin_ne_m[0] += leap_ne_m[0];
-    motion->origin_ne_m[1] += leap_ne_m[1];
+    for (size_t i = 0; i < 2; i++) {
+        motion->undone_m[i] += leap_m[i];
+        motion->origin_ne_m[i] += leap_ne_m[i];
+    }
     motion->dx_m = x_m;
     motion->dz_m = z_m;
     return true;
@@ -245,16 +265,15 @@ static void follow_path(goe_motion_t *motion, const float place_m[3], float sinc
     }
 }
 
-/* Updates rate and path from the poses since the mark. An image that leapt is no mark: a path that none confirms begins again. */
-static void find_pace(goe_motion_t *motion, const float attitude[4], const float place_m[3], bool leapt,
-                      goe_view_t *view) {
+/* Updates rate and path from the poses since the mark. */
+static void find_pace(goe_motion_t *motion, const float attitude[4], const float place_m[3], goe_view_t *view) {
     float half[3] = {0.0f, 0.0f, 0.0f};
     const bool first = !motion->detected; /* no earlier image fixed T */
     const float since_s = goe_time_between_s(motion->mark_us, motion->time_us, PACE_SPAN_MAX_US);
     const bool soon = !first && since_s < PACE_SPAN_MIN_S;
     const bool continues =
         !first && since_s < PACE_SPAN_MAX_S && (soon || half_turn(attitude, motion->mark_attitude, half));
-    const bool marked = !continues || (since_s >= PACE_SPAN_S && !leapt);
+    const bool marked = !continues || since_s >= PACE_SPAN_S;
     follow_path(motion, place_m, since_s, continues, marked, view);
     if (soon) {
         return;
@@ -273,19 +292,20 @@ static void find_pace(goe_motion_t *motion, const float attitude[4], const float
 
 /* For the filter: removes a jump that no reset announced from the own motion, and updates rate and path. before_m, before_us: camera and
  * time of the previous image. Returns whether there was a jump. */
-static GOE_NOINLINE bool follow_pace(goe_motion_t *motion, const float position[3], const float before_m[2],
-                                     int64_t before_us, goe_view_t *view) {
+static GOE_NOINLINE bool follow_pace(goe_motion_t *motion, const goe_settings_t *settings, const float position[3],
+                                     const float before_m[2], int64_t before_us, goe_view_t *view) {
     const goe_pose_t *pose = &view->image->pose;
     const float arm_n = position[0] - pose->position_ned_m[0];
     const float arm_e = position[1] - pose->position_ned_m[1];
-    const bool leapt = undo_leap(motion, before_m, goe_time_between_s(before_us, motion->time_us, PACE_SPAN_MAX_US));
+    const bool leapt = undo_leap(motion, settings->navigation.position_white_sd_m, before_m,
+                                 goe_time_between_s(before_us, motion->time_us, PACE_SPAN_MAX_US));
     if (motion->mark_us == before_us) { /* a span ended there: its rate does not contain this image's own error */
         memcpy(motion->rate_before_rad_s, motion->rate_rad_s, sizeof motion->rate_rad_s);
     }
     const float place_m[3] = {motion->dx_m - (motion->heading_cos * arm_e - motion->heading_sin * arm_n),
                               motion->dz_m - (motion->heading_cos * arm_n + motion->heading_sin * arm_e),
                               pose->position_ned_m[2]};
-    find_pace(motion, pose->attitude, place_m, leapt, view);
+    find_pace(motion, pose->attitude, place_m, view);
     return leapt;
 }
 #endif
@@ -329,7 +349,7 @@ bool goe_motion_follow(goe_motion_t *motion, const goe_settings_t *settings, goe
 #if GOE_AUGMENTED
     if (settings->method == GOE_METHOD_FILTER) {
         motion->mark_m[2] += jump_m[2]; /* the path jumps along */
-        leapt = follow_pace(motion, position, before_m, before_us, view);
+        leapt = follow_pace(motion, settings, position, before_m, before_us, view);
     }
 #endif
     return leapt;
