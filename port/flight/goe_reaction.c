@@ -33,6 +33,7 @@
 #define GAIN 0.2f      /* by which the better one must exceed it */
 #define NEVER (-2.0f * GOE_FLIGHT_CLEAR_MAX)
 
+#define PAST_M 10.0f     /* of a climb's target beyond the place where the obstacle is passed */
 #define CLIMB_SLACK 0.5f /* of the clearance: a climb that lacks less than this is not replaced */
 
 #define SIDE_REMEMBERED_S 10.0f
@@ -688,7 +689,21 @@ static void forget_side(goe_flight_reaction_t *r, uint32_t now_us) {
     }
 }
 
-/* Raises the height of a climb with the tops on the course. */
+/* Leads a climb on, past an obstacle on its line: at the order the obstacle may have seemed nearer, and an autopilot circles the target. */
+static void lead_past(const look_t *look, goe_flight_reaction_t *r, int i) {
+    const goe_flight_slot_t *slot = &look->flight->slot[i];
+    const float reach_m = goe_flight_slot_radius_m(slot) + look->flight->settings.margin_m + PAST_M;
+    float ahead_m;
+    float target_m;
+    float aside_m;
+    relate(r->from_ned_m, r->course_ne, slot->center_ne_m, &ahead_m, &aside_m);
+    relate(r->from_ned_m, r->course_ne, r->target_ned_m, &target_m, &aside_m);
+    const float more_m = goe_flight_larger(ahead_m + reach_m - target_m, 0.0f);
+    r->target_ned_m[0] += more_m * r->course_ne[0];
+    r->target_ned_m[1] += more_m * r->course_ne[1];
+}
+
+/* Raises a climb with the tops on the course, and leads it past what it has to pass. */
 static void rise(goe_flight_t *flight, const look_t *look) {
     goe_flight_reaction_t *r = &flight->reaction;
     for (int i = 0; i < GOE_FLIGHT_SLOTS && is_up(r->action); i++) {
@@ -699,6 +714,9 @@ static void rise(goe_flight_t *flight, const look_t *look) {
         meet(look, i, &e);
         if (e.has_top && is_on_course(&e)) {
             r->target_ned_m[2] = goe_flight_smaller(r->target_ned_m[2], e.top_down_m);
+        }
+        if (r->action == GOE_FLIGHT_CLIMB && counts_at_end(look, i) && is_in_the_way(look, i, 0.0f)) {
+            lead_past(look, r, i);
         }
     }
 }

@@ -7,6 +7,7 @@
 #include "flown.h"
 #include "goe_clear.h"
 #include "goe_reaction.h"
+#include "goe_slot.h"
 
 #define SPEED_M_S 20.0f
 
@@ -770,6 +771,23 @@ static void a_climb_stays_active_until_the_top_is_passed(void) {
     }
 }
 
+/* [GOE_FLIGHT_CLIMB] GIVEN a climb WHEN its obstacle proves to be farther, or another one on the line appears THEN the target moves on past
+ * them, and never back: an autopilot that circles the target passes them. */
+static void a_climb_leads_past_its_obstacle(void) {
+    put(0, 110.0f, 0.5f, 12.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_CLIMB, decide(0.5));
+    put(0, 170.0f, 0.5f, 12.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_CLIMB, decide(0.2));
+    const float past_m = 170.0f + goe_flight_slot_radius_m(&flight.slot[0]) + flight.settings.margin_m;
+    TEST_ASSERT_TRUE(flight.reaction.target_ned_m[0] > past_m && flight.reaction.target_ned_m[0] < past_m + 20.0f);
+    put(0, 130.0f, 0.5f, 12.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_CLIMB, decide(0.2));
+    TEST_ASSERT_TRUE(flight.reaction.target_ned_m[0] > past_m);
+    put(1, 200.0f, 0.5f, 12.0f);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_CLIMB, decide(0.2));
+    TEST_ASSERT_TRUE(flight.reaction.target_ned_m[0] > 200.0f + flight.settings.margin_m);
+}
+
 /* [goe_flight_position_t.velocity_ned_m_s] Above 1 m/s there is a course, and so an order. */
 static void a_slow_aircraft_has_a_course(void) {
     for (int slow = 0; slow < 2; slow++) {
@@ -869,6 +887,7 @@ int main(void) {
     RUN_TEST(flying_back_is_given_time);
     RUN_TEST(a_climb_is_left_when_it_comes_too_late);
     RUN_TEST(a_climb_stays_active_until_the_top_is_passed);
+    RUN_TEST(a_climb_leads_past_its_obstacle);
     RUN_TEST(a_slow_aircraft_has_a_course);
     RUN_TEST(the_order_of_an_aircraft_that_stops_ends);
     RUN_TEST(the_side_of_before_is_preferred);

@@ -5,10 +5,6 @@
 #include <px4_platform_common/log.h>
 #include <string.h>
 
-extern "C" {
-#include "goe_geometry.h"
-}
-
 namespace {
 
 /* Its own work queue. Stack: the deepest call is an image's update; README.md has the figures. Priority: as PX4's low one. */
@@ -19,7 +15,6 @@ constexpr uint64_t RANGE_FRESH_US = 300000;
 constexpr uint64_t DEAD_RECKONING_US =
     3000000; /* after which its end is believed: PX4's flag flickers once a second at first */
 constexpr float CM_PER_M = 100.f;
-constexpr float CLIMB_STEP_M = 50.f; /* of a climb's target, so that noise seldom moves it */
 constexpr float US_PER_S = 1.0e6f;
 constexpr float DISTANCE_MAX_M = 200.f;        /* of obstacle_distance: its readers need no more */
 constexpr uint32_t TARGET_DELAY_SD_US = 20000; /* one sigma of GOE_LT_DELAY */
@@ -299,30 +294,6 @@ void Goe::watch_obstacles(GoeOrders::Vehicle &vehicle) {
     }
 }
 
-/* A climb leads straight on over the obstacle, but PX4 circles the target, and the layer's is where the obstacle seemed to be at the order.
- * On a circle that ends before the obstacle is passed, the climb would never end. */
-goe_flight_assessment_t Goe::led_past() const {
-    goe_flight_assessment_t assessment = _assessment;
-    goe_flight_obstacle_t obstacle;
-    const float speed_m_s = sqrtf(_course_m_s[0] * _course_m_s[0] + _course_m_s[1] * _course_m_s[1]);
-    if (assessment.action != GOE_FLIGHT_CLIMB || !(speed_m_s > 1.f) || !is_followed(assessment.avoided, obstacle)) {
-        return assessment;
-    }
-    float *const target_m = assessment.target_ned_m;
-    const float course[2] = {_course_m_s[0] / speed_m_s, _course_m_s[1] / speed_m_s};
-    const float past_m = course[0] * (obstacle.center_ned_m[0] - target_m[0]) +
-                         course[1] * (obstacle.center_ned_m[1] - target_m[1]) + obstacle.radius_m +
-                         _used.flight.margin_m;
-    const float ahead_m = CLIMB_STEP_M * ceilf(past_m / CLIMB_STEP_M);
-    target_m[0] += ahead_m * course[0];
-    target_m[1] += ahead_m * course[1];
-    if (_flight.origin_known) {
-        goe_flight_geometry_lat_lon(_flight.origin_lat_e7, _flight.origin_lon_e7, target_m, &assessment.target_lat_e7,
-                                    &assessment.target_lon_e7);
-    }
-    return assessment;
-}
-
 void Goe::follow_orders(uint64_t now_us) {
     vehicle_command_s command;
     goe_flight_obstacle_t avoided;
@@ -339,7 +310,7 @@ void Goe::follow_orders(uint64_t now_us) {
     vehicle.altitude_known = _position.z_global;
     vehicle.origin_alt_m = _position.ref_alt;
     vehicle.now_us = now_us;
-    if (_orders.follow(led_past(), vehicle, _parameters.react, _parameters.resume != 0, command)) {
+    if (_orders.follow(_assessment, vehicle, _parameters.react, _parameters.resume != 0, command)) {
         command.target_system = command.source_system = _vehicle_status.system_id;
         command.target_component = _vehicle_status.component_id;
         command.source_component = _vehicle_status.component_id;

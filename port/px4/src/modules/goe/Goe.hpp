@@ -78,7 +78,6 @@ class Goe final : public GoeModuleBase, public px4::ScheduledWorkItem {
     void publish_obstacles(uint64_t now_us);
     void publish_distances(uint64_t now_us);
     void publish_status(uint64_t now_us);
-    goe_flight_assessment_t led_past() const;
     void follow_orders(uint64_t now_us);
     void report_operator();
     void report_dead_reckoning(uint64_t now_us);
