@@ -62,11 +62,11 @@ typedef struct {
 #if GOE_AUGMENTED
     uint8_t stray;       /* largest recent distance of an image from the predicted place, 1/16 m; 255: not known */
     uint8_t marks;       /* marks of the smoothed path, saturating */
-    float undone_m[2];   /* sum of the removed jumps, X and Z in T; it fades */
     float rate_rad_s[3]; /* mean since the mark, T axes */
     float rate_before_rad_s[3];        /* the rate before the mark, free of the latest attitude's error */
     float velocity_m_s[3];             /* of the smoothed path: X and Z in T, down */
     float mark_attitude[4], mark_m[3]; /* attitude, and place on the smoothed path, at mark_us: the mark */
+    float undone_m[2];                 /* sum of the removed jumps, X and Z in T; it fades */
     int64_t mark_us;
 #endif
 } goe_motion_t;

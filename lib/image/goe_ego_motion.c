@@ -20,14 +20,14 @@
 #define LEAP_MIN_M_S2 40.0f    /* added, times the squared time: an aircraft's acceleration */
 #define LEAP_STRAYS 5.0f       /* added, times the largest recent distance: positions err */
 #define LEAP_SIGMAS 6.0f       /* at least added, times position_white_sd_m */
-#define SINGLE_RATIO2 (1.25f * 1.25f) /* most squared sum of the recent jumps over the squared jump, of a single one */
-#define UNDONE_S 10.0f                /* in which recent jumps are forgotten */
-#define STRAY_M 0.0625f               /* unit of goe_motion_t.stray */
-#define STRAY_LEFT 0.7f               /* of it is left in the next image */
-#define STRAY_UNKNOWN 255u            /* 16 m, which allows no jump: eight images later 0.9 m are left */
-#define PATH_MARKS 6     /* marks in the memory of the smoothed path: half a second, if each image is one */
-#define OFF_MAX_M 1.0e7f /* more off the path is no flight: positions are within 1e6 m */
-#define MOVING_M_S 1.0f  /* least velocity that predicts a place: held positions have none */
+#define SINGLE_RATIO 1.25f     /* largest sum of the recent jumps and a single one, over the latter */
+#define UNDONE_S 10.0f         /* in which recent jumps are forgotten */
+#define STRAY_M 0.0625f        /* unit of goe_motion_t.stray */
+#define STRAY_LEFT 0.7f        /* of it is left in the next image */
+#define STRAY_UNKNOWN 255u     /* 16 m, which allows no jump: eight images later 0.9 m are left */
+#define PATH_MARKS 6           /* marks in the memory of the smoothed path: half a second, if each image is one */
+#define OFF_MAX_M 1.0e7f       /* more off the path is no flight: positions are within 1e6 m */
+#define MOVING_M_S 1.0f        /* least velocity that predicts a place: held positions have none */
 
 /* Sets T's Z axis in (north, east): the configured heading, or the direction of the nose. */
 static void fix_heading(goe_motion_t *motion, const goe_settings_t *settings, const float body_to_ned[9]) {
@@ -142,23 +142,20 @@ static void note_stray(goe_motion_t *motion, float distance_m) {
 /* Whether the path predicts this image. Positions held from fix to fix have no path, and a hover has none either. */
 static bool predicts(const goe_motion_t *motion, const float before_m[2], float since_s) {
     const float way2 = goe_square(motion->dx_m - before_m[0]) + goe_square(motion->dz_m - before_m[1]);
-    const float speed2 = goe_square(motion->velocity_m_s[0]) + goe_square(motion->velocity_m_s[1]);
-    return goe_motion_paced(motion) && since_s < PACE_SPAN_MAX_S && way2 >= goe_square(MOVING_M_S * since_s) &&
-           speed2 > goe_square(MOVING_M_S);
+    return goe_motion_paced(motion) && since_s < PACE_SPAN_MAX_S && way2 >= goe_square(MOVING_M_S * since_s);
 }
 
 /* Least distance of a jump from the predicted place: what an aircraft flies, a time stamp errs by, or noise explains. */
 static float least_leap_m(const goe_motion_t *motion, float white_m, float since_s) {
-    const float *v = motion->velocity_m_s;
-    const float speed_m_s = sqrtf(goe_square(v[0]) + goe_square(v[1]));
+    const float speed_m_s = goe_absolute(motion->velocity_m_s[0]) + goe_absolute(motion->velocity_m_s[1]);
     const float stray_m = goe_larger(LEAP_STRAYS * STRAY_M * (float)motion->stray, LEAP_SIGMAS * white_m);
     return LEAP_MIN_M + LEAP_MIN_S * speed_m_s + LEAP_MIN_M_S2 * since_s * since_s + stray_m;
 }
 
 /* Whether a jump is not one of a series in one direction. Such a series corrects a position that drifts, so it is motion. */
-static bool is_single(const float undone_m[2], const float leap_m[2], float leap2) {
-    const float both2 = goe_square(undone_m[0] + leap_m[0]) + goe_square(undone_m[1] + leap_m[1]);
-    return both2 <= SINGLE_RATIO2 * leap2;
+static bool is_single(const float undone_m[2], const float leap_m[2], float distance_m) {
+    const float sum2 = goe_square(undone_m[0] + leap_m[0]) + goe_square(undone_m[1] + leap_m[1]);
+    return sum2 <= goe_square(SINGLE_RATIO * distance_m);
 }
 
 /* Removes a jump that no reset announced, and that no aircraft can fly. The jump is the way from the predicted place to the given one. */
@@ -166,7 +163,7 @@ static bool undo_leap(goe_motion_t *motion, float white_m, const float before_m[
     const float x_m = before_m[0] + motion->velocity_m_s[0] * since_s;
     const float z_m = before_m[1] + motion->velocity_m_s[1] * since_s;
     const float leap_m[2] = {motion->dx_m - x_m, motion->dz_m - z_m};
-    const float leap2 = goe_square(leap_m[0]) + goe_square(leap_m[1]);
+    const float distance_m = sqrtf(goe_square(leap_m[0]) + goe_square(leap_m[1]));
     const float left = 1.0f - since_s / UNDONE_S; /* since_s ends at PACE_SPAN_MAX_S */
     float leap_ne_m[2];
     motion->undone_m[0] *= left;
@@ -175,20 +172,19 @@ static bool undo_leap(goe_motion_t *motion, float white_m, const float before_m[
         motion->stray = STRAY_UNKNOWN;
         return false;
     }
-    if (!(leap2 > goe_square(least_leap_m(motion, white_m, since_s))) || !goe_within(leap2, OFF_MAX_M * OFF_MAX_M) ||
-        !is_single(motion->undone_m, leap_m, leap2)) {
-        note_stray(motion, sqrtf(leap2));
-        return false;
+    const bool leapt = distance_m > least_leap_m(motion, white_m, since_s) && goe_within(distance_m, OFF_MAX_M) &&
+                       is_single(motion->undone_m, leap_m, distance_m);
+    note_stray(motion, leapt ? 0.0f : distance_m);
+    if (leapt) {
+        goe_motion_turn(motion, leap_m, leap_ne_m);
+        for (size_t i = 0; i < 2; i++) {
+            motion->undone_m[i] += leap_m[i];
+            motion->origin_ne_m[i] += leap_ne_m[i];
+        }
+        motion->dx_m = x_m;
+        motion->dz_m = z_m;
     }
-    note_stray(motion, 0.0f);
-    goe_motion_turn(motion, leap_m, leap_ne_m);
-    for (size_t i = 0; i < 2; i++) {
-        motion->undone_m[i] += leap_m[i];
-        motion->origin_ne_m[i] += leap_ne_m[i];
-    }
-    motion->dx_m = x_m;
-    motion->dz_m = z_m;
-    return true;
+    return leapt;
 }
 
 /* The rotation `turn` from mark to now, in NED (now = turn mark). half_ned: vector part over scalar part, which is half the angle. */

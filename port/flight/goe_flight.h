@@ -28,7 +28,7 @@
  *             the seal. An estimator that returns GOE_CORRUPTED starts again; if its settings are lost, it takes those of another
  *             slot. Until it has a position again, the slot keeps its position, hazard and warning, marked suspect. [F4] The rest
  *             (poses, clocks, positions, the active order) is not sealed.
- * Cost        On a Cortex-M4F (gcc), measured in instructions: a sample at most 1,720; a frame 49,800 for each obstacle in it (it
+ * Cost        On a Cortex-M4F (gcc), measured in instructions: a sample at most 1,720; a frame 49,900 for each obstacle in it (it
  *             includes goe_update(), whose proved limit goe.h states); an assessment 38,100 with one obstacle and 23,200 for each
  *             further one with a position. While there is a hazard or an order, an assessment also examines paths: at most 6 times
  *             (4 + 4 GOE_FLIGHT_SLOTS), each against every obstacle. goe_flight_obstacle() 980; goe_flight_sectors() 13,200 with one
