@@ -66,8 +66,8 @@ typedef struct {
     float rate_before_rad_s[3];        /* the rate before the mark, free of the latest attitude's error */
     float velocity_m_s[3];             /* of the smoothed path: X and Z in T, down */
     float mark_attitude[4], mark_m[3]; /* attitude, and place on the smoothed path, at mark_us: the mark */
-    float undone_m[2];                 /* sum of the removed jumps, X and Z in T; it fades */
-    int64_t mark_us;
+    uint32_t mark_us;                  /* low half of the time */
+    int16_t undone[2];                 /* sum of the removed jumps, X and Z in T, 1/256 m; it fades */
 #endif
 } goe_motion_t;
 

@@ -10,7 +10,7 @@ set -euo pipefail
 . "$(dirname "$0")/../tests/flags/common.sh"
 cd "$scratch"
 
-limit_bytes=2110
+limit_bytes=2100
 m4f=(-mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard)
 mapfile -t flight_sources < <(find "$root/port/flight" -name '*.c' | sort)
 mapfile -t mavlink_sources < <(find "$root/port/mavlink" -name '*.c' | sort)

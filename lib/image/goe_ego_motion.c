@@ -13,21 +13,23 @@
 #define PACE_SPAN_MIN_S 0.045f   /* least time since the latest mark that gives them */
 #define PACE_SPAN_MAX_US 600000u /* longest span: a longer one gives only a mean */
 #define PACE_SPAN_MAX_S ((float)PACE_SPAN_MAX_US * GOE_S_PER_US)
-#define PACE_COSINE_MIN 0.9f   /* cosine of half the rotation in a span: more is a jump, not flight */
-#define LEVEL_NOSE_MIN 1.0e-3f /* least horizontal part of the nose's unit vector that gives a heading */
-#define LEAP_MIN_M 0.5f        /* least distance of a jump from the predicted place: a smaller one does no harm */
-#define LEAP_MIN_S 0.02f       /* added, times the speed: an error of the time stamp */
-#define LEAP_MIN_M_S2 40.0f    /* added, times the squared time: an aircraft's acceleration */
-#define LEAP_STRAYS 5.0f       /* added, times the largest recent distance: positions err */
-#define LEAP_SIGMAS 6.0f       /* at least added, times position_white_sd_m */
-#define SINGLE_RATIO 1.25f     /* largest sum of the recent jumps and a single one, over the latter */
-#define UNDONE_S 10.0f         /* in which recent jumps are forgotten */
-#define STRAY_M 0.0625f        /* unit of goe_motion_t.stray */
-#define STRAY_LEFT 0.7f        /* of it is left in the next image */
-#define STRAY_UNKNOWN 255u     /* 16 m, which allows no jump: eight images later 0.9 m are left */
-#define PATH_MARKS 6           /* marks in the memory of the smoothed path: half a second, if each image is one */
-#define OFF_MAX_M 1.0e7f       /* more off the path is no flight: positions are within 1e6 m */
-#define MOVING_M_S 1.0f        /* least velocity that predicts a place: held positions have none */
+#define PACE_COSINE_MIN 0.9f     /* cosine of half the rotation in a span: more is a jump, not flight */
+#define LEVEL_NOSE_MIN 1.0e-3f   /* least horizontal part of the nose's unit vector that gives a heading */
+#define LEAP_MIN_M 0.5f          /* least distance of a jump from the predicted place: a smaller one does no harm */
+#define LEAP_MIN_S 0.02f         /* added, times the speed: an error of the time stamp */
+#define LEAP_MIN_M_S2 40.0f      /* added, times the squared time: an aircraft's acceleration */
+#define LEAP_STRAYS 5.0f         /* added, times the largest recent distance: positions err */
+#define LEAP_SIGMAS 6.0f         /* at least added, times position_white_sd_m */
+#define SINGLE_RATIO 1.25f       /* largest sum of the recent jumps and a single one, over the latter */
+#define UNDONE_M (1.0f / 256.0f) /* unit of goe_motion_t.undone */
+#define UNDONE_MAX_M 127.0f      /* most that it holds */
+#define UNDONE_S 10.0f           /* in which recent jumps are forgotten */
+#define STRAY_M 0.0625f          /* unit of goe_motion_t.stray */
+#define STRAY_LEFT 0.7f          /* of it is left in the next image */
+#define STRAY_UNKNOWN_M 16.0f    /* allows no jump: eight images later 0.9 m are left */
+#define PATH_MARKS 6             /* marks in the memory of the smoothed path: half a second, if each image is one */
+#define OFF_MAX_M 1.0e7f         /* more off the path is no flight: positions are within 1e6 m */
+#define MOVING_M_S 1.0f          /* least velocity that predicts a place: held positions have none */
 
 /* Sets T's Z axis in (north, east): the configured heading, or the direction of the nose. */
 static void fix_heading(goe_motion_t *motion, const goe_settings_t *settings, const float body_to_ned[9]) {
@@ -136,7 +138,7 @@ static void add_arm(const goe_motion_t *motion, const goe_settings_t *settings, 
 /* Remembers the largest recent distance of an image from the predicted place. */
 static void note_stray(goe_motion_t *motion, float distance_m) {
     const float stray = goe_larger(STRAY_LEFT * (float)motion->stray, distance_m / STRAY_M);
-    motion->stray = (uint8_t)(stray < (float)STRAY_UNKNOWN ? stray : (float)STRAY_UNKNOWN);
+    motion->stray = (uint8_t)(stray < (float)UINT8_MAX ? stray : (float)UINT8_MAX);
 }
 
 /* Whether the path predicts this image. Positions held from fix to fix have no path, and a hover has none either. */
@@ -153,9 +155,8 @@ static float least_leap_m(const goe_motion_t *motion, float white_m, float since
 }
 
 /* Whether a jump is not one of a series in one direction. Such a series corrects a position that drifts, so it is motion. */
-static bool is_single(const float undone_m[2], const float leap_m[2], float distance_m) {
-    const float sum2 = goe_square(undone_m[0] + leap_m[0]) + goe_square(undone_m[1] + leap_m[1]);
-    return sum2 <= goe_square(SINGLE_RATIO * distance_m);
+static bool is_single(const float sum_m[2], float distance_m) {
+    return goe_square(sum_m[0]) + goe_square(sum_m[1]) <= goe_square(SINGLE_RATIO * distance_m);
 }
 
 /* Removes a jump that no reset announced, and that no aircraft can fly. The jump is the way from the predicted place to the given one. */
@@ -164,26 +165,25 @@ static bool undo_leap(goe_motion_t *motion, float white_m, const float before_m[
     const float z_m = before_m[1] + motion->velocity_m_s[1] * since_s;
     const float leap_m[2] = {motion->dx_m - x_m, motion->dz_m - z_m};
     const float distance_m = sqrtf(goe_square(leap_m[0]) + goe_square(leap_m[1]));
-    const float left = 1.0f - since_s / UNDONE_S; /* since_s ends at PACE_SPAN_MAX_S */
+    const float left_m = UNDONE_M * (1.0f - since_s / UNDONE_S); /* since_s ends at PACE_SPAN_MAX_S */
+    float undone_m[2] = {left_m * (float)motion->undone[0], left_m * (float)motion->undone[1]};
+    const float sum_m[2] = {undone_m[0] + leap_m[0], undone_m[1] + leap_m[1]};
+    const bool predicted = predicts(motion, before_m, since_s);
+    const bool leapt = predicted && distance_m > least_leap_m(motion, white_m, since_s) &&
+                       goe_within(distance_m, OFF_MAX_M) && is_single(sum_m, distance_m);
     float leap_ne_m[2];
-    motion->undone_m[0] *= left;
-    motion->undone_m[1] *= left;
-    if (!predicts(motion, before_m, since_s)) {
-        motion->stray = STRAY_UNKNOWN;
-        return false;
-    }
-    const bool leapt = distance_m > least_leap_m(motion, white_m, since_s) && goe_within(distance_m, OFF_MAX_M) &&
-                       is_single(motion->undone_m, leap_m, distance_m);
-    note_stray(motion, leapt ? 0.0f : distance_m);
     if (leapt) {
         goe_motion_turn(motion, leap_m, leap_ne_m);
         for (size_t i = 0; i < 2; i++) {
-            motion->undone_m[i] += leap_m[i];
+            undone_m[i] = goe_larger(sum_m[i] < UNDONE_MAX_M ? sum_m[i] : UNDONE_MAX_M, -UNDONE_MAX_M);
             motion->origin_ne_m[i] += leap_ne_m[i];
         }
         motion->dx_m = x_m;
         motion->dz_m = z_m;
     }
+    note_stray(motion, predicted ? (leapt ? 0.0f : distance_m) : STRAY_UNKNOWN_M);
+    motion->undone[0] = (int16_t)(undone_m[0] / UNDONE_M);
+    motion->undone[1] = (int16_t)(undone_m[1] / UNDONE_M);
     return leapt;
 }
 
@@ -262,10 +262,13 @@ static void follow_path(goe_motion_t *motion, const float place_m[3], float sinc
 }
 
 /* Updates rate and path from the poses since the mark. */
-static void find_pace(goe_motion_t *motion, const float attitude[4], const float place_m[3], goe_view_t *view) {
+static void find_pace(goe_motion_t *motion, const float attitude[4], const float place_m[3], float before_s,
+                      goe_view_t *view) {
     float half[3] = {0.0f, 0.0f, 0.0f};
     const bool first = !motion->detected; /* no earlier image fixed T */
-    const float since_s = goe_time_between_s(motion->mark_us, motion->time_us, PACE_SPAN_MAX_US);
+    const uint32_t since_us = (uint32_t)(uint64_t)motion->time_us - motion->mark_us;
+    const float marked_s = (float)(since_us < PACE_SPAN_MAX_US ? since_us : PACE_SPAN_MAX_US) * GOE_S_PER_US;
+    const float since_s = goe_larger(before_s, marked_s); /* mark_us is half a time */
     const bool soon = !first && since_s < PACE_SPAN_MIN_S;
     const bool continues =
         !first && since_s < PACE_SPAN_MAX_S && (soon || half_turn(attitude, motion->mark_attitude, half));
@@ -282,7 +285,7 @@ static void find_pace(goe_motion_t *motion, const float attitude[4], const float
     }
     if (marked) {
         memcpy(motion->mark_attitude, attitude, sizeof motion->mark_attitude);
-        motion->mark_us = motion->time_us;
+        motion->mark_us = (uint32_t)(uint64_t)motion->time_us;
     }
 }
 
@@ -293,15 +296,16 @@ static GOE_NOINLINE bool follow_pace(goe_motion_t *motion, const goe_settings_t 
     const goe_pose_t *pose = &view->image->pose;
     const float arm_n = position[0] - pose->position_ned_m[0];
     const float arm_e = position[1] - pose->position_ned_m[1];
-    const bool leapt = undo_leap(motion, settings->navigation.position_white_sd_m, before_m,
-                                 goe_time_between_s(before_us, motion->time_us, PACE_SPAN_MAX_US));
-    if (motion->mark_us == before_us) { /* a span ended there: its rate does not contain this image's own error */
+    const float before_s = goe_time_between_s(before_us, motion->time_us, PACE_SPAN_MAX_US);
+    const bool leapt = undo_leap(motion, settings->navigation.position_white_sd_m, before_m, before_s);
+    if (motion->mark_us ==
+        (uint32_t)(uint64_t)before_us) { /* a span ended there: its rate does not contain this image's own error */
         memcpy(motion->rate_before_rad_s, motion->rate_rad_s, sizeof motion->rate_rad_s);
     }
     const float place_m[3] = {motion->dx_m - (motion->heading_cos * arm_e - motion->heading_sin * arm_n),
                               motion->dz_m - (motion->heading_cos * arm_n + motion->heading_sin * arm_e),
                               pose->position_ned_m[2]};
-    find_pace(motion, pose->attitude, place_m, view);
+    find_pace(motion, pose->attitude, place_m, before_s, view);
     return leapt;
 }
 #endif

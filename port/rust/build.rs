@@ -130,7 +130,7 @@ fn estimator_bytes() -> usize {
         (_, false, _) => 944,
         (true, true, false) => 1752,
         (false, true, false) => 1400,
-        (true, true, true) => 2104,
+        (true, true, true) => 2096,
         (false, true, true) => 1744,
     }
 }

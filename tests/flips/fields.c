@@ -12,7 +12,7 @@ const field_t fields[] = {
     NUMBER(motion.time_us) NUMBER(motion.start_time_us) NUMBER(motion.heading_cos) NUMBER(motion.heading_sin)
     NUMBER(motion.origin_ne_m) NUMBER(motion.dx_m) NUMBER(motion.dz_m)
     NUMBER(motion.height_m) NUMBER(motion.height_jump_m) NUMBER(motion.ground_m) DECIDES(motion.detected) DECIDES(motion.reset_count)
-    DECIDES(motion.stray) DECIDES(motion.marks) NUMBER(motion.undone_m) NUMBER(motion.rate_rad_s) NUMBER(motion.velocity_m_s) NUMBER(motion.rate_before_rad_s)
+    DECIDES(motion.stray) DECIDES(motion.marks) NUMBER(motion.undone) NUMBER(motion.rate_rad_s) NUMBER(motion.velocity_m_s) NUMBER(motion.rate_before_rad_s)
     NUMBER(motion.mark_attitude) NUMBER(motion.mark_m) NUMBER(motion.mark_us)
     NUMBER(fault_counts) DECIDES(ready) DECIDES(seal) DECIDES(camera_to_body) DECIDES(settings)
     DECIDES(estimate.method) DECIDES(estimate.model) DECIDES(estimate.valid) DECIDES(estimate.fresh)

@@ -796,8 +796,8 @@ STEPS = b"""
 
 
 def test_ardupilots_lua_takes_all_local_variables() -> None:
-    """ArduPilot's Lua accepts 100 local variables in a function (MAXVARS in its lparser.c), Lua itself 200: the script still
-    loads behind 100 more."""
+    """ArduPilot's Lua accepts 100 local variables in a function (MAXVARS in its lparser.c), Lua itself 200: the script
+    still loads behind 100 more."""
     more = "local " + ", ".join(f"more_{number}" for number in range(100)) + "\n"
     loaded = lua53.LuaRuntime().eval("load")(more + SCRIPT.read_text(encoding="utf-8"))
     assert not isinstance(loaded, tuple), loaded

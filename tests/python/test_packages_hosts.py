@@ -250,7 +250,7 @@ def consume(prefix: Path, out: Path, source: Path, package: str, **environment: 
 def test_pkg_config(built: tuple[str, Path], tmp_path: Path) -> None:
     name, build = built
     passed("cmake", "--install", build, "--prefix", tmp_path / "stage")
-    bytes_of_estimator = {"whole": 2104, "parts": 1400}[name]
+    bytes_of_estimator = {"whole": 2096, "parts": 1400}[name]
     text = consume(tmp_path / "stage", tmp_path / "starts", STARTS, "goe")
     assert text.startswith(f"goe {FACTS.version}: ok, {bytes_of_estimator} bytes, self check 0x00")
     if name == "whole":
@@ -346,7 +346,7 @@ def test_conan_create(staged: Path, tmp_path: Path) -> None:
     need("conan")
     home = str(tmp_path / "home")
     passed("conan", "profile", "detect", CONAN_HOME=home)
-    for create, size in (("conan create .", 2104), ("conan create . -o '&:with_target_motion=False'", 1752)):
+    for create, size in (("conan create .", 2096), ("conan create . -o '&:with_target_motion=False'", 1752)):
         text = passed("sh", "-c", f"{create} 2>&1", folder=staged / "conan" / "goe", CONAN_HOME=home)
         assert f"goe {FACTS.version}: ok, {size} bytes, self check 0x00, GOE_STATUS" in text
     for wrong in ("window_max=65", "cameras_max=two"):
