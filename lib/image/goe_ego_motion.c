@@ -169,8 +169,9 @@ static bool undo_leap(goe_motion_t *motion, float white_m, const float before_m[
     float undone_m[2] = {left_m * (float)motion->undone[0], left_m * (float)motion->undone[1]};
     const float sum_m[2] = {undone_m[0] + leap_m[0], undone_m[1] + leap_m[1]};
     const bool predicted = predicts(motion, before_m, since_s);
-    const bool leapt = predicted && distance_m > least_leap_m(motion, white_m, since_s) &&
-                       goe_within(distance_m, OFF_MAX_M) && is_single(sum_m, distance_m);
+    const bool quiet = motion->stray < UINT8_MAX && goe_within(distance_m, OFF_MAX_M);
+    const bool leapt =
+        predicted && quiet && distance_m > least_leap_m(motion, white_m, since_s) && is_single(sum_m, distance_m);
     float leap_ne_m[2];
     if (leapt) {
         goe_motion_turn(motion, leap_m, leap_ne_m);
