@@ -142,7 +142,7 @@ typedef enum {
 
 /* Pose of the aircraft AT THE TIME OF EXPOSURE. A jump of the autopilot's filter is not motion. [A27] Supply the filter's reset
  * counter and, if known, the jump: new minus old position, summed since the last image that was taken. A jump of unknown size,
- * also of attitude, starts a new track. height_m may jump or not. The filter compensates horizontal, unannounced jumps. */
+ * also of attitude, starts a new track. height_m may jump or not. The filter compensates single, horizontal, unannounced jumps. */
 typedef struct {
     int64_t time_us;         /* any origin; increases (equal: by camera number); not GOE_TIME_UNKNOWN */
     float position_ned_m[3]; /* the vehicle's reference point, each +-1e6; choose an origin within 10 km */

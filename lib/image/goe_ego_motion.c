@@ -299,8 +299,8 @@ static GOE_NOINLINE bool follow_pace(goe_motion_t *motion, const goe_settings_t 
     const float arm_e = position[1] - pose->position_ned_m[1];
     const float before_s = goe_time_between_s(before_us, motion->time_us, PACE_SPAN_MAX_US);
     const bool leapt = undo_leap(motion, settings->navigation.position_white_sd_m, before_m, before_s);
-    if (motion->mark_us ==
-        (uint32_t)(uint64_t)before_us) { /* a span ended there: its rate does not contain this image's own error */
+    /* a span ended there: its rate does not contain this image's own error */
+    if (motion->mark_us == (uint32_t)(uint64_t)before_us) {
         memcpy(motion->rate_before_rad_s, motion->rate_rad_s, sizeof motion->rate_rad_s);
     }
     const float place_m[3] = {motion->dx_m - (motion->heading_cos * arm_e - motion->heading_sin * arm_n),

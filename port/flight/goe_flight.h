@@ -214,7 +214,8 @@ typedef enum {
     GOE_FLIGHT_NONE = 0,
     GOE_FLIGHT_LEFT = 1,      /* fly to target_ned_m, to the left of the obstacle as viewed along the course */
     GOE_FLIGHT_RIGHT = 2,     /* fly to target_ned_m, to the right of the obstacle */
-    GOE_FLIGHT_CLIMB = 3,     /* fly straight on and climb to target_ned_m, which is above the top at two sigma */
+    GOE_FLIGHT_CLIMB = 3,     /* fly straight on and climb to target_ned_m, which is above the top at two sigma; it
+                               * moves on past the obstacle */
     GOE_FLIGHT_GO_AROUND = 4, /* abort the approach */
     GOE_FLIGHT_HOLD = 5       /* turn away to target_ned_m before the obstacle and loiter: no side is clear, and a climb
                                  comes too late */

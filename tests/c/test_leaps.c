@@ -163,7 +163,7 @@ static void a_series_of_jumps_is_motion(void) {
 }
 
 /* [goe_ego_motion.c] GIVEN positions that drift by 1 m/s and are corrected by a step each second THEN hardly any step is removed, because the
- * steps together are motion: the camera is where the positions are. */
+ * steps together are motion. */
 static void a_drift_that_steps_correct_is_no_jump(void) {
     start(&jumped);
     for (int k = 0; k < 15 * IMAGES; k++) {
