@@ -14,8 +14,9 @@ extern "C" {
 enum { GOE_X0, GOE_Z0, GOE_ORIENTATION, GOE_WIDTH, GOE_LENGTH, GOE_HEIGHT, GOE_QUANTITIES };
 
 /* Writes the covariance of x0_m, z0_m, orientation_deg, width_m, length_m, height_m of the latest estimate, in meters and
- * degrees. Rows and columns of a quantity that is not valid are 0. The diagonal contains the squared sigmas. For a stale
- * estimate of the filter the variances are larger: they include the growth with age.
+ * degrees. Rows and columns of a quantity that is not valid are 0. The diagonal contains the squared sigmas, up to rounding:
+ * 0.2 % of the variance plus 4e-7 of the largest one. For a stale estimate of the filter the variances are larger: they include
+ * the growth with age.
  * All elements off the diagonal are 0 for an estimate of the window method, and for one from before a restart or a change of
  * the model.
  *   covariance  always written, unless null; all zero after a failure

@@ -7,7 +7,9 @@
 #include "fuzz.h"
 #include "fuzz_input.h"
 
-#define ROUNDING 1.0e-3       /* of a sigma or a correlation that was stored as float */
+#define ROUNDING 1.0e-3 /* of a sigma or a correlation that was stored as float */
+#define SUM_ROUNDING                                                                                                   \
+    4.0e-7 /* of the largest variance: a small one is the difference of sums that contain it, in float */
 #define UNIT_ROUNDING 2.0e-5f /* of a unit vector's squared norm */
 #define AGE_MAX_S 4000.5f     /* 4000 s, rounded to float */
 #define METERS_MAX 1.0e6f     /* no position or sigma of the filter method is beyond */
@@ -146,6 +148,14 @@ static void check_correlations(float covariance[GOE_QUANTITIES][GOE_QUANTITIES])
     }
 }
 
+static double largest_variance(float covariance[GOE_QUANTITIES][GOE_QUANTITIES]) {
+    double largest = 0.0;
+    for (int i = 0; i < GOE_QUANTITIES; i++) {
+        largest = fmax(largest, (double)covariance[i][i]);
+    }
+    return largest;
+}
+
 /* The diagonal equals the squared sigmas: bit by bit for the window method, otherwise up to rounding. For a stale answer it is at least as
  * large. */
 static void check_diagonal(const goe_estimate_t *e, float covariance[GOE_QUANTITIES][GOE_QUANTITIES]) {
@@ -161,9 +171,9 @@ static void check_diagonal(const goe_estimate_t *e, float covariance[GOE_QUANTIT
                 FUZZ_CHECK(is_zero(covariance[i][j]));
             }
         } else if (of_filter) {
-            const double reported = sqrt((double)covariance[i][i]);
-            FUZZ_CHECK(reported >= (double)sigma[i] * (1.0 - ROUNDING) &&
-                       reported <= (double)sigma[i] * (1.0 + ROUNDING));
+            const double variance = (double)sigma[i] * (double)sigma[i];
+            const double rounding = 2.0 * ROUNDING * variance + SUM_ROUNDING * largest_variance(covariance);
+            FUZZ_CHECK(fabs((double)covariance[i][i] - variance) <= rounding);
         } else if (e->method == GOE_METHOD_FILTER) {
             FUZZ_CHECK(sqrt((double)covariance[i][i]) >= (double)sigma[i] * (1.0 - ROUNDING));
         } else if (stationary || i > GOE_Z0) {
