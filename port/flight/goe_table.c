@@ -328,14 +328,18 @@ static bool is_ahead(const goe_flight_t *flight, const goe_flight_slot_t *slot) 
            slot->hazard.conflict_probability >= flight->settings.conflict_probability_max;
 }
 
+/* Whether an order is active, or one to a side ended shortly before: its obstacle must still be reported, then without an order. */
+static bool is_ordered(const goe_flight_reaction_t *reaction) {
+    return reaction->action != GOE_FLIGHT_NONE || reaction->side != 0;
+}
+
 void goe_flight_table_age(goe_flight_t *flight, uint32_t now_us) {
     goe_flight_candidate_bury(&flight->waiting, now_us);
+    const float ordered_s = goe_flight_larger(ORDERED_S, flight->settings.track_timeout_s);
+    const float most_s = is_ordered(&flight->reaction) ? ordered_s : flight->settings.track_timeout_s;
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         goe_flight_slot_t *slot = &flight->slot[i];
         const float undetected_s = goe_flight_between_s(now_us, slot->detected_us);
-        const bool ordered = i == flight->reaction.slot || flight->reaction.action != GOE_FLIGHT_NONE;
-        const float most_s =
-            ordered ? goe_flight_larger(ORDERED_S, flight->settings.track_timeout_s) : flight->settings.track_timeout_s;
         slot->used = slot->used && (undetected_s <= most_s || is_ahead(flight, slot));
         if (!slot->used) {
             release(&flight->reaction, i);

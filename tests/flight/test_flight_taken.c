@@ -253,8 +253,8 @@ static void a_passed_obstacle_in_view_makes_room_for_one_ahead(void) {
 }
 
 /* [flight.track_timeout_s]
- * GIVEN any table THEN a track undetected for track_timeout_s is given up, or for 30 s while an order is active; but not an obstacle ahead. The
- * order forgets a track that is given up. */
+ * GIVEN any table THEN a track undetected for track_timeout_s is given up, or for 30 s while an order is active or the side of an ended one is
+ * remembered; but not an obstacle ahead. The order forgets a track that is given up. */
 static void an_old_track_is_given_up(void) {
     int given_up = 0;
     int kept = 0;
@@ -264,6 +264,7 @@ static void an_old_track_is_given_up(void) {
         copy = *flight;
         copy.settings.track_timeout_s = one_in(3) ? 40.0f : 10.0f;
         copy.reaction.action = (uint8_t)(one_in(2) ? GOE_FLIGHT_NONE : GOE_FLIGHT_LEFT);
+        copy.reaction.side = (int8_t)(one_in(2) ? 0 : 1);
         copy.reaction.slot = (int8_t)(one_in(2) ? -1 : (int)between(0.0, 3.99));
         copy.reaction.edge = (int8_t)(one_in(2) ? -1 : (int)between(0.0, 3.99));
         for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
@@ -275,7 +276,7 @@ static void an_old_track_is_given_up(void) {
         for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
             const goe_flight_slot_t *slot = &before.slot[i];
             const double undetected_s = 1.0e-6 * (double)(now_us - slot->detected_us);
-            const bool ordered = before.reaction.action != GOE_FLIGHT_NONE || before.reaction.slot == i;
+            const bool ordered = before.reaction.action != GOE_FLIGHT_NONE || before.reaction.side != 0;
             const double most_s =
                 ordered ? fmax(30.0, (double)copy.settings.track_timeout_s) : (double)copy.settings.track_timeout_s;
             const bool ahead = slot->assessed && slot->hazard.tcpa_s > 0.0f &&
