@@ -3,12 +3,13 @@ goe_plane.lua: ArduPlane flies past what goe_companion has found. SPDX-License-I
 
 The companion (reaction mode "off", reports on) sends GOE_HAZARD for each obstacle and GOE_STATUS once a second. An obstacle with
 an order makes this script fly to the order's target in GUIDED, and back into the mode before when the obstacle is passed. Only
-from AUTO and CRUISE; GO_AROUND only while landing in AUTO, or after a side: then it raises the target. A landing is not gone on with
+from AUTO and CRUISE, or while it circles after such an order; GO_AROUND only while landing in AUTO, or after a side: then it raises the target. A landing is not gone on with
 after a side: from there the way to the runway is another one. Whoever chooses another mode meanwhile is not fought, nor
 whoever sends the aircraft elsewhere in GUIDED.
 
 Passed is an obstacle that the companion still reports, without an order any more. If it was given up, after HOLD, or if the
-companion falls silent, the aircraft stays at the target, circling, and a text warns the pilot: what is not seen may lie ahead.
+companion falls silent, the aircraft stays at the target, circling, and a text warns the pilot: what is not seen may lie ahead. A new
+order is flown from there, and the aircraft circles again at its end: back into the mode before leads only the pilot.
 
 The firmware's dialect need not know the messages: ArduPilot 4.7-dev hands scripts what its parser does not know, unsigned also
 where the link is signed. The script therefore judges each message itself. With a key (KEY_FILES) only a message with a right and new
@@ -66,6 +67,7 @@ local own_system = param:get("MAV_SYSID") or param:get("SYSID_THISMAV") or 1
 local mode_before -- while this script has changed the mode
 local mode_led -- in which the order is flown: GUIDED, or AUTO after a go-around
 local from_landing = false -- it was landing then
+local circling = false -- in GUIDED, at the target of an order that ended, until the pilot decides
 local overruled = false -- another mode or another target was chosen: until the order ends
 local held -- lat, lon of the latest target that was flown to
 local standing -- the order: named, doubts, action, lat, lon, down; over_ms: since then the companion gives none.
@@ -530,8 +532,9 @@ local function begin_order()
     local is_landing = mode == AUTO and vehicle:is_landing()
     if standing.action == GO_AROUND then
         go_around()
-    elseif (mode == AUTO or mode == CRUISE) and not vehicle:is_taking_off() and target() and vehicle:set_mode(GUIDED) then
-        mode_before, from_landing, held = mode, is_landing or mode_led == AUTO, nil
+    elseif (mode == AUTO or mode == CRUISE or circling) and not vehicle:is_taking_off() and target() and
+        (circling or vehicle:set_mode(GUIDED)) then
+        mode_before, from_landing, held = mode, is_landing or mode_led == AUTO or (circling and from_landing), nil
         mode_led = GUIDED
         say(TEXT_WARNING, "flying past an obstacle")
         fly_to_target()
@@ -584,13 +587,12 @@ end
 
 local function end_order()
     if mode_before and vehicle:get_mode() == GUIDED and not is_sent_elsewhere() then
-        if is_passed() then
+        if is_passed() and not circling then
             say(TEXT_INFO, "past it")
             vehicle:set_mode(mode_before)
-        elseif from_landing then
-            say(TEXT_WARNING, "broke off landing, circling: pilot to decide")
         else
-            say(TEXT_WARNING, "not surely past, circling: pilot to decide")
+            say(TEXT_WARNING, (from_landing and "broke off landing" or "not surely past") .. ", circling: pilot to decide")
+            circling = true
         end
     end
     forget_order()
@@ -615,6 +617,7 @@ end
 
 local function update()
     local is_busy = receive()
+    circling = circling and arming:is_armed() and vehicle:get_mode() == GUIDED and not is_sent_elsewhere()
     if enable:get() < 1 or not arming:is_armed() then
         forget_order()
     elseif standing then

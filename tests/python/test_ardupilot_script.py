@@ -384,6 +384,44 @@ def test_an_obstacle_that_was_given_up_is_not_flown_back_to(plane: Plane, action
     assert sum("circling" in text for text in plane.texts) == 1
 
 
+@pytest.mark.parametrize("landing", [False, True])
+def test_an_aircraft_that_circles_obeys_the_next_order_and_circles_again(plane: Plane, landing: bool) -> None:
+    plane.landing = landing
+    plane.send(plane.hazard())
+    plane.run(2.0, status=LEFT)
+    plane.run(5.0, status=0)
+    assert sum("circling" in text for text in plane.texts) == 1
+    plane.landing = False
+    plane.send(plane.hazard(id=9, lat=474003000))
+    plane.run(2.0, status=LEFT)
+    assert plane.places[-1][0] == 474003000
+    plane.send(plane.hazard(id=9, action=0, flags=0))
+    plane.run(1.0, status=0)
+    assert plane.modes == [GUIDED]
+    reason = "broke off landing" if landing else "not surely past"
+    assert [text for text in plane.texts if "circling" in text] == [f"GOE: {reason}, circling: pilot to decide"] * 2
+
+
+@pytest.mark.parametrize("choice", ["mode", "mode and back", "target", "disarm"])
+def test_an_aircraft_that_its_pilot_leads_away_circles_no_more(plane: Plane, choice: str) -> None:
+    plane.send(plane.hazard())
+    plane.run(2.0, status=LEFT)
+    plane.run(5.0, status=0)
+    if choice == "target":
+        plane.target = (474100000, 85460000, 52000)
+    elif choice == "disarm":
+        plane.armed = False
+    else:
+        plane.mode = LOITER
+    plane.run(1.0, status=0)
+    if choice in ("mode and back", "disarm"):
+        plane.mode, plane.armed = GUIDED, True
+    flown = len(plane.places)
+    plane.send(plane.hazard(id=9, lat=474003000))
+    plane.run(2.0, status=LEFT)
+    assert plane.modes == [GUIDED] and len(plane.places) == flown
+
+
 @pytest.mark.parametrize("given_up", [True, False])
 def test_the_order_is_past_with_each_obstacle_that_it_was_about(plane: Plane, given_up: bool) -> None:
     """The worst other obstacle carries the order whose obstacle was given up, or that turns to that other one."""
