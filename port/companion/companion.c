@@ -20,7 +20,10 @@
 #define DEAF_US 10000000      /* without a heartbeat, after which that is reported */
 #define BOX_FAULT_US 10000000 /* between two reports of boxes with the same fault ... */
 #define BOX_FAULTS_US 2000000 /* ... and with different faults */
-#define CLOCK_STEP_US 100000  /* by which the computer's own clock may be set without a word */
+#define GRAVITY_M_S2 9.80665
+#define DEG_PER_RAD 57.29577951308232
+#define WIDER 1.1            /* of the circle: less is a gust */
+#define CLOCK_STEP_US 100000 /* by which the computer's own clock may be set without a word */
 
 static int64_t clock_us(clockid_t clock) {
     struct timespec now;
@@ -301,6 +304,19 @@ static void watch_health(companion_t *c, int64_t now_us) {
     }
 }
 
+/* The layer assumes the circle of its turn if flight.loiter_m is smaller, and an autopilot that cannot fly a circle leaves it. */
+static void watch_circle(companion_t *c) {
+    const goe_flight_settings_t *layer = &c->config.flight;
+    const double speed_m_s = hypot((double)c->autopilot.position.vx, (double)c->autopilot.position.vy);
+    const double turn_m = speed_m_s * speed_m_s / (GRAVITY_M_S2 * tan((double)layer->bank_deg / DEG_PER_RAD));
+    if (layer->loiter_m > 0.0f && turn_m > WIDER * fmax((double)layer->loiter_m, c->turn_m)) {
+        c->turn_m = turn_m;
+        event("flight.loiter_m %.0f is smaller than the turn at %.0f m/s and %.0f degrees of bank: %.0f m is assumed; "
+              "set it and the autopilot's radius to more",
+              (double)layer->loiter_m, speed_m_s, (double)layer->bank_deg, turn_m);
+    }
+}
+
 /* Without reactions the order is advice. */
 static void show_advice(companion_t *c) {
     const goe_flight_assessment_t *a = &c->assessment;
@@ -341,6 +357,7 @@ static void assess(companion_t *c, int64_t now_us) {
         orders_follow(&c->orders, &c->assessment, &own, now_us);
         show_advice(c);
     }
+    watch_circle(c);
 }
 
 /* The UNIX clock gives the time of lines: a step of it makes those under way wrong, and is reported. */

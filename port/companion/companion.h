@@ -59,6 +59,7 @@ typedef struct {
     health_t health;
     screen_t screen;
     goe_flight_action_t advised; /* action that was shown last while reactions are off */
+    double turn_m; /* radius of the widest turn that was reported as wider than flight.loiter_m; 0: none */
     flight_record_t record;
     companion_counts_t counts;
     box_faults_t box_faults[BOX_FAULTS];

@@ -31,8 +31,8 @@ PLANS = [
     Plan(AGAIN, settings=TO_PX4, obstacles=FAR),
     Plan(PLANE, settings=TO_ARDUPLANE, autopilot=ARDUPLANE, obstacles=FAR),
     Plan(GLITCH, settings=TO_ARDUPLANE, autopilot=ARDUPLANE, obstacles=FAR),
-    Plan(OFF, obstacles=FAR),
-    Plan(REBORN, obstacles=FAR),
+    Plan(OFF, settings={"flight": {"loiter_m": 60}}, obstacles=FAR),  # less than a turn's 71 m at 20 m/s and 30 degrees
+    Plan(REBORN, settings={"flight": {"loiter_m": 80}}, obstacles=FAR),
 ]
 ILL = [LOST, SILENT, FILTER, PLANE, GLITCH, AGAIN]
 
@@ -97,6 +97,11 @@ def test_a_filter_in_doubt_is_reported(fleet: Fleet, name: str) -> None:
 
 def test_nothing_is_reported_of_a_healthy_autopilot(fleet: Fleet) -> None:
     assert not [text for text in texts(fleet[HEALTHY]) if "GPS" in text or "filter" in text]
+
+
+def test_a_circle_below_the_radius_of_a_turn_is_reported_once(fleet: Fleet) -> None:
+    assert [fleet[name].ended.err.count("flight.loiter_m") for name in (OFF, REBORN, HEALTHY)] == [1, 0, 0]  # type: ignore[union-attr]
+    assert "flight.loiter_m 60 is smaller than the turn at 20 m/s and 30 degrees of bank: 71 m" in fleet[OFF].ended.err  # type: ignore[union-attr]
 
 
 def test_the_end_of_a_doubt_is_reported(fleet: Fleet) -> None:
