@@ -17,6 +17,7 @@
 #define VARIANCE_MIN_M2 1.0e-12f
 #define LEVEL_SHARE 1.0e-3f   /* least share of the offset's variance that remains on level ground */
 #define VARIANCE_MIN 1.0e-12f /* least variance of the offset, units of Z0 */
+#define UNKNOWN 1.0e12f /* a larger variance of the offset grows as this one would: each image could multiply it */
 
 /* ----------------------------------------------------------------------------------------------------------- readings -- */
 
@@ -147,7 +148,8 @@ void goe_ground_widen(goe_filter_t *filter, const goe_navigation_t *navigation) 
     const float least = variance < begun ? variance : begun;
     const float taken =
         -first_gained(filter, navigation, scale) * least; /* the excess, as a share of the present information */
-    goe_filter_inflate(filter, GOE_GROUND, sqrtf(variance * taken / (1.0f - taken)));
+    const float wider = variance < UNKNOWN ? variance : UNKNOWN;
+    goe_filter_inflate(filter, GOE_GROUND, sqrtf(wider * taken / (1.0f - taken)));
     filter->ground_scale = 1.0f;
 }
 

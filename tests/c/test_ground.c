@@ -587,6 +587,22 @@ static void a_jump_of_down_is_no_scatter(void) {
     TEST_ASSERT_TRUE(filter.datum.scatter_m2 <= 0.25f);
 }
 
+/* GIVEN readings without any information, and a range that becomes twenty times smaller with each image WHEN the first height is widened each
+ * time THEN the variance stays finite, and so do all elements of the root. */
+static void a_range_that_leaps_widens_no_ground_without_end(void) {
+    settings.navigation.position_walk_sd_m = 0.05f;
+    read_height(HEIGHT_M, 0.0f);
+    start(RANGE_M);
+    for (int k = 0; k < 10 * READINGS; k++) {
+        filter.ground_scale = 0.05f;
+        goe_ground_widen(&filter, &settings.navigation);
+        TEST_ASSERT_TRUE(isfinite((double)goe_filter_variance(&filter, GOE_GROUND)));
+    }
+    for (size_t i = 0; i < sizeof filter.root.element / sizeof filter.root.element[0]; i++) {
+        TEST_ASSERT_TRUE(isfinite((double)filter.root.element[i]));
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_height_of_0_is_none);
@@ -612,5 +628,6 @@ int main(void) {
     RUN_TEST(the_arm_moves_the_camera_up_and_down);
     RUN_TEST(the_first_box_changes_no_height);
     RUN_TEST(a_jump_of_down_is_no_scatter);
+    RUN_TEST(a_range_that_leaps_widens_no_ground_without_end);
     return UNITY_END();
 }
