@@ -29,10 +29,11 @@
  *             slot. Until it has a position again, the slot keeps its position, hazard and warning, marked suspect. [F4] The rest
  *             (poses, clocks, positions, the active order) is not sealed.
  * Cost        On a Cortex-M4F (gcc), measured in instructions: a sample at most 1,720; a frame 49,900 for each obstacle in it (it
- *             includes goe_update(), whose proved limit goe.h states); an assessment 38,100 with one obstacle and 23,200 for each
- *             further one with a position. While there is a hazard or an order, an assessment also examines paths: at most 6 times
- *             (4 + 4 GOE_FLIGHT_SLOTS), each against every obstacle. goe_flight_obstacle() 980; goe_flight_sectors() 13,200 with one
- *             obstacle; goe_flight_init() 12,700 for each slot. No loop runs longer than GOE_FLIGHT_SECTORS.
+ *             includes goe_update(), whose proved limit goe.h states), and more to match each new id with each obstacle that is out
+ *             of view; an assessment 38,100 with one obstacle and 23,200 for each further one with a position. While there is a
+ *             hazard or an order, an assessment also examines paths: at most 6 times (4 + 4 GOE_FLIGHT_SLOTS), each against every
+ *             obstacle. goe_flight_obstacle() 980; goe_flight_sectors() 13,200 with one obstacle; goe_flight_init() 12,700 for each
+ *             slot. No loop runs longer than GOE_FLIGHT_SECTORS.
  * Failure     A call that returns a negative status, or GOE_FLIGHT_TOO_NEW, changes nothing except counters, with three exceptions:
  *             after a failed goe_flight_init() *flight cannot be used; the 16th GOE_FLIGHT_BAD_TIME in a row of the attitudes, or of
  *             the positions, calls goe_flight_restart(); and a GOE_FLIGHT_TOO_OLD frame still counts for the estimate of the
@@ -106,8 +107,8 @@ typedef struct {
     float confirm_images; /* images with a new obstacle, at most 1 s apart, before it gets a slot; 1 to 20; 3 */
     float detector_timeout_s; /* the detector counts as dead after this time without a frame; 0.05 to 60; 1 */
     float track_timeout_s; /* an obstacle is dropped after this time undetected, unless it is a hazard ahead. During an
-                              order, and for 10 s after one to a side, no obstacle is dropped in less than 30 s, unless a new one
-                              needs its slot (README.md, "a full table"); 1 to 600; 10 */
+                              order, and for 10 s after it, no obstacle is dropped in less than 120 s, that of the order not in less
+                              than 600 s, unless a new one needs its slot (README.md, "a full table"); 1 to 600; 10 */
     /* time */
     float delay_s;     /* least time from sending to arrival, which one-way messages cannot show; 0 to 0.5; 0.005 */
     float delay_sd_s;  /* one sigma of delay_s, and of a capture time without a sigma; 0 to 0.5; 0.005 */
@@ -430,7 +431,7 @@ typedef struct { /* goe_reaction.c: the active order */
     int8_t side; /* -1: left, 1: right, also of HOLD; 0: none */
     uint8_t changes; /* of the side */
     uint8_t reason;
-    goe_flag_t rising, falling, late;
+    goe_flag_t rising, falling, late; /* falling, without an order: it has just ended */
     goe_flag_t gap; /* the target is in the middle between slot and edge */
 } goe_flight_reaction_t;
 

@@ -36,7 +36,7 @@
 #define PAST_M 10.0f     /* of a climb's target beyond the place where the obstacle is passed */
 #define CLIMB_SLACK 0.5f /* of the clearance: a climb that lacks less than this is not replaced */
 
-#define SIDE_REMEMBERED_S 10.0f
+#define REMEMBERED_S 10.0f
 #define LONG_US 600000000 /* ten minutes: longer than any time that counts */
 #define LATEST 1.2f       /* of roll_in_s: the latest time at which an autopilot obeys */
 #define TURNED 0.99f      /* cosine of 8 degrees: after such a turn the aircraft obeys */
@@ -676,16 +676,17 @@ static void end_if_over(goe_flight_t *flight, const look_t *look) {
         memcpy(r->course_ne, ended.course_ne, sizeof r->course_ne);
         r->side = ended.side;
         r->changes = ended.changes;
+        r->falling = true; /* without an order: it has just ended */
         r->falling_us = look->own->time_us;
     }
 }
 
-/* Forgets the side of an ended order, but only after a while: an order soon after it belongs to the same encounter. */
-static void forget_side(goe_flight_reaction_t *r, uint32_t now_us) {
-    if (r->action == GOE_FLIGHT_NONE && r->side != 0 &&
-        goe_flight_between_s(now_us, r->falling_us) > SIDE_REMEMBERED_S) {
+/* Forgets an ended order and its side, but only after a while: an order soon after it belongs to the same encounter. */
+static void forget_order(goe_flight_reaction_t *r, uint32_t now_us) {
+    if (r->action == GOE_FLIGHT_NONE && goe_flight_between_s(now_us, r->falling_us) > REMEMBERED_S) {
         r->side = 0;
         r->changes = 0;
+        r->falling = false;
     }
 }
 
@@ -937,7 +938,7 @@ float goe_flight_reaction_decide(goe_flight_t *flight, int worst, const goe_flig
     mend(r);
     drag(&r->ordered_us, own->time_us);
     drag(&r->rising_us, own->time_us);
-    forget_side(r, own->time_us);
+    forget_order(r, own->time_us);
     if (own->grounded && r->action != GOE_FLIGHT_NONE) {
         goe_flight_reaction_clear(r);
     }

@@ -182,13 +182,18 @@ static void note(goe_flight_slot_t *slot, const float camera_ned_m[3], const goe
     note_outline(slot, estimate);
 }
 
-/* The pixel at half the top's height, or at half the aircraft's height if the top is unknown. */
-static bool predict(const goe_flight_slot_t *slot, const goe_flight_camera_t *camera,
-                    const goe_flight_history_pose_t *pose, float pixel[2]) {
+/* The pixel of the center at this share of the top's height, or of the aircraft's height if the top is unknown. */
+static bool predict_at(const goe_flight_slot_t *slot, const goe_flight_camera_t *camera,
+                       const goe_flight_history_pose_t *pose, float share, float pixel[2]) {
     const float own_m = slot->ground_down_m - pose->ned_m[2];
-    const float above_m = 0.5f * ((slot->valid & GOE_HAS_HEIGHT) ? slot->top_m : goe_flight_larger(own_m, 0.0f));
+    const float above_m = share * ((slot->valid & GOE_HAS_HEIGHT) ? slot->top_m : goe_flight_larger(own_m, 0.0f));
     const float point[3] = {slot->center_ne_m[0], slot->center_ne_m[1], slot->ground_down_m - above_m};
     return goe_flight_geometry_project(camera, pose, point, pixel);
+}
+
+static bool predict(const goe_flight_slot_t *slot, const goe_flight_camera_t *camera,
+                    const goe_flight_history_pose_t *pose, float pixel[2]) {
+    return predict_at(slot, camera, pose, 0.5f, pixel);
 }
 
 /* Whether a box shows the slot's position. If the image border cuts the box, the position may lie outside it. */
@@ -358,14 +363,40 @@ static bool matches(const int16_t a[4], const int16_t b[4]) {
     return similar;
 }
 
-/* Whether a box of another camera is about as wide as the outline in this view. From any side, an outline is at most as wide as the circle
- * around it. The image border may hide a part of the box. */
-static bool is_as_wide(const goe_flight_slot_t *slot, const goe_flight_camera_t *camera,
-                       const goe_flight_history_pose_t *pose, const int16_t box_px[4]) {
+static float px_per_m_of(const goe_flight_slot_t *slot, const goe_flight_camera_t *camera,
+                         const goe_flight_history_pose_t *pose) {
     const float north_m = slot->center_ne_m[0] - pose->ned_m[0];
     const float east_m = slot->center_ne_m[1] - pose->ned_m[1];
     const float away_m = sqrtf(goe_flight_square(north_m) + goe_flight_square(east_m));
-    const float px_per_m = camera->focal_px[0] / goe_flight_larger(away_m, AWAY_MIN_M);
+    return camera->focal_px[0] / goe_flight_larger(away_m, AWAY_MIN_M);
+}
+
+/* Overlap of a box with the outline in this view: the circle around the axis at its base, its middle and its top, as far as the image
+ * contains it. A rolled camera's image of a mast is wide, and the border cuts an obstacle that comes back into view. */
+static float overlap_of(const goe_flight_slot_t *slot, const goe_flight_camera_t *camera,
+                        const goe_flight_history_pose_t *pose, float px_per_m, const int16_t box_px[4]) {
+    const float half_px = px_per_m * goe_flight_slot_radius_m(slot);
+    float extent[4] = {0.0f, 0.0f, 0.0f, 0.0f};
+    bool any = false;
+    int16_t outline_px[4];
+    for (int k = 0; k < 3; k++) {
+        float pixel[2];
+        if (predict_at(slot, camera, pose, 0.5f * (float)k, pixel)) {
+            widen(extent, pixel[0] - half_px, pixel[1] - half_px, &any);
+            widen(extent, pixel[0] + half_px, pixel[1] + half_px, &any);
+        }
+    }
+    for (int i = 0; i < 4; i++) {
+        const float inside = goe_flight_clamped(extent[i], 0.0f, camera->size_px[i % 2]);
+        outline_px[i] = (int16_t)inside;
+    }
+    return any ? goe_flight_candidate_overlap(outline_px, box_px) : 0.0f;
+}
+
+/* Whether a box of another camera is about as wide as the outline in this view. From any side, an outline is at most as wide as the circle
+ * around it. The image border may hide a part of the box. */
+static bool is_as_wide(const goe_flight_slot_t *slot, const goe_flight_camera_t *camera, float px_per_m,
+                       const int16_t box_px[4]) {
     const float box = (float)(box_px[2] - box_px[0]);
     const float circle = goe_flight_larger(2.0f * px_per_m * goe_flight_slot_radius_m(slot), SIZE_MIN_PX);
     const bool cut =
@@ -383,7 +414,13 @@ float goe_flight_slot_claims(const goe_flight_slot_t *slot, const goe_flight_cam
         const float overlap = goe_flight_candidate_overlap(slot->box_px, box_px);
         return comparable && overlap >= OVERLAP_MIN ? overlap : 0.0f;
     }
-    const bool alike = comparable ? matches(slot->box_px, box_px) : is_as_wide(slot, camera, &view->pose, box_px);
+    const float px_per_m = px_per_m_of(slot, camera, &view->pose);
+    const float overlap =
+        (slot->valid & GOE_HAS_WIDTH) != 0u ? overlap_of(slot, camera, &view->pose, px_per_m, box_px) : 0.0f;
+    if (overlap >= OVERLAP_MIN) {
+        return overlap;
+    }
+    const bool alike = comparable ? matches(slot->box_px, box_px) : is_as_wide(slot, camera, px_per_m, box_px);
     if (!alike || !predict(slot, camera, &view->pose, pixel)) {
         return 0.0f;
     }

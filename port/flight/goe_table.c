@@ -11,7 +11,10 @@
 #define UNDETECTED_S 2.0f /* after this time a track without a position, or a passed one, may be evicted */
 #define WORTH_KEPT 0.5f   /* a slot of a higher worth is never evicted */
 #define ABEAM_DEG 90.0f
-#define ORDERED_S 30.0f /* while an order is active no track ends sooner: the way back leads past its obstacle */
+#define AVOIDED_S                                                                                                      \
+    600.0f /* the track of an order's obstacle ends no sooner: HOLD circles before it, perhaps out of view */
+#define ORDERED_S                                                                                                      \
+    120.0f /* the same of any other track while an order is active: the way back may lead past its obstacle */
 #define NOBODY (-1)
 
 /* ------------------------------------------------------------------------------------------------------- detections -- */
@@ -328,19 +331,20 @@ static bool is_ahead(const goe_flight_t *flight, const goe_flight_slot_t *slot) 
            slot->hazard.conflict_probability >= flight->settings.conflict_probability_max;
 }
 
-/* Whether an order is active, or one to a side ended shortly before: its obstacle must still be reported, then without an order. */
+/* Whether an order is active, or ended shortly before: its obstacle must still be reported, then without an order. */
 static bool is_ordered(const goe_flight_reaction_t *reaction) {
-    return reaction->action != GOE_FLIGHT_NONE || reaction->side != 0;
+    return reaction->action != GOE_FLIGHT_NONE || reaction->falling;
 }
 
 void goe_flight_table_age(goe_flight_t *flight, uint32_t now_us) {
     goe_flight_candidate_bury(&flight->waiting, now_us);
-    const float ordered_s = goe_flight_larger(ORDERED_S, flight->settings.track_timeout_s);
-    const float most_s = is_ordered(&flight->reaction) ? ordered_s : flight->settings.track_timeout_s;
+    const float timeout_s = flight->settings.track_timeout_s;
+    const float most_s = is_ordered(&flight->reaction) ? goe_flight_larger(ORDERED_S, timeout_s) : timeout_s;
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         goe_flight_slot_t *slot = &flight->slot[i];
         const float undetected_s = goe_flight_between_s(now_us, slot->detected_us);
-        slot->used = slot->used && (undetected_s <= most_s || is_ahead(flight, slot));
+        const float own_most_s = i == flight->reaction.slot ? AVOIDED_S : most_s;
+        slot->used = slot->used && (undetected_s <= own_most_s || is_ahead(flight, slot));
         if (!slot->used) {
             release(&flight->reaction, i);
         }

@@ -768,6 +768,10 @@ static void a_climb_stays_active_until_the_top_is_passed(void) {
             }
         }
         TEST_ASSERT_EQUAL(GOE_FLIGHT_NONE, flight.reaction.action);
+        (void)decide(9.0);
+        TEST_ASSERT_TRUE(flight.reaction.falling); /* its end is remembered for 10 s */
+        (void)decide(2.0);
+        TEST_ASSERT_FALSE(flight.reaction.falling);
     }
 }
 

@@ -387,7 +387,7 @@ static void an_order_does_not_pass_to_the_next_in_its_slot(void) {
     (void)flown_fly(&flown, 3.04); /* an image came with sample 150 */
     flown.flight.reaction.action = GOE_FLIGHT_LEFT;
     flown.flight.reaction.slot = 0;
-    flown.flight.slot[0].detected_us -= 31000000u;
+    flown.flight.slot[0].detected_us -= 601000000u;
     const goe_flight_assessment_t now = flown_fly(&flown, 0.02);
     TEST_ASSERT_EQUAL(0, slots_used());
     TEST_ASSERT_EQUAL(-1, now.avoided);
@@ -641,7 +641,7 @@ static void the_obstacles_of_an_order_are_not_evicted(void) {
 static void an_obstacle_that_is_given_up_leaves_no_gap(void) {
     (void)flown_fly(&flown, 3.04);
     keep_behind(1, 0.5f);
-    flown.flight.slot[1].detected_us -= 31000000u;
+    flown.flight.slot[1].detected_us -= 121000000u;
     flown.flight.slot[1].hazard.tcpa_s = 0.0f;
     flown.flight.reaction.action = GOE_FLIGHT_LEFT;
     flown.flight.reaction.slot = 0;

@@ -253,32 +253,32 @@ static void a_passed_obstacle_in_view_makes_room_for_one_ahead(void) {
 }
 
 /* [flight.track_timeout_s]
- * GIVEN any table THEN a track undetected for track_timeout_s is given up, or for 30 s while an order is active or the side of an ended one is
- * remembered; but not an obstacle ahead. The order forgets a track that is given up. */
+ * GIVEN any table THEN a track undetected for track_timeout_s is given up, or for 120 s while an order is active or has just ended, that of the
+ * order's obstacle for 600 s; but not an obstacle ahead. The order forgets a track that is given up. */
 static void an_old_track_is_given_up(void) {
     int given_up = 0;
     int kept = 0;
     for (int n = 0; n < TRIALS; n++) {
         static goe_flight_t copy;
-        const uint32_t now_us = 100000000u;
+        const uint32_t now_us = 1000000000u;
         copy = *flight;
         copy.settings.track_timeout_s = one_in(3) ? 40.0f : 10.0f;
         copy.reaction.action = (uint8_t)(one_in(2) ? GOE_FLIGHT_NONE : GOE_FLIGHT_LEFT);
-        copy.reaction.side = (int8_t)(one_in(2) ? 0 : 1);
+        copy.reaction.falling = one_in(2);
         copy.reaction.slot = (int8_t)(one_in(2) ? -1 : (int)between(0.0, 3.99));
         copy.reaction.edge = (int8_t)(one_in(2) ? -1 : (int)between(0.0, 3.99));
         for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
             put_any(&copy, i, now_us);
-            copy.slot[i].detected_us = now_us - (uint32_t)between(1.0e6, 60.0e6);
+            copy.slot[i].detected_us = now_us - (uint32_t)between(1.0e6, one_in(2) ? 60.0e6 : 900.0e6);
         }
         const goe_flight_t before = copy;
         goe_flight_table_age(&copy, now_us);
         for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
             const goe_flight_slot_t *slot = &before.slot[i];
             const double undetected_s = 1.0e-6 * (double)(now_us - slot->detected_us);
-            const bool ordered = before.reaction.action != GOE_FLIGHT_NONE || before.reaction.side != 0;
-            const double most_s =
-                ordered ? fmax(30.0, (double)copy.settings.track_timeout_s) : (double)copy.settings.track_timeout_s;
+            const bool ordered = before.reaction.action != GOE_FLIGHT_NONE || before.reaction.falling;
+            const double other_s = ordered ? 120.0 : (double)copy.settings.track_timeout_s;
+            const double most_s = before.reaction.slot == i ? 600.0 : other_s;
             const bool ahead = slot->assessed && slot->hazard.tcpa_s > 0.0f &&
                                slot->hazard.conflict_probability >= copy.settings.conflict_probability_max;
             const bool stays = slot->used && (ahead || undetected_s <= most_s);
@@ -467,6 +467,78 @@ static void a_box_claims_predictions_inside_it(void) {
     TEST_ASSERT_TRUE(some > 200 && none > 200);
 }
 
+/* The box of a cylinder in this view, from many points of its surface, clipped to the image. Returns the area in square pixels. */
+static double box_of_cylinder(const goe_flight_slot_view_t *view, const float center_ne_m[2], float ground_down_m,
+                              float radius_m, float top_m, int16_t box_px[4]) {
+    const goe_flight_camera_t *camera = &flight->camera[0];
+    double extent[4] = {1.0e9, 1.0e9, -1.0e9, -1.0e9};
+    for (int k = 0; k < 50 * 24; k++) {
+        const double around = 2.0 * 3.14159265358979 * (k % 24) / 24.0;
+        const float point[3] = {center_ne_m[0] + radius_m * (float)cos(around),
+                                center_ne_m[1] + radius_m * (float)sin(around),
+                                ground_down_m - top_m * (float)(k / 24) / 49.0f};
+        float pixel[2] = {-1.0e6f, -1.0e6f};
+        (void)goe_flight_geometry_project(camera, &view->pose, point, pixel);
+        for (int i = 0; i < 4 && pixel[0] > -1.0e5f; i++) {
+            extent[i] = i < 2 ? fmin(extent[i], (double)pixel[i]) : fmax(extent[i], (double)pixel[i % 2]);
+        }
+    }
+    for (int i = 0; i < 4; i++) {
+        box_px[i] = (int16_t)fmin(fmax(extent[i], 0.0), (double)camera->size_px[i % 2]);
+    }
+    return fmax(box_px[2] - box_px[0], 0.0) * fmax(box_px[3] - box_px[1], 0.0);
+}
+
+/* GIVEN a rolled camera, and an obstacle that comes back into view with another number, whole or cut by the border WHEN its size in the image has
+ * changed THEN its box claims it, and claims it more than an obstacle 60 m to its side. */
+static void a_box_claims_its_obstacle_in_a_rolled_camera(void) {
+    int boxes = 0;
+    int claimed = 0;
+    int cut = 0;
+    int wrong = 0;
+    goe_flight_slot_view_t view;
+    goe_pose_t pose;
+    memset(&view, 0, sizeof view);
+    TEST_ASSERT_EQUAL(GOE_FLIGHT_OK, goe_flight_pose(flight, flown_now_us(&flown), 0u, &pose, NULL));
+    memcpy(view.pose.ned_m, pose.position_ned_m, sizeof view.pose.ned_m);
+    for (int n = 0; n < TRIALS; n++) {
+        int16_t box_px[4];
+        goe_flight_slot_t other;
+        goe_flight_slot_t *slot = &flight->slot[0];
+        const double roll = between(-0.6, 0.6);
+        const double yaw = between(-0.8, 0.8);
+        view.pose.q[0] = (float)(cos(0.5 * roll) * cos(0.5 * yaw));
+        view.pose.q[1] = (float)(sin(0.5 * roll) * cos(0.5 * yaw));
+        view.pose.q[2] = (float)(-sin(0.5 * roll) * sin(0.5 * yaw)); /* yaw first, then roll */
+        view.pose.q[3] = (float)(cos(0.5 * roll) * sin(0.5 * yaw));
+        slot->valid = GOE_HAS_POSITION | GOE_HAS_WIDTH | GOE_HAS_HEIGHT;
+        slot->camera = 0;
+        slot->ground_down_m = view.pose.ned_m[2] + 30.0f;
+        slot->top_m = (float)between(20.0, 60.0);
+        slot->width_m = (float)between(6.0, 15.0);
+        slot->center_ne_m[0] = view.pose.ned_m[0] + (float)between(80.0, 250.0);
+        slot->center_ne_m[1] = view.pose.ned_m[1] + (float)between(-60.0, 60.0);
+        for (int i = 0; i < 4; i++) {
+            slot->box_px[i] = (int16_t)(i < 2 ? 0 : 900); /* of a long time ago */
+        }
+        other = *slot;
+        other.center_ne_m[1] += one_in(2) ? 60.0f : -60.0f;
+        const double area =
+            box_of_cylinder(&view, slot->center_ne_m, slot->ground_down_m, 0.5f * slot->width_m, slot->top_m, box_px);
+        if (area < 400.0) {
+            continue;
+        }
+        const float own = goe_flight_slot_claims(slot, flight->camera, &view, box_px);
+        boxes++;
+        claimed += own > 0.0f ? 1 : 0;
+        cut += box_px[0] == 0 || box_px[1] == 0 || (float)box_px[2] >= flight->camera[0].size_px[0] ? 1 : 0;
+        wrong += goe_flight_slot_claims(&other, flight->camera, &view, box_px) >= own ? 1 : 0;
+    }
+    TEST_ASSERT_TRUE(boxes > TRIALS / 4 && cut > boxes / 10);
+    TEST_ASSERT_TRUE(claimed > 95 * boxes / 100);
+    TEST_ASSERT_TRUE(wrong < 5 * boxes / 100);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(sides_count_by_their_visible_part);
@@ -483,5 +555,6 @@ int main(void) {
     RUN_TEST(an_undetected_obstacle_does_not_wait);
     RUN_TEST(any_points_make_their_box);
     RUN_TEST(a_box_claims_predictions_inside_it);
+    RUN_TEST(a_box_claims_its_obstacle_in_a_rolled_camera);
     return UNITY_END();
 }
