@@ -37,6 +37,7 @@ static int list;
 static int several;
 static int step = 1;
 static int trace = -1;
+static int new_ids;
 static char *csv;
 
 static struct poptOption options[] = {
@@ -48,6 +49,7 @@ static struct poptOption options[] = {
      NULL},
     {"several", 'm', POPT_ARG_INT, &several, 0, "flies so many flights among one to nine obstacles instead", "N"},
     {"step", 0, POPT_ARG_INT | POPT_ARGFLAG_SHOW_DEFAULT, &step, 0, "of these: from one seed to the next", "N"},
+    {"new-ids", 0, POPT_ARG_NONE, &new_ids, 0, "of these: an obstacle that was out of view gets a new id", NULL},
     {"trace", 0, POPT_ARG_INT, &trace, 0, "of these: prints flight N, one line for every assessment", "N"},
     {"csv", 'c', POPT_ARG_STRING, &csv, 0, "a row for every run goes here", "FILE"},
     {"help", 'h', POPT_ARG_NONE, NULL, 'h', "print this and exit", NULL},
@@ -246,7 +248,7 @@ static bool check_ranges(void) {
 /* Flight `trace` of the campaign, with its seed. */
 static bool trace_one(void) {
     several_outcome_t outcome;
-    several_case_t setup = several_case(trace, (uint64_t)seed + (uint64_t)trace * (uint64_t)step);
+    several_case_t setup = several_case(trace, (uint64_t)seed + (uint64_t)trace * (uint64_t)step, new_ids != 0);
     setup.traced = true;
     const char *fault = several_fly(&setup, &outcome);
     return fault == NULL || give_up("--trace", fault);
@@ -255,7 +257,8 @@ static bool trace_one(void) {
 /* Goals that are missed are printed, and no failure of the program. */
 static bool fly_several(void) {
     bool met;
-    return trace >= 0 ? trace_one() : several_campaign(several, (uint64_t)seed, (uint64_t)step, list != 0, &met);
+    return trace >= 0 ? trace_one()
+                      : several_campaign(several, (uint64_t)seed, (uint64_t)step, list != 0, new_ids != 0, &met);
 }
 
 static bool run_options(poptContext context, int argc, const char *const *argv) {
@@ -292,6 +295,9 @@ static bool run_options(poptContext context, int argc, const char *const *argv) 
             return give_up(single, "not with --several or --trace, whose flights have their own");
         }
         return fly_several();
+    }
+    if (new_ids != 0) {
+        return give_up("--new-ids", "only with --several or --trace");
     }
     return csv != NULL ? print_and_write() : print_tables(NULL);
 }

@@ -13,6 +13,7 @@
 #define LOST_FRAMES 0.05
 #define BLIND_EVERY_S 5.0 /* of an aircraft whose detector drops out: sees for VISIBLE_S, then nothing */
 #define VISIBLE_S 3.0
+#define FORGOTTEN_S 1.5 /* undetected for so long, a tracker takes an obstacle for a new one */
 #define WIND_MAX_MPS 4.0
 #define TURBULENCE_MAX_MPS 5.0 /* wind at 6 m */
 #define CLOCK_START_US 4000000000u
@@ -135,9 +136,18 @@ static void sample(flown_t *flown) {
     (void)goe_flight_position(&flown->flight, &position);
 }
 
-static void detect(flown_frame_t *late, int number, const image_box_t *box) {
+static uint32_t id_of(flown_t *flown, int number) {
+    const bool forgotten = flown->id[number] == 0u || flown->t_s - flown->detected_s[number] > FORGOTTEN_S;
+    flown->detected_s[number] = flown->t_s;
+    if (forgotten && flown->new_ids) {
+        flown->id[number] = ++flown->ids;
+    }
+    return flown->new_ids ? flown->id[number] : (uint32_t)number + 1u;
+}
+
+static void detect(flown_t *flown, flown_frame_t *late, int number, const image_box_t *box) {
     goe_flight_detection_t *detection = &late->detection[late->frame.count++];
-    detection->id = (uint32_t)number + 1u;
+    detection->id = id_of(flown, number);
     detection->score = 0.9f;
     detection->box.sides = GOE_SIDES_ALL;
     detection->box.left_px = (float)box->side_px[SIDE_LEFT];
@@ -161,7 +171,7 @@ static void expose(flown_t *flown) {
         const image_box_t whole = image_box_project(&flown->obstacle[i], &flown->camera, &view);
         const image_box_t box = sensors_box(&flown->sensors[i], &whole, &flown->camera, flown->t_s);
         if (box.seen && !blind) {
-            detect(&late, i, &box);
+            detect(flown, &late, i, &box);
         }
     }
     late.frame.number = late.frame.count;

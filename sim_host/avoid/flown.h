@@ -47,7 +47,10 @@ typedef struct {
     flown_frame_t queue[FLOWN_QUEUE];
     int queued;
     bool rolls, drops;
-    double frame_s; /* from the exposure to the arrival of a frame */
+    bool new_ids;                 /* an obstacle that was out of view for FORGOTTEN_S gets a new id */
+    uint32_t id[FLOWN_MAX], ids;  /* of each obstacle, 0: none yet; given so far */
+    double detected_s[FLOWN_MAX]; /* when it was detected last */
+    double frame_s;               /* from the exposure to the arrival of a frame */
     double course_rad, speed_mps;
     double reach_m; /* of the path, from its start to the obstacle on it */
     double t_s;

@@ -152,6 +152,7 @@ static const char *begin(run_t *run, several_outcome_t *outcome) {
     run->height_m = flown_between(&random, 15.0, 35.0);
     flown->rolls = random_uniform(&random) < 0.5;
     flown->drops = random_uniform(&random) < 0.5;
+    flown->new_ids = run->setup->new_ids;
     place(run, &random, outcome);
     const char *fault = flown_start(flown, &random, seed, seed * FLOWN_MAX, run->height_m, 0.0);
     return fault ? fault : flown_start_layer(flown, run->setup->circles ? CIRCLE_M : 0.0);

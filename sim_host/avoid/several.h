@@ -44,6 +44,7 @@ typedef struct {
     double obey_s;  /* from an order to its beginning */
     double frame_s; /* from the exposure to the arrival of a frame */
     bool circles;   /* the autopilot flies to the target and circles it */
+    bool new_ids;   /* the detector's tracker gives an obstacle that comes back into view a new id */
     bool traced;    /* prints the flight */
 } several_case_t;
 

@@ -22,11 +22,12 @@ typedef struct {
     double closest_m; /* where it was possible */
 } tally_t;
 
-several_case_t several_case(int k, uint64_t seed) {
+several_case_t several_case(int k, uint64_t seed, bool new_ids) {
     several_case_t setup;
     memset(&setup, 0, sizeof setup);
     setup.kind = (several_kind_t)(k % SEVERAL_KINDS);
     setup.seed = seed;
+    setup.new_ids = new_ids;
     setup.obey_s = obey_s[k / SEVERAL_KINDS % OBEYS];
     setup.circles = k / (SEVERAL_KINDS * OBEYS) % 2 != 0;
     setup.frame_s = frame_s[k / (SEVERAL_KINDS * OBEYS * 2) % FRAMES];
@@ -83,6 +84,7 @@ static bool print_goal(const char *what, int missed, int of, double most_share) 
 /* ---------------------------------------------------------------------------------------------------------- campaign -- */
 
 typedef struct {
+    bool lists, new_ids;
     tally_t all, by_kind[SEVERAL_KINDS], by_number[FLOWN_MAX + 1], by_obey[OBEYS], by_autopilot[2];
     aviation_flight_t *flown;
     double *scratch;
@@ -97,17 +99,17 @@ static void tally_up(campaign_t *campaign, int k, const several_case_t *setup, c
 }
 
 /* Flight k, with orders and without. */
-static bool fly(campaign_t *campaign, int k, uint64_t seed, bool lists) {
+static bool fly(campaign_t *campaign, int k, uint64_t seed) {
     several_outcome_t outcome, nominal;
-    const several_case_t setup = several_case(k, seed);
+    const several_case_t setup = several_case(k, seed, campaign->new_ids);
     const char *fault = several_fly(&setup, &outcome);
     fault = fault != NULL ? fault : several_fly_nominal(&setup, &nominal);
     if (fault != NULL) {
         (void)fprintf(stderr, "goe_avoid: %s, seed %" PRIu64 ": %s\n", SEVERAL_NAMES[setup.kind], setup.seed, fault);
         return false;
     }
-    if (lists && (several_misses(&outcome) || outcome.changes > CHANGES_MAX ||
-                  (setup.kind == SEVERAL_BETWEEN && outcome.ordered))) {
+    if (campaign->lists && (several_misses(&outcome) || outcome.changes > CHANGES_MAX ||
+                            (setup.kind == SEVERAL_BETWEEN && outcome.ordered))) {
         print_miss(k, &setup, &outcome);
     }
     tally_up(campaign, k, &setup, &outcome);
@@ -149,25 +151,27 @@ static bool print_goals(const campaign_t *campaign) {
            met;
 }
 
-static bool fly_all(campaign_t *campaign, int flights, uint64_t first, uint64_t step, bool lists) {
+static bool fly_all(campaign_t *campaign, int flights, uint64_t first, uint64_t step) {
     for (int k = 0; k < flights; k++) {
-        if (!fly(campaign, k, first + (uint64_t)k * step, lists)) {
+        if (!fly(campaign, k, first + (uint64_t)k * step)) {
             return false;
         }
     }
     return true;
 }
 
-bool several_campaign(int flights, uint64_t first, uint64_t step, bool lists, bool *met) {
+bool several_campaign(int flights, uint64_t first, uint64_t step, bool lists, bool new_ids, bool *met) {
     campaign_t campaign;
     memset(&campaign, 0, sizeof campaign);
+    campaign.lists = lists;
+    campaign.new_ids = new_ids;
     campaign.flown = calloc((size_t)flights, sizeof *campaign.flown);
     campaign.scratch = calloc((size_t)flights, sizeof *campaign.scratch);
     bool done = campaign.flown != NULL && campaign.scratch != NULL;
     if (!done) {
         (void)fputs("goe_avoid: --several: out of memory\n", stderr);
     }
-    done = done && fly_all(&campaign, flights, first, step, lists);
+    done = done && fly_all(&campaign, flights, first, step);
     if (done) {
         print_flights(&campaign);
         *met = print_goals(&campaign);

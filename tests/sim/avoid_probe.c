@@ -39,7 +39,7 @@ static int print_flights(char **argument) {
     puts("obstacles,ordered,closest_m,nominal_closest_m,collided,nominal_collided,due,alerts,flown_s,nominal_flown_s,"
          "ordered_s,frame_s,obey_s,obeyed,arrival_s,assessment_s,delay_s");
     for (int k = 0; k < flights; k++) {
-        const several_case_t setup = several_case(k, (uint64_t)first + (uint64_t)k * (uint64_t)step);
+        const several_case_t setup = several_case(k, (uint64_t)first + (uint64_t)k * (uint64_t)step, false);
         several_outcome_t flown, nominal;
         const char *fault = several_fly(&setup, &flown);
         fault = fault != NULL ? fault : several_fly_nominal(&setup, &nominal);

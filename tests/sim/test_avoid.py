@@ -209,6 +209,21 @@ def test_the_goals_are_met(several: str, goal: str, share: float) -> None:
     assert int(missed) <= most * int(of), several
 
 
+def test_new_ids_of_obstacles_that_come_back_lead_into_none(goe_avoid: Path) -> None:
+    """A detector's tracker forgets an obstacle that the aircraft has turned away from."""
+    text = avoid(goe_avoid, "--several", "210", "--seed", "1", "--step", "2", "--new-ids")
+    plain = avoid(goe_avoid, "--several", "210", "--seed", "1", "--step", "2")
+    assert text != plain
+    assert "| no collision where a search finds a path | 0 of 210 | met |" in text
+    for name in ("single", "pair", "between"):
+        assert numbers_of(text, name)[3:6:2] == [0, 0]
+
+
+def test_new_ids_are_an_option_of_several_obstacles(goe_avoid: Path) -> None:
+    done = subprocess.run([goe_avoid, "--new-ids"], capture_output=True, text=True, check=False)
+    assert done.returncode == 2 and done.stderr == "goe_avoid: --new-ids: only with --several or --trace\n"
+
+
 GROUPS = {"all": (0, 9), "one obstacle": (1, 1), "two obstacles": (2, 2), "three or more obstacles": (3, 9)}
 FIGURES = ("risk ratio", "nuisance alerts", "lead time", "latency, s: mean / most")
 FLIGHT_S = 40.0  # of a flight without a collision
