@@ -148,6 +148,7 @@ RUN_BY = {
     "build/port/companion/goe_companion port/companion/companion.ini": By(
         "tests/companion/companion.py", '"companion" / "goe_companion"'
     ),
+    "goe_avoid --several --new-ids": By("tests/sim/test_avoid.py", '"--new-ids"'),
     "goe_avoid --several": By("tests/sim/test_avoid.py", '"--several"'),
     "cmake --preset default": By("tools/test.sh", 'cmake --preset "$1"'),
     "cmake --build --preset default": By("tools/test.sh", 'cmake --build --preset "$1"'),
