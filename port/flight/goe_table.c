@@ -13,8 +13,8 @@
 #define ABEAM_DEG 90.0f
 #define AVOIDED_S                                                                                                      \
     600.0f /* the track of an order's obstacle ends no sooner: HOLD circles before it, perhaps out of view */
-#define ORDERED_S                                                                                                      \
-    120.0f /* the same of any other track while an order is active: the way back may lead past its obstacle */
+#define ORDERED_S 120.0f /* that of another one, while an order is active: the way back may lead past it */
+#define MOVING_S 30.0f   /* that of one that moves: its place, and with it the order's target, drifts away */
 #define NOBODY (-1)
 
 /* ------------------------------------------------------------------------------------------------------- detections -- */
@@ -336,15 +336,23 @@ static bool is_ordered(const goe_flight_reaction_t *reaction) {
     return reaction->action != GOE_FLIGHT_NONE || reaction->falling;
 }
 
+/* Time for which a slot's track may be undetected. */
+static float most_s(const goe_flight_t *flight, int i) {
+    const float timeout_s = flight->settings.track_timeout_s;
+    if (!is_ordered(&flight->reaction)) {
+        return timeout_s;
+    }
+    const bool moves = (flight->slot[i].valid & GOE_HAS_VELOCITY) != 0u;
+    const float standing_s = i == flight->reaction.slot ? AVOIDED_S : ORDERED_S;
+    return goe_flight_larger(moves ? MOVING_S : standing_s, timeout_s);
+}
+
 void goe_flight_table_age(goe_flight_t *flight, uint32_t now_us) {
     goe_flight_candidate_bury(&flight->waiting, now_us);
-    const float timeout_s = flight->settings.track_timeout_s;
-    const float most_s = is_ordered(&flight->reaction) ? goe_flight_larger(ORDERED_S, timeout_s) : timeout_s;
     for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
         goe_flight_slot_t *slot = &flight->slot[i];
         const float undetected_s = goe_flight_between_s(now_us, slot->detected_us);
-        const float own_most_s = i == flight->reaction.slot ? AVOIDED_S : most_s;
-        slot->used = slot->used && (undetected_s <= own_most_s || is_ahead(flight, slot));
+        slot->used = slot->used && (undetected_s <= most_s(flight, i) || is_ahead(flight, slot));
         if (!slot->used) {
             release(&flight->reaction, i);
         }

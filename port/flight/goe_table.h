@@ -10,7 +10,7 @@
 bool goe_flight_table_take(goe_flight_t *flight, const goe_flight_slot_view_t *view, const goe_flight_frame_t *frame);
 
 /* Ends tracks that have been undetected for track_timeout_s; during an order, and shortly after it, for 120 s or track_timeout_s, whichever
- * is longer; the track of the order's obstacle after 600 s. Tracks of hazards ahead on the course continue. */
+ * is longer; the track of the order's obstacle after 600 s, that of one that moves after 30 s. Tracks of hazards ahead on the course continue. */
 void goe_flight_table_age(goe_flight_t *flight, uint32_t now_us);
 
 /* Updates, as undetected, the slots whose latest image is older than this view. Images older than this view no longer arrive. */

@@ -254,7 +254,7 @@ static void a_passed_obstacle_in_view_makes_room_for_one_ahead(void) {
 
 /* [flight.track_timeout_s]
  * GIVEN any table THEN a track undetected for track_timeout_s is given up, or for 120 s while an order is active or has just ended, that of the
- * order's obstacle for 600 s; but not an obstacle ahead. The order forgets a track that is given up. */
+ * order's obstacle for 600 s, of one that moves for 30 s; but not an obstacle ahead. The order forgets a track that is given up. */
 static void an_old_track_is_given_up(void) {
     int given_up = 0;
     int kept = 0;
@@ -269,6 +269,7 @@ static void an_old_track_is_given_up(void) {
         copy.reaction.edge = (int8_t)(one_in(2) ? -1 : (int)between(0.0, 3.99));
         for (int i = 0; i < GOE_FLIGHT_SLOTS; i++) {
             put_any(&copy, i, now_us);
+            copy.slot[i].valid |= (uint8_t)(one_in(3) ? GOE_HAS_VELOCITY : 0);
             copy.slot[i].detected_us = now_us - (uint32_t)between(1.0e6, one_in(2) ? 60.0e6 : 900.0e6);
         }
         const goe_flight_t before = copy;
@@ -277,8 +278,10 @@ static void an_old_track_is_given_up(void) {
             const goe_flight_slot_t *slot = &before.slot[i];
             const double undetected_s = 1.0e-6 * (double)(now_us - slot->detected_us);
             const bool ordered = before.reaction.action != GOE_FLIGHT_NONE || before.reaction.falling;
-            const double other_s = ordered ? 120.0 : (double)copy.settings.track_timeout_s;
-            const double most_s = before.reaction.slot == i ? 600.0 : other_s;
+            const bool moves = (slot->valid & GOE_HAS_VELOCITY) != 0u;
+            const double standing_s = before.reaction.slot == i ? 600.0 : 120.0;
+            const double timeout_s = (double)copy.settings.track_timeout_s;
+            const double most_s = ordered ? fmax(moves ? 30.0 : standing_s, timeout_s) : timeout_s;
             const bool ahead = slot->assessed && slot->hazard.tcpa_s > 0.0f &&
                                slot->hazard.conflict_probability >= copy.settings.conflict_probability_max;
             const bool stays = slot->used && (ahead || undetected_s <= most_s);
