@@ -3,13 +3,13 @@ goe_plane.lua: ArduPlane flies past what goe_companion has found. SPDX-License-I
 
 The companion (reaction mode "off", reports on) sends GOE_HAZARD for each obstacle and GOE_STATUS once a second. An obstacle with
 an order makes this script fly to the order's target in GUIDED, and back into the mode before when the obstacle is passed. Only
-from AUTO and CRUISE, or while it circles after such an order; GO_AROUND only while landing in AUTO, or after a side: then it raises the target. A landing is not gone on with
-after a side: from there the way to the runway is another one. Whoever chooses another mode meanwhile is not fought, nor
-whoever sends the aircraft elsewhere in GUIDED.
+from AUTO and CRUISE, or while it circles after such an order; GO_AROUND only while landing in AUTO, or after a side: then it
+raises the target. A landing is not gone on with after a side: from there the way to the runway is another one. Whoever chooses
+another mode meanwhile is not fought, nor whoever sends the aircraft elsewhere in GUIDED.
 
 Passed is an obstacle that the companion still reports, without an order any more. If it was given up, after HOLD, or if the
-companion falls silent, the aircraft stays at the target, circling, and a text warns the pilot: what is not seen may lie ahead. A new
-order is flown from there, and the aircraft circles again at its end: back into the mode before leads only the pilot.
+companion falls silent, the aircraft stays at the target, circling, and a text warns the pilot: what is not seen may lie ahead. It
+flies a new order from there, and circles again at its end: only the pilot leads it back into the mode before.
 
 The firmware's dialect need not know the messages: ArduPilot 4.7-dev hands scripts what its parser does not know, unsigned also
 where the link is signed. The script therefore judges each message itself. With a key (KEY_FILES) only a message with a right and new

@@ -22,7 +22,7 @@
 #define BOX_FAULTS_US 2000000 /* ... and with different faults */
 #define GRAVITY_M_S2 9.80665
 #define DEG_PER_RAD 57.29577951308232
-#define WIDER 1.1            /* of the circle: less is a gust */
+#define WIDER 1.1            /* times the circle: a smaller excess may be a gust */
 #define CLOCK_STEP_US 100000 /* by which the computer's own clock may be set without a word */
 
 static int64_t clock_us(clockid_t clock) {
@@ -312,7 +312,7 @@ static void watch_circle(companion_t *c) {
     if (layer->loiter_m > 0.0f && turn_m > WIDER * fmax((double)layer->loiter_m, c->turn_m)) {
         c->turn_m = turn_m;
         event("flight.loiter_m %.0f is smaller than the turn at %.0f m/s and %.0f degrees of bank: %.0f m is assumed; "
-              "set it and the autopilot's radius to more",
+              "increase it and the autopilot's radius",
               (double)layer->loiter_m, speed_m_s, (double)layer->bank_deg, turn_m);
     }
 }

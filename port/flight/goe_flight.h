@@ -107,9 +107,9 @@ typedef struct {
     float confirm_images; /* images with a new obstacle, at most 1 s apart, before it gets a slot; 1 to 20; 3 */
     float detector_timeout_s; /* the detector counts as dead after this time without a frame; 0.05 to 60; 1 */
     float track_timeout_s; /* an obstacle is dropped after this time undetected, unless it is a hazard ahead. During an
-                              order, and for 10 s after it, no obstacle is dropped in less than 120 s, that of the order not in less
-                              than 600 s, one that moves not in less than 30 s, unless a new one needs its slot (README.md, "a full
-                              table"); 1 to 600; 10 */
+                              order the time is at least 120 s, and 600 s for the order's obstacle; for 10 s after an order 600 s;
+                              for an obstacle that moves 30 s. A new obstacle may need the slot earlier (README.md, "a full table");
+                              1 to 600; 10 */
     /* time */
     float delay_s;     /* least time from sending to arrival, which one-way messages cannot show; 0 to 0.5; 0.005 */
     float delay_sd_s;  /* one sigma of delay_s, and of a capture time without a sigma; 0 to 0.5; 0.005 */

@@ -405,6 +405,7 @@ static bool is_as_wide(const goe_flight_slot_t *slot, const goe_flight_camera_t 
            (cut || px_per_m * slot->width_m <= ALIKE * box);
 }
 
+/* Of an obstacle with a position: the overlap with its outline, or else how near the middle of the box its place is. */
 float goe_flight_slot_claims(const goe_flight_slot_t *slot, const goe_flight_camera_t cameras[GOE_CAMERAS_MAX],
                              const goe_flight_slot_view_t *view, const int16_t box_px[4]) {
     float pixel[2];

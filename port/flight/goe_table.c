@@ -343,7 +343,9 @@ static float most_s(const goe_flight_t *flight, int i) {
         return timeout_s;
     }
     const bool moves = (flight->slot[i].valid & GOE_HAS_VELOCITY) != 0u;
-    const float standing_s = i == flight->reaction.slot ? AVOIDED_S : ORDERED_S;
+    /* an order that has ended no longer names its obstacle */
+    const bool avoided = i == flight->reaction.slot || flight->reaction.action == GOE_FLIGHT_NONE;
+    const float standing_s = avoided ? AVOIDED_S : ORDERED_S;
     return goe_flight_larger(moves ? MOVING_S : standing_s, timeout_s);
 }
 

@@ -9,8 +9,8 @@
  * whether the frame shows that the detector is alive: it has a readable detection, or the image has none. */
 bool goe_flight_table_take(goe_flight_t *flight, const goe_flight_slot_view_t *view, const goe_flight_frame_t *frame);
 
-/* Ends tracks that have been undetected for track_timeout_s; during an order, and shortly after it, for 120 s or track_timeout_s, whichever
- * is longer; the track of the order's obstacle after 600 s, that of one that moves after 30 s. Tracks of hazards ahead on the course continue. */
+/* Ends tracks that have been undetected for track_timeout_s, or for the following time if it is longer: during an order 120 s, and 600 s for
+ * the order's obstacle; shortly after an order 600 s; for an obstacle that moves 30 s. Tracks of hazards ahead on the course continue. */
 void goe_flight_table_age(goe_flight_t *flight, uint32_t now_us);
 
 /* Updates, as undetected, the slots whose latest image is older than this view. Images older than this view no longer arrive. */

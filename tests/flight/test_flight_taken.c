@@ -253,8 +253,9 @@ static void a_passed_obstacle_in_view_makes_room_for_one_ahead(void) {
 }
 
 /* [flight.track_timeout_s]
- * GIVEN any table THEN a track undetected for track_timeout_s is given up, or for 120 s while an order is active or has just ended, that of the
- * order's obstacle for 600 s, of one that moves for 30 s; but not an obstacle ahead. The order forgets a track that is given up. */
+ * GIVEN any table THEN a track undetected for track_timeout_s is given up; while an order is active for 120 s, that of the order's obstacle for
+ * 600 s; when an order has just ended for 600 s; that of one that moves for 30 s; but not an obstacle ahead. The order forgets a track that is
+ * given up. */
 static void an_old_track_is_given_up(void) {
     int given_up = 0;
     int kept = 0;
@@ -279,7 +280,8 @@ static void an_old_track_is_given_up(void) {
             const double undetected_s = 1.0e-6 * (double)(now_us - slot->detected_us);
             const bool ordered = before.reaction.action != GOE_FLIGHT_NONE || before.reaction.falling;
             const bool moves = (slot->valid & GOE_HAS_VELOCITY) != 0u;
-            const double standing_s = before.reaction.slot == i ? 600.0 : 120.0;
+            const bool avoided = before.reaction.slot == i || before.reaction.action == GOE_FLIGHT_NONE;
+            const double standing_s = avoided ? 600.0 : 120.0;
             const double timeout_s = (double)copy.settings.track_timeout_s;
             const double most_s = ordered ? fmax(moves ? 30.0 : standing_s, timeout_s) : timeout_s;
             const bool ahead = slot->assessed && slot->hazard.tcpa_s > 0.0f &&
